@@ -1,0 +1,16 @@
+//! Hydraulic soft microtubule artificial muscles (SMAMs) in rigid-body scenes.
+//!
+//! The chain is `plunger -> syringe -> line -> muscle -> cable -> mechanism`. Everything left of the
+//! mechanism is written here; the mechanism is a rapier multibody. See `ARCHITECTURE.md` for the map.
+
+pub mod hydraulics;
+pub mod hysteresis;
+pub mod mechanism;
+pub mod muscle;
+pub mod recording;
+pub mod report;
+pub mod scalar;
+pub mod scene;
+pub mod system;
+#[cfg(feature = "viz")]
+pub mod view;

@@ -1,0 +1,2 @@
+//! (placeholder: filled by the next commits)
+pub mod observe;

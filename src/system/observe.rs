@@ -1,0 +1,86 @@
+//! What a running scene shows to whoever watches it: a file writer, a viewer, a progress bar.
+
+use crate::mechanism::geometry::{Contact, Pose, Visual};
+
+/// What stays the same during a run.
+#[derive(Clone, Debug, Default)]
+pub struct SceneGraph {
+    /// Name of the scene, as in its file.
+    pub name: String,
+    /// Columns of the recording in order, with their units in the name (`pressure_1_kpa`): inputs first.
+    pub channels: Vec<String>,
+    /// How many of `channels` are inputs.
+    pub input_count: usize,
+    /// Links and free bodies; `Frame::link_poses` follows this order.
+    pub links: Vec<String>,
+    pub visuals: Vec<Visual>,
+    /// One name per cable; `Frame::cables` follows this order.
+    pub cables: Vec<String>,
+    /// One per muscle: how to draw it.
+    pub muscles: Vec<MuscleGraph>,
+    /// Horizontal and vertical channel of the scene's hysteresis loops (indices into `channels`).
+    pub loops: Vec<(usize, usize)>,
+    /// Where a camera should look and from where, m.
+    pub camera_target_m: [f64; 3],
+    pub camera_position_m: [f64; 3],
+    /// Link that carries the working tip, if the scene has one.
+    pub tip_link: Option<usize>,
+}
+
+/// What of a muscle stays the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MuscleGraph {
+    pub name: String,
+    pub outer_diameter_m: f64,
+    pub coil_turns: f64,
+    pub rest_length_m: f64,
+    /// Fixed end and the direction in which the muscle extends when it elongates.
+    pub anchor_m: [f64; 3],
+    pub direction: [f64; 3],
+}
+
+/// One instant of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    pub time_s: f64,
+    /// Values in the units of `SceneGraph::channels`.
+    pub channels: Vec<f64>,
+    pub link_poses: Vec<Pose>,
+    pub cables: Vec<CableFrame>,
+    pub muscles: Vec<MuscleFrame>,
+    pub contacts: Vec<Contact>,
+    /// Angle of each joint coordinate, rad (m for sliders), in the mechanism's order.
+    pub joint_positions: Vec<f64>,
+    /// What happened since the last frame, in words (`muscle_1: cavitation begins`).
+    pub events: Vec<String>,
+    /// Stored, dissipated, delivered and input energy so far, J, by name; empty unless asked for.
+    pub energy_j: Vec<(String, f64)>,
+}
+
+/// One cable at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CableFrame {
+    /// Polyline in the world, m.
+    pub points_m: Vec<[f64; 3]>,
+    pub tension_n: f64,
+}
+
+/// One muscle at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MuscleFrame {
+    pub elongation_m: f64,
+    pub pressure_pa: f64,
+    pub pull_n: f64,
+}
+
+/// Watches a run. Called in order of time, at the output instants only.
+pub trait Observer {
+    /// What makes it stop the run.
+    type Error;
+
+    /// Called once, before the first frame.
+    fn begin(&mut self, graph: &SceneGraph) -> Result<(), Self::Error>;
+
+    /// Called at every output instant.
+    fn frame(&mut self, frame: &Frame) -> Result<(), Self::Error>;
+}
