@@ -1,0 +1,98 @@
+//! Finding, reading and validating scenes.
+
+use std::path::{Path, PathBuf};
+
+use toml::Table;
+
+use super::overrides::Override;
+use super::{Program, SceneError, SceneFile, check};
+
+/// Scenes that come with the program, by name.
+pub const STOCK_SCENES: [&str; 11] = [
+    "muscle_bench",
+    "muscle_free",
+    "muscle_lift",
+    "muscle_blocked",
+    "muscle_printed_model",
+    "antagonistic_pulley",
+    "bending_catheter",
+    "grip_and_release",
+    "pressure_muscle",
+    "tendon_sheath",
+    "driven_axis",
+];
+
+/// A scene whose keys, numbers and names (within the file) are right.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Where it came from; paths in it are relative to this file's folder.
+    pub path: PathBuf,
+    pub file: SceneFile,
+    /// Programme of each input, in the order of `file.input`.
+    pub programs: Vec<Program>,
+}
+
+impl Scene {
+    /// Reads a scene by path or stock name and applies `overrides` in order.
+    pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
+        let path = find_scene(path_or_name)?;
+        let text = std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        Self::parse(&text, &path, overrides)
+    }
+
+    /// Reads a scene from text; `path` is where it stands.
+    pub fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<Self, SceneError> {
+        let syntax = |message: String| SceneError::Syntax { file: path.to_owned(), message };
+        // Straight from the text first: its errors carry line and column, those of a changed table cannot.
+        let direct: Result<SceneFile, _> = serde_path_to_error::deserialize(
+            toml::Deserializer::parse(text).map_err(|e| syntax(e.to_string().trim_end().to_owned()))?,
+        );
+        let file = match direct {
+            Ok(file) if overrides.is_empty() => file,
+            Err(e) => return Err(syntax(place(e.path(), e.inner().to_string().trim_end()))),
+            Ok(_) => {
+                let mut table: Table = text.parse().map_err(|e: toml::de::Error| syntax(e.to_string()))?;
+                overrides.iter().try_for_each(|o| o.apply(&mut table))?;
+                serde_path_to_error::deserialize(table).map_err(|e| SceneError::Override {
+                    key: e.path().to_string(),
+                    message: e.inner().message().to_owned(),
+                    remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
+                })?
+            }
+        };
+        Self::from_file(file, path)
+    }
+
+    /// Validates a scene file; `path` is where its relative paths start.
+    pub fn from_file(file: SceneFile, path: &Path) -> Result<Self, SceneError> {
+        let programs = check::check(&file, path)?;
+        Ok(Self { path: path.to_owned(), file, programs })
+    }
+
+    /// Folder that relative paths of the scene start from.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new("."))
+    }
+}
+
+fn place(path: &serde_path_to_error::Path, message: &str) -> String {
+    if path.iter().next().is_none() { message.to_owned() } else { format!("{path}: {message}") }
+}
+
+/// A path as it is, or a stock scene by name: looked for in `scenes/` here, beside the program, and where it was built.
+pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
+    let direct = Path::new(path_or_name);
+    if direct.extension().is_some() || direct.exists() {
+        return Ok(direct.to_owned());
+    }
+    let file = Path::new("scenes").join(format!("{path_or_name}.toml"));
+    let beside_program = std::env::current_exe().ok();
+    let built_at = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = std::iter::once(Path::new(""))
+        .chain(beside_program.iter().flat_map(|p| p.ancestors().skip(1)))
+        .chain(std::iter::once(built_at));
+    folders.map(|folder| folder.join(&file)).find(|path| path.is_file()).ok_or_else(|| SceneError::UnknownName {
+        name: path_or_name.to_owned(),
+        known: STOCK_SCENES.join(", "),
+    })
+}

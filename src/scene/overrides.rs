@@ -1,0 +1,122 @@
+//! Changing a scene by key: `--set`, known conditions of a run, calibrated parameters.
+
+use toml::{Table, Value};
+
+use super::SceneError;
+
+/// Short names of the calibrated parameters and the scene keys they stand for.
+const CALIBRATION_NAMES: [(&str, &str); 5] = [
+    ("tube_c1_pa", "muscles.tube.material.c1_pa"),
+    ("upstream_compliance_m3_pa", "hydraulics.upstream_compliance_m3_pa"),
+    ("friction_m0_n", "muscles.friction.m0_n"),
+    ("friction_m1_n_pa", "muscles.friction.m1_n_pa"),
+    ("presliding_length_m", "muscles.friction.presliding_length_m"),
+];
+
+/// The scene key that a calibration name stands for; any other key is itself.
+pub fn calibration_key(name: &str) -> &str {
+    CALIBRATION_NAMES.iter().find(|(short, _)| *short == name).map_or(name, |(_, key)| key)
+}
+
+/// One changed key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Override {
+    pub key: String,
+    pub value: Value,
+}
+
+impl Override {
+    /// Reads `key=value`; the value is TOML, or a bare word taken as text.
+    pub fn parse(text: &str) -> Result<Self, SceneError> {
+        let refuse = |message: &str| SceneError::Override {
+            key: text.to_owned(),
+            message: message.to_owned(),
+            remedy: "write it as --set table.key=value, for example --set muscles.pre_elongation_ratio=0.6".to_owned(),
+        };
+        let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`"))?;
+        let (key, value) = (key.trim(), value.trim());
+        if key.is_empty() || value.is_empty() {
+            return Err(refuse("key or value is empty"));
+        }
+        let parsed = format!("x = {value}").parse::<Table>().ok().and_then(|mut t| t.remove("x"));
+        Ok(Self { key: key.to_owned(), value: parsed.unwrap_or_else(|| Value::String(value.to_owned())) })
+    }
+
+    /// A number for a key.
+    pub fn number(key: impl Into<String>, value: f64) -> Self {
+        Self { key: key.into(), value: Value::Float(value) }
+    }
+
+    /// Puts the value into the scene's table. In lists of tables a segment is an index or a `name`.
+    pub fn apply(&self, scene: &mut Table) -> Result<(), SceneError> {
+        let path: Vec<&str> = calibration_key(&self.key).split('.').collect();
+        let refuse = |message: String| SceneError::Override {
+            key: self.key.clone(),
+            message,
+            remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
+        };
+        let (last, parents) = path.split_last().ok_or_else(|| refuse("the key is empty".to_owned()))?;
+        let mut here: &mut Value = &mut Value::Boolean(false);
+        for (depth, segment) in parents.iter().enumerate() {
+            let next = if depth == 0 { scene.get_mut(*segment) } else { child(here, segment) };
+            here = next.ok_or_else(|| refuse(format!("there is no `{}` in the scene", path[..=depth].join("."))))?;
+        }
+        let slot = if parents.is_empty() { scene.get_mut(*last) } else { child(here, last) };
+        match slot {
+            Some(slot) => {
+                *slot = coerced(&self.value, slot);
+                Ok(())
+            }
+            // Keys with a default need not stand in the file; a wrong name is refused when the scene is read.
+            None => match here.as_table_mut() {
+                Some(table) => {
+                    table.insert((*last).to_owned(), self.value.clone());
+                    Ok(())
+                }
+                None => Err(refuse(format!("there is no `{}` in the scene", path.join(".")))),
+            },
+        }
+    }
+}
+
+/// An integer given where the scene has a float is that float.
+fn coerced(value: &Value, old: &Value) -> Value {
+    match (value, old) {
+        (Value::Integer(i), Value::Float(_)) => Value::Float(*i as f64),
+        _ => value.clone(),
+    }
+}
+
+fn child<'a>(value: &'a mut Value, segment: &str) -> Option<&'a mut Value> {
+    match value {
+        Value::Table(table) => table.get_mut(segment),
+        Value::Array(list) => match segment.parse::<usize>() {
+            Ok(index) => list.get_mut(index),
+            Err(_) => list.iter_mut().find(|item| item.get("name").and_then(Value::as_str) == Some(segment)),
+        },
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_nested_keys_and_named_entries() {
+        let mut scene: Table = "[a]\nb = 1.5\n[[cable]]\nname = 'x'\nk = 1.0".parse().expect("test TOML");
+        for text in ["a.b=2", "cable.x.k=3", "a.word=held"] {
+            Override::parse(text).and_then(|o| o.apply(&mut scene)).expect("valid");
+        }
+        assert_eq!(scene["a"]["b"], Value::Float(2.0));
+        assert_eq!(scene["cable"][0]["k"], Value::Float(3.0));
+        assert_eq!(scene["a"]["word"].as_str(), Some("held"));
+    }
+
+    #[test]
+    fn a_missing_table_is_named() {
+        let mut scene: Table = "[a]\nb = 1.5".parse().expect("test TOML");
+        let error = Override::number("c.d", 1.0).apply(&mut scene).expect_err("no table c");
+        assert!(error.to_string().starts_with("--set c.d: there is no `c` in the scene"), "{error}");
+    }
+}

@@ -1,0 +1,310 @@
+//! Scene to plant: names to indices, specs to elements.
+
+use crate::hydraulics::{Chain, ChainState};
+use crate::mechanism::{Coordinate, Mechanism, Route};
+use crate::muscle::{Coil, Friction, Stop, Wall, WallCondition, WallGeometry};
+use crate::recording::parse_column;
+use crate::scene::{CableSpec, MuscleSpec, MusclesSpec, Scene, TubeSpec, WallSpec};
+
+use super::SystemError;
+use super::elastic::Elastic;
+use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant, PlantState};
+
+/// A plant with its starting state, and how its parts hang on the mechanism.
+pub(super) struct Built {
+    pub plant: Plant<f64>,
+    pub state: PlantState<f64>,
+    /// Route of each cable, and the path length at which its stretch is that of the start.
+    pub routes: Vec<Route>,
+    pub path_0_m: Vec<f64>,
+    /// Of each cable: minus the part of its stretch that the muscle's end has at the start, m.
+    pub start_offset_m: Vec<f64>,
+    /// Of each muscle of the scene: its index among the plant's muscles (`None` for a displacement model).
+    pub muscle_index: Vec<Option<usize>>,
+    /// Of each muscle pulling a cable: the coordinate of its free end.
+    pub end_coordinate: Vec<Option<usize>>,
+    /// Displacement models: muscle of the scene, cable it moves, index of its pseudo-input.
+    pub displacements: Vec<Displacement>,
+}
+
+/// A muscle that follows its plunger by a displacement-form hysteresis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Displacement {
+    pub muscle: usize,
+    pub plunger: usize,
+    /// Index of the pseudo-input that carries its elongation, m.
+    pub input: usize,
+}
+
+struct Builder<'a> {
+    scene: &'a Scene,
+    mechanism: Option<&'a Mechanism>,
+    /// Number of coordinates: the mechanism's, then one per muscle end.
+    dim: usize,
+    joints: usize,
+}
+
+/// Builds the plant of a scene around its mechanism.
+pub(super) fn build(scene: &Scene, mechanism: Option<&Mechanism>) -> Result<Built, SystemError> {
+    let joints = mechanism.map_or(0, |m| m.coordinates().len());
+    let displaced = scene.file.muscles.as_ref().is_some_and(|m| m.displacement.is_some());
+    let ends = if displaced { 0 } else { scene.file.muscle.iter().filter(|m| m.cable.is_some()).count() };
+    Builder { scene, mechanism, dim: joints + ends, joints }.build(displaced)
+}
+
+impl Builder<'_> {
+    fn build(&self, displaced: bool) -> Result<Built, SystemError> {
+        let (cables, routes) = self.cables()?;
+        let mut built = Built {
+            plant: Plant { coordinates: self.coordinates()?, muscles: Vec::new(), cables },
+            state: self.start(),
+            path_0_m: vec![0.0; routes.len()],
+            start_offset_m: vec![0.0; routes.len()],
+            routes,
+            muscle_index: Vec::new(),
+            end_coordinate: Vec::new(),
+            displacements: Vec::new(),
+        };
+        if let Some(make) = &self.scene.file.muscles {
+            let elastic = self.elastic(make)?;
+            let mut next_end = self.joints;
+            for (index, spec) in self.scene.file.muscle.iter().enumerate() {
+                if displaced {
+                    self.add_displacement(index, spec, &mut built)?;
+                } else {
+                    self.add_muscle(spec, make, elastic.clone(), &mut next_end, &mut built)?;
+                }
+            }
+        }
+        self.settle_cables(&mut built);
+        Ok(built)
+    }
+
+    fn error(&self, table: String, message: String, remedy: String) -> SystemError {
+        SystemError::Name { file: self.scene.path.clone(), table, message, remedy }
+    }
+
+    fn joint(&self, table: &str, name: &str) -> Result<usize, SystemError> {
+        let coordinates = self.mechanism.map_or(&[][..], Mechanism::coordinates);
+        coordinates.iter().position(|c| c.name == name).ok_or_else(|| {
+            let known: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
+            self.error(
+                table.to_owned(),
+                format!("joint = \"{name}\" is no free joint of the mechanism"),
+                format!("use one of: {} (locked and following joints do not count)", known.join(", ")),
+            )
+        })
+    }
+
+    fn is_locked(&self, name: &str) -> bool {
+        let joints = self.scene.file.mechanism.iter().flat_map(|m| &m.joint);
+        joints.filter(|j| j.locked_m.is_some() || j.locked_rad.is_some()).any(|j| j.joints.iter().any(|n| n == name))
+    }
+
+    fn coordinates(&self) -> Result<Coordinates<f64>, SystemError> {
+        let n = self.dim;
+        let mut c = Coordinates {
+            inertia: vec![0.0; n * n],
+            damping: vec![0.0; n],
+            stiffness: vec![0.0; n],
+            rest: vec![0.0; n],
+            force: vec![0.0; n],
+            stops: Vec::new(),
+        };
+        for (i, joint) in self.mechanism.iter().flat_map(|m| m.coordinates()).enumerate() {
+            c.damping[i] = joint.damping;
+            c.stiffness[i] = joint.stiffness;
+            c.rest[i] = joint.rest;
+            c.stops.extend(stops(i, joint));
+        }
+        let end_mass = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.end_mass_kg);
+        for i in self.joints..n {
+            c.inertia[i * n + i] = end_mass;
+        }
+        Ok(c)
+    }
+
+    fn start(&self) -> PlantState<f64> {
+        let mut y = vec![0.0; self.dim];
+        for (y, joint) in y.iter_mut().zip(self.mechanism.iter().flat_map(|m| m.coordinates())) {
+            *y = joint.initial;
+        }
+        let pre = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.pre_elongation_ratio * m.rest_length_m);
+        y[self.joints..].fill(pre);
+        PlantState { w: vec![0.0; self.dim], y, chains: Vec::new(), z: Vec::new() }
+    }
+
+    fn cables(&self) -> Result<(Vec<CablePlant<f64>>, Vec<Route>), SystemError> {
+        let mut cables = Vec::new();
+        let mut routes = Vec::new();
+        for spec in &self.scene.file.cable {
+            let table = format!("[[cable]] \"{}\"", spec.name);
+            let Some(mechanism) = self.mechanism else {
+                return Err(self.error(table, "there is no [mechanism] to pull on".to_owned(), "add [mechanism] with a URDF".to_owned()));
+            };
+            let route = mechanism.route(&spec.route).map_err(|source| SystemError::Mechanism { file: self.scene.path.clone(), source })?;
+            cables.push(self.cable(spec, mechanism, &route));
+            routes.push(route);
+        }
+        Ok((cables, routes))
+    }
+
+    fn cable(&self, spec: &CableSpec, mechanism: &Mechanism, route: &Route) -> CablePlant<f64> {
+        let mut jacobian = vec![0.0; self.dim];
+        mechanism.path_length(route, &mut jacobian[..self.joints]);
+        let drive = spec.drive.as_ref().and_then(|d| self.input(&d.input).map(|i| (i, d.lever_m)));
+        CablePlant { stiffness_n_m: spec.stiffness_n_m, damping_n_s_m: spec.damping_n_s_m, stretch_0_m: 0.0, jacobian, drive }
+    }
+
+    fn input(&self, channel: &str) -> Option<usize> {
+        self.scene.file.input.iter().position(|i| i.channel == channel)
+    }
+
+    /// Index of a muscle's input; the scene has been checked to have it.
+    fn muscle_input(&self, spec: &MuscleSpec) -> Result<usize, SystemError> {
+        self.input(&spec.input).ok_or_else(|| {
+            self.error(format!("[[muscle]] \"{}\"", spec.name), format!("input = \"{}\" is not an input", spec.input), "add the [[input]]".to_owned())
+        })
+    }
+
+    fn elastic(&self, make: &MusclesSpec) -> Result<Elastic<f64>, SystemError> {
+        if let Some(tube) = &make.tube {
+            return tube_elastic(tube, make.rest_length_m).map_err(|source| SystemError::Muscle { file: self.scene.path.clone(), source });
+        }
+        let (k, b) = make.linear.map_or((0.0, 0.0), |l| (l.stiffness_n_m, l.pressure_gain_m2));
+        Ok(Elastic::Linear { stiffness_n_m: k, pressure_gain_m2: b })
+    }
+
+    fn add_muscle(
+        &self,
+        spec: &MuscleSpec,
+        make: &MusclesSpec,
+        elastic: Elastic<f64>,
+        next_end: &mut usize,
+        built: &mut Built,
+    ) -> Result<(), SystemError> {
+        let pre = make.pre_elongation_ratio * make.rest_length_m;
+        let table = format!("[[muscle]] \"{}\"", spec.name);
+        let mut jacobian = vec![0.0; self.dim];
+        let mut elongation_0 = 0.0;
+        let mut end = None;
+        if let Some(joint) = &spec.joint {
+            if self.is_locked(joint) {
+                elongation_0 = pre;
+            } else {
+                let i = self.joint(&table, joint)?;
+                jacobian[i] = 1.0;
+                elongation_0 = pre - built.state.y[i];
+            }
+        } else {
+            jacobian[*next_end] = 1.0;
+            let cable = self.scene.file.cable.iter().position(|c| Some(&c.name) == spec.cable.as_ref());
+            if let Some(cable) = cable {
+                // The cable's near end moves with the muscle's: elongating slackens it.
+                built.plant.cables[cable].jacobian[*next_end] = -1.0;
+            }
+            end = Some(*next_end);
+            *next_end += 1;
+        }
+        let pressure = elastic.holding_pressure_pa(pre, make.initial_load_n);
+        let (drive, chain_state) = self.drive(spec, pressure)?;
+        let friction = make.friction.map(|f| Friction {
+            m0_n: f.m0_n,
+            m1_n_pa: f.m1_n_pa,
+            presliding_length_m: f.presliding_length_m,
+            a: f.a,
+            nu: f.nu,
+            n: f.n,
+            rho: f.rho,
+        });
+        let stop = make.tube.as_ref().and_then(|t| t.closed_stop);
+        built.muscle_index.push(Some(built.plant.muscles.len()));
+        built.end_coordinate.push(end);
+        built.plant.muscles.push(MusclePlant {
+            drive,
+            elastic,
+            friction,
+            damping_n_s_m: make.damping_n_s_m,
+            stop: stop.map(|s| Stop { stiffness_n_m: s.stiffness_n_m, damping_n_s_m: s.damping_n_s_m }),
+            jacobian,
+            elongation_0_m: elongation_0,
+        });
+        built.state.chains.push(chain_state);
+        built.state.z.push(0.0);
+        Ok(())
+    }
+
+    fn drive(&self, spec: &MuscleSpec, pressure_pa: f64) -> Result<(Drive<f64>, ChainState<f64>), SystemError> {
+        let input = self.muscle_input(spec)?;
+        let by_pressure = parse_column(&spec.input)?.unit.si_suffix == "pa";
+        match &self.scene.file.hydraulics {
+            Some(h) if !by_pressure => {
+                let chain = Chain::new(&h.line, &h.fluid, h.upstream_compliance_m3_pa, h.downstream_compliance_m3_pa);
+                let state = chain.at_rest(pressure_pa);
+                Ok((Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input }, state))
+            }
+            _ => {
+                let state = ChainState { pressure_pa: vec![0.0], flow_m3_s: Vec::new(), vapour_m3: vec![0.0], boiling: vec![false] };
+                Ok((Drive::Pressure { pressure: input }, state))
+            }
+        }
+    }
+
+    fn add_displacement(&self, muscle: usize, spec: &MuscleSpec, built: &mut Built) -> Result<(), SystemError> {
+        let plunger = self.muscle_input(spec)?;
+        let input = self.scene.file.input.len() + built.displacements.len();
+        if let Some(cable) = self.scene.file.cable.iter().position(|c| Some(&c.name) == spec.cable.as_ref()) {
+            built.plant.cables[cable].drive = Some((input, -1.0));
+        }
+        built.displacements.push(Displacement { muscle, plunger, input });
+        built.muscle_index.push(None);
+        built.end_coordinate.push(None);
+        Ok(())
+    }
+
+    /// Sets every cable's rest so that it starts with its pretension.
+    fn settle_cables(&self, built: &mut Built) {
+        // Displacements of plungers and drives count from the start state of the scene.
+        let inputs = vec![InputSpan::default(); self.scene.file.input.len() + built.displacements.len()];
+        for i in 0..built.plant.cables.len() {
+            built.plant.cables[i].stretch_0_m = 0.0;
+            let (stretch, _, _) = built.plant.cable(i, &built.state, &inputs, 0.0);
+            let spec = &self.scene.file.cable[i];
+            built.plant.cables[i].stretch_0_m = spec.pretension_n / spec.stiffness_n_m - stretch;
+            let ends = self.joints..self.dim;
+            built.start_offset_m[i] = -ends.map(|j| built.plant.cables[i].jacobian[j] * built.state.y[j]).sum::<f64>();
+            if let Some(mechanism) = self.mechanism {
+                built.path_0_m[i] = mechanism.path_length(&built.routes[i], &mut vec![0.0; self.joints]);
+            }
+        }
+    }
+}
+
+fn stops(coordinate: usize, joint: &Coordinate) -> impl Iterator<Item = CoordinateStop> {
+    let stop = move |side: f64, s: &crate::mechanism::Stop| CoordinateStop {
+        coordinate,
+        position: s.position,
+        side,
+        stiffness: s.stiffness,
+        damping: s.damping,
+    };
+    let lower = joint.lower_stop.as_ref().map(|s| stop(1.0, s));
+    let upper = joint.upper_stop.as_ref().map(|s| stop(-1.0, s));
+    lower.into_iter().chain(upper)
+}
+
+fn tube_elastic(tube: &TubeSpec, rest_length_m: f64) -> Result<Elastic<f64>, crate::muscle::MuscleError> {
+    let geometry = WallGeometry {
+        inner_radius_m: tube.inner_diameter_m / 2.0,
+        outer_radius_m: tube.outer_diameter_m / 2.0,
+        rest_length_m,
+    };
+    Ok(Elastic::Tube {
+        wall: Wall::new(geometry, tube.material)?,
+        condition: match tube.wall {
+            WallSpec::Held => WallCondition::Held,
+            WallSpec::Unilateral => WallCondition::Unilateral,
+        },
+        coil: Coil { stiffness_n_m: tube.coil.stiffness_n_m, preload_n: tube.coil.preload_n },
+    })
+}

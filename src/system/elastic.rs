@@ -1,0 +1,72 @@
+//! The conservative part of a muscle: what it pulls with at an elongation and a pressure.
+
+use crate::muscle::{Coil, Wall, WallCondition};
+use crate::scalar::Scalar;
+
+/// Conservative law of a muscle.
+#[derive(Clone, Debug)]
+pub enum Elastic<D> {
+    /// A microtube in a coil.
+    Tube { wall: Wall<D>, condition: WallCondition, coil: Coil<D> },
+    /// `F_pull = k e + b p`: a muscle known only by its stiffness and by the pull that pressure adds
+    /// (b > 0: contracts when pressurised, as twisted and coiled tubes do).
+    Linear { stiffness_n_m: D, pressure_gain_m2: D },
+}
+
+/// Value and slopes of an [`Elastic`] law.
+#[derive(Clone, Copy, Debug)]
+pub struct ElasticPoint<D> {
+    /// Pull, N, with the pressure's part in it.
+    pub pull_n: D,
+    /// `d pull / d elongation`, N/m.
+    pub stiffness_n_m: D,
+    /// `-d pull / d pressure = d volume / d elongation`, m².
+    pub area_m2: D,
+    /// `d volume / d pressure`, m³/Pa; zero for a wall held by its coil.
+    pub compliance_m3_pa: D,
+}
+
+impl<D: Scalar> Elastic<D> {
+    /// The law at elongation `e`, m, and gauge pressure `p`, Pa.
+    pub fn at(&self, e: D, p: D) -> ElasticPoint<D> {
+        match self {
+            Self::Tube { wall, condition: WallCondition::Held, coil } => {
+                let (wall_pull, wall_stiffness) = wall.pull_and_stiffness(e);
+                let area = D::constant(wall.geometry().coil_area_m2());
+                ElasticPoint {
+                    pull_n: wall_pull + coil.pull_n(e) - p * area,
+                    stiffness_n_m: wall_stiffness + coil.stiffness_n_m,
+                    area_m2: area,
+                    compliance_m3_pa: D::constant(0.0),
+                }
+            }
+            Self::Tube { wall, condition: WallCondition::Unilateral, coil } => {
+                let free = wall.unilateral(e, p);
+                ElasticPoint {
+                    pull_n: free.pull_n + coil.pull_n(e),
+                    stiffness_n_m: free.dpull_de + coil.stiffness_n_m,
+                    area_m2: -free.dpull_dp,
+                    compliance_m3_pa: free.dvolume_dp,
+                }
+            }
+            Self::Linear { stiffness_n_m, pressure_gain_m2 } => ElasticPoint {
+                pull_n: *stiffness_n_m * e + *pressure_gain_m2 * p,
+                stiffness_n_m: *stiffness_n_m,
+                area_m2: -*pressure_gain_m2,
+                compliance_m3_pa: D::constant(0.0),
+            },
+        }
+    }
+
+    /// Pressure that holds the muscle at elongation `e` against an outside pull `load`, Pa, with the wall on its coil.
+    pub fn holding_pressure_pa(&self, e: D, load_n: D) -> D {
+        let zero = D::constant(0.0);
+        match self {
+            Self::Tube { wall, coil, .. } => {
+                let (wall_pull, _) = wall.pull_and_stiffness(e);
+                (wall_pull + coil.pull_n(e) - load_n) / wall.geometry().coil_area_m2()
+            }
+            Self::Linear { .. } => zero,
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The energy book: where the plunger's work went.
+//!
+//! Powers are integrated by the trapezoid rule over the fine steps; stored energies are read off the states. What
+//! is left between the two is the integrator's own error and stands in the book as a line of its own.
+
+use super::elastic::Elastic;
+use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
+
+/// Powers at one state, W.
+#[derive(Clone, Copy, Debug, Default)]
+struct Powers {
+    /// By plungers, recorded pressures and driven cable ends, into the system.
+    input: f64,
+    /// By constant forces on the coordinates: loads, weights.
+    loads: f64,
+    line_viscosity: f64,
+    muscle_damping: f64,
+    muscle_friction: f64,
+    pressure_friction: f64,
+    cable_damping: f64,
+    joint_damping: f64,
+    stop_damping: f64,
+}
+
+/// The book of one run.
+#[derive(Clone, Debug)]
+pub struct EnergyBook {
+    stored_0: f64,
+    stored: f64,
+    sums: Powers,
+    /// Work of contacts and whatever else the engine adds to the coordinates, J.
+    engine: f64,
+    /// Integral of the absolute plunger power, J: the scale of the run.
+    turnover: f64,
+    before: Powers,
+}
+
+impl EnergyBook {
+    /// Opens the book at a state; `inputs` as they will be over the first step.
+    pub fn open(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Self {
+        let stored = stored(plant, state, inputs, 0.0);
+        Self { stored_0: stored, stored, sums: Powers::default(), engine: 0.0, turnover: 0.0, before: Powers::default() }
+    }
+
+    /// To be called before each fine step.
+    pub fn before(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
+        self.before = powers(plant, state, inputs, 0.0);
+    }
+
+    /// To be called after it.
+    pub fn after(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
+        let (b, a) = (self.before, powers(plant, state, inputs, h));
+        let s = &mut self.sums;
+        let mean = |x: f64, y: f64| h * (x + y) / 2.0;
+        s.input += mean(b.input, a.input);
+        s.loads += mean(b.loads, a.loads);
+        s.line_viscosity += mean(b.line_viscosity, a.line_viscosity);
+        s.muscle_damping += mean(b.muscle_damping, a.muscle_damping);
+        s.muscle_friction += mean(b.muscle_friction, a.muscle_friction);
+        s.pressure_friction += mean(b.pressure_friction, a.pressure_friction);
+        s.cable_damping += mean(b.cable_damping, a.cable_damping);
+        s.joint_damping += mean(b.joint_damping, a.joint_damping);
+        s.stop_damping += mean(b.stop_damping, a.stop_damping);
+        self.turnover += mean(b.input.abs(), a.input.abs());
+        self.stored = stored(plant, state, inputs, h);
+    }
+
+    /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
+    pub fn engine_changed(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) {
+        let now = stored(plant, state, inputs, elapsed_s);
+        self.engine += now - self.stored;
+        self.stored = now;
+    }
+
+    /// What is not accounted for, J: the integrator's own error.
+    pub fn unaccounted_j(&self) -> f64 {
+        let s = &self.sums;
+        let lost = s.line_viscosity + s.muscle_damping + s.muscle_friction + s.cable_damping + s.joint_damping + s.stop_damping;
+        s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost
+    }
+
+    /// Integral of the absolute plunger power, J.
+    pub fn turnover_j(&self) -> f64 {
+        self.turnover
+    }
+
+    /// All lines, J, in a fixed order: what came in, what is stored, what was lost, what is left over.
+    pub fn lines(&self) -> Vec<(String, f64)> {
+        let s = &self.sums;
+        [
+            ("input_work", s.input),
+            ("load_work", s.loads),
+            ("pressure_friction_exchange", s.pressure_friction),
+            ("engine_and_contacts", self.engine),
+            ("stored", self.stored - self.stored_0),
+            ("lost_line_viscosity", s.line_viscosity),
+            ("lost_muscle_friction", s.muscle_friction),
+            ("lost_muscle_damping", s.muscle_damping),
+            ("lost_cable_damping", s.cable_damping),
+            ("lost_joint_damping", s.joint_damping),
+            ("lost_stop_damping", s.stop_damping),
+            ("unaccounted_integrator", self.unaccounted_j()),
+        ]
+        .map(|(name, value)| (name.to_owned(), value))
+        .to_vec()
+    }
+}
+
+fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Powers {
+    let c = &plant.coordinates;
+    let mut p = Powers { loads: c.force.iter().zip(&state.w).map(|(f, w)| f * w).sum(), ..Powers::default() };
+    p.joint_damping = c.damping.iter().zip(&state.w).map(|(d, w)| d * w * w).sum();
+    for stop in &c.stops {
+        let (y, w) = (state.y[stop.coordinate], state.w[stop.coordinate]);
+        let (depth, force) = CoordinateStop::force(stop, y, w);
+        if depth > 0.0 {
+            p.stop_damping += (stop.side * stop.stiffness * depth - force) * w;
+        }
+    }
+    for i in 0..plant.cables.len() {
+        let (stretch, rate, tension) = plant.cable(i, state, inputs, elapsed_s);
+        if stretch > 0.0 {
+            p.cable_damping += (tension - plant.cables[i].stiffness_n_m * stretch) * rate;
+        }
+        if let Some((input, gain)) = plant.cables[i].drive {
+            p.input += tension * gain * inputs[input].slope;
+        }
+    }
+    for i in 0..plant.muscles.len() {
+        muscle_powers(plant, i, state, inputs, elapsed_s, &mut p);
+    }
+    p
+}
+
+fn muscle_powers(plant: &Plant<f64>, i: usize, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64, p: &mut Powers) {
+    let muscle = &plant.muscles[i];
+    let f = plant.muscle_forces(i, state, inputs, elapsed_s);
+    p.muscle_damping += f.damping_n * f.speed_m_s;
+    if let Some(stop) = &muscle.stop {
+        if f.elongation_m < 0.0 {
+            p.stop_damping += (-stop.stiffness_n_m * f.elongation_m - f.stop_n) * f.speed_m_s;
+        }
+    }
+    let pressure_rate = match &muscle.drive {
+        Drive::Hydraulic { chain, syringe_area_m2, plunger } => {
+            let s = &state.chains[i];
+            p.input += s.pressure_pa[0] * syringe_area_m2 * inputs[*plunger].slope;
+            p.line_viscosity += chain.dissipation_w(s);
+            let n = chain.segments();
+            let net = s.flow_m3_s[n - 1] - f.port.outflow_m3_s;
+            if s.boiling[n] { 0.0 } else { net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa) }
+        }
+        Drive::Pressure { pressure } => {
+            p.input += f.pressure_pa * f.port.outflow_m3_s;
+            inputs[*pressure].slope
+        }
+    };
+    if let Some(friction) = &muscle.friction {
+        p.muscle_friction += friction.dissipation_w(state.z[i], f.speed_m_s, f.pressure_pa);
+        p.pressure_friction += friction.pressure_exchange_w(state.z[i], f.pressure_pa, pressure_rate);
+    }
+}
+
+fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> f64 {
+    let c = &plant.coordinates;
+    let n = plant.dim();
+    let mut energy = 0.0;
+    for i in 0..n {
+        energy += 0.5 * c.stiffness[i] * (state.y[i] - c.rest[i]).powi(2);
+        energy += 0.5 * state.w[i] * (0..n).map(|j| c.inertia[i * n + j] * state.w[j]).sum::<f64>();
+    }
+    for stop in &c.stops {
+        let depth = ((stop.position - state.y[stop.coordinate]) * stop.side).max(0.0);
+        energy += 0.5 * stop.stiffness * depth * depth;
+    }
+    for i in 0..plant.cables.len() {
+        let (stretch, _, _) = plant.cable(i, state, inputs, elapsed_s);
+        energy += 0.5 * plant.cables[i].stiffness_n_m * stretch.max(0.0).powi(2);
+    }
+    for (i, muscle) in plant.muscles.iter().enumerate() {
+        let e = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+        let p = plant.muscle_pressure(i, state, inputs, elapsed_s);
+        energy += elastic_energy(&muscle.elastic, e, p);
+        energy += muscle.stop.as_ref().map_or(0.0, |s| s.energy_j(e));
+        energy += muscle.friction.as_ref().map_or(0.0, |f| f.stored_energy_j(state.z[i], p));
+        if let Drive::Hydraulic { chain, .. } = &muscle.drive {
+            energy += chain.energy_j(&state.chains[i]);
+            energy -= chain.cavitation_pressure_pa * state.chains[i].vapour_m3.iter().sum::<f64>();
+        }
+    }
+    energy
+}
+
+/// Energy of wall and coil; for a wall that may leave its coil `U(e, p)` at its own radius.
+fn elastic_energy(elastic: &Elastic<f64>, e: f64, p: f64) -> f64 {
+    match elastic {
+        Elastic::Tube { wall, condition, coil } => {
+            let wall_energy = match condition {
+                crate::muscle::WallCondition::Held => wall.energy_j(e),
+                crate::muscle::WallCondition::Unilateral => wall.unilateral(e, p).energy_j,
+            };
+            wall_energy + coil.energy_j(e)
+        }
+        Elastic::Linear { stiffness_n_m, .. } => 0.5 * stiffness_n_m * e * e,
+    }
+}

@@ -1,0 +1,26 @@
+//! What can go wrong when a scene is built or run.
+
+use std::path::PathBuf;
+
+use crate::mechanism::MechanismError;
+use crate::muscle::MuscleError;
+use crate::recording::RecordingError;
+
+/// A scene that cannot be built, or a run that cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum SystemError {
+    #[error("{}: {source}", file.display())]
+    Mechanism { file: PathBuf, source: MechanismError },
+    #[error("{}: [muscles]: {source}", file.display())]
+    Muscle { file: PathBuf, source: MuscleError },
+    #[error("{}: {table}: {message}\n  remedy: {remedy}", file.display())]
+    Name { file: PathBuf, table: String, message: String, remedy: String },
+    #[error(
+        "the run diverged at {time_s:.6} s: {what} is not a finite number\n  \
+         remedy: halve simulation.step_s or double simulation.substeps; if it stays, look for a stiffness, mass or \
+         damping that is off by orders of magnitude"
+    )]
+    Diverged { time_s: f64, what: String },
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}

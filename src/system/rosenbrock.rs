@@ -1,0 +1,327 @@
+//! One fine step of a [`Plant`]: a two-stage Rosenbrock method.
+//!
+//! ```text
+//! (1 - g A) k1 = F(u_n)                          g = gamma h, gamma = 1 - 1/sqrt(2)
+//! (1 - g A) k2 = F(u_n + h k1) - 2 k1
+//! u_(n+1) = u_n + h (3 k1 + k2)/2
+//! ```
+//! (Verwer's ROS2.) L-stable, and of second order whatever matrix stands in for the Jacobian `A`: tangents may be
+//! taken where they are cheap, only stability needs them near. One factorisation and two solves a step, no iteration,
+//! so a step costs the same wherever the state is, and derivatives pass through it exactly.
+//!
+//! The unknowns are eliminated down to the coordinates' accelerations: the line is tridiagonal ([`ChainSolver`]), the
+//! friction states are local, so what remains is a symmetric matrix of the size of the mechanism.
+
+use crate::hydraulics::{ChainRates, ChainSolver, ChainState, Port};
+use crate::scalar::Scalar;
+
+use super::ldl::Ldl;
+use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
+
+/// `1 - 1/sqrt(2)`: the smaller of the two values that make the method L-stable.
+const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+
+/// A stage: the rates of everything in a [`PlantState`].
+#[derive(Clone, Debug)]
+struct Rates<D> {
+    y: Vec<D>,
+    w: Vec<D>,
+    chains: Vec<ChainRates<D>>,
+    z: Vec<D>,
+}
+
+/// Tangent of one muscle, frozen for both stages.
+#[derive(Clone, Copy, Debug)]
+struct MuscleTangent<D> {
+    stiffness: D,
+    damping: D,
+    /// `dF/dp` with its sign: the pull falls by this much per Pa.
+    pull_per_pressure: D,
+    /// `dV/de`: flow taken per speed.
+    area: D,
+    /// Response of the muscle's pressure to its outflow.
+    sigma: D,
+    /// `dF/dz`, and the friction state's tangents.
+    pull_per_z: D,
+    rate_per_z: D,
+    rate_per_v: D,
+}
+
+/// Buffers of the integrator; make one per plant and keep it.
+#[derive(Clone, Debug)]
+pub struct Stepper<D> {
+    middle: PlantState<D>,
+    r: Rates<D>,
+    k1: Rates<D>,
+    k2: Rates<D>,
+    solvers: Vec<ChainSolver<D>>,
+    tangents: Vec<MuscleTangent<D>>,
+    /// Which cables pull, and which stops are met, at the start of the step.
+    taut: Vec<bool>,
+    met: Vec<bool>,
+    rho: Vec<D>,
+    matrix: Vec<D>,
+    ldl: Ldl<D>,
+    right: Vec<D>,
+}
+
+impl<D: Scalar> Stepper<D> {
+    /// Buffers for `plant` and states shaped like `state`.
+    pub fn new(plant: &Plant<D>, state: &PlantState<D>) -> Self {
+        let zero = D::constant(0.0);
+        let n = plant.dim();
+        let rates = Rates {
+            y: vec![zero; n],
+            w: vec![zero; n],
+            chains: state.chains.iter().map(ChainState::zero_rates).collect(),
+            z: vec![zero; state.z.len()],
+        };
+        let tangent = MuscleTangent {
+            stiffness: zero,
+            damping: zero,
+            pull_per_pressure: zero,
+            area: zero,
+            sigma: zero,
+            pull_per_z: zero,
+            rate_per_z: zero,
+            rate_per_v: zero,
+        };
+        Self {
+            middle: state.clone(),
+            r: rates.clone(),
+            k1: rates.clone(),
+            k2: rates,
+            solvers: state.chains.iter().map(|c| ChainSolver::new(c.flow_m3_s.len())).collect(),
+            tangents: vec![tangent; plant.muscles.len()],
+            taut: vec![false; plant.cables.len()],
+            met: vec![false; plant.coordinates.stops.len()],
+            rho: vec![zero; plant.muscles.len()],
+            matrix: vec![zero; n * n],
+            ldl: Ldl::new(n),
+            right: vec![zero; n],
+        }
+    }
+
+    /// Advances `state` by `h` seconds; `inputs` start at the step's beginning.
+    pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
+        let g = GAMMA * h;
+        self.linearise(plant, state, inputs, g);
+        rates(plant, state, inputs, 0.0, &mut self.r);
+        self.solve(plant, state, g, Stage::First);
+        move_to(&mut self.middle, state, &self.k1, h);
+        rates(plant, &self.middle, inputs, h, &mut self.r);
+        self.subtract_first_stage(plant);
+        self.solve(plant, state, g, Stage::Second);
+        advance(state, &self.k1, 1.5 * h);
+        advance(state, &self.k2, 0.5 * h);
+        for (muscle, chain_state) in plant.muscles.iter().zip(&mut state.chains) {
+            if let Drive::Hydraulic { chain, .. } = &muscle.drive {
+                chain.settle_vapour(chain_state);
+            }
+        }
+    }
+
+    /// Tangents at the start of the step, and the factorised matrix of the accelerations.
+    fn linearise(&mut self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan], g: f64) {
+        for (flag, stop) in self.met.iter_mut().zip(&plant.coordinates.stops) {
+            *flag = stop.force(state.y[stop.coordinate], state.w[stop.coordinate]).1.value() != 0.0;
+        }
+        for (i, flag) in self.taut.iter_mut().enumerate() {
+            *flag = plant.cable(i, state, inputs, 0.0).2.value() > 0.0;
+        }
+        for i in 0..plant.muscles.len() {
+            self.tangents[i] = tangent(plant, i, state, inputs, &mut self.solvers[i], g);
+        }
+        self.assemble(plant, g);
+        self.ldl.factorise(&self.matrix);
+    }
+
+    /// `M + g D + g² K`, with cables and muscles as rank-one terms.
+    fn assemble(&mut self, plant: &Plant<D>, g: f64) {
+        let c = &plant.coordinates;
+        let n = plant.dim();
+        self.matrix.copy_from_slice(&c.inertia);
+        for i in 0..n {
+            self.matrix[i * n + i] += c.damping[i] * g + c.stiffness[i] * (g * g);
+        }
+        for (stop, _) in c.stops.iter().zip(&self.met).filter(|(_, met)| **met) {
+            self.matrix[stop.coordinate * (n + 1)] += D::constant(g * stop.damping + g * g * stop.stiffness);
+        }
+        for (cable, _) in plant.cables.iter().zip(&self.taut).filter(|(_, taut)| **taut) {
+            add_outer(&mut self.matrix, &cable.jacobian, cable.damping_n_s_m * g + cable.stiffness_n_m * (g * g));
+        }
+        for (muscle, t) in plant.muscles.iter().zip(&self.tangents) {
+            let pressure = t.pull_per_pressure * t.sigma * t.area * g;
+            let friction = t.pull_per_z * t.rate_per_v * (g * g) / (-(t.rate_per_z * g) + 1.0);
+            add_outer(&mut self.matrix, &muscle.jacobian, t.damping * g + t.stiffness * (g * g) + pressure + friction);
+        }
+    }
+
+    fn solve(&mut self, plant: &Plant<D>, state: &PlantState<D>, g: f64, stage: Stage) {
+        let k = match stage {
+            Stage::First => &mut self.k1,
+            Stage::Second => &mut self.k2,
+        };
+        let r = &self.r;
+        self.right.copy_from_slice(&r.w);
+        for (i, right) in self.right.iter_mut().enumerate() {
+            *right -= plant.coordinates.stiffness[i] * r.y[i] * g;
+        }
+        for (stop, _) in plant.coordinates.stops.iter().zip(&self.met).filter(|(_, met)| **met) {
+            self.right[stop.coordinate] -= r.y[stop.coordinate] * (g * stop.stiffness);
+        }
+        for (cable, _) in plant.cables.iter().zip(&self.taut).filter(|(_, taut)| **taut) {
+            let along = dot(&cable.jacobian, &r.y) * cable.stiffness_n_m * g;
+            add_scaled(&mut self.right, &cable.jacobian, -along);
+        }
+        for (i, muscle) in plant.muscles.iter().enumerate() {
+            let t = &self.tangents[i];
+            self.rho[i] = self.solvers[i].eliminate(&r.chains[i]);
+            let spring = t.stiffness * dot(&muscle.jacobian, &r.y);
+            let friction = t.pull_per_z * r.z[i] / (-(t.rate_per_z * g) + 1.0);
+            let along = (t.pull_per_pressure * self.rho[i] - spring - friction) * g;
+            add_scaled(&mut self.right, &muscle.jacobian, along);
+        }
+        k.w.copy_from_slice(&self.right);
+        self.ldl.solve(&mut k.w);
+        for i in 0..plant.dim() {
+            k.y[i] = r.y[i] + k.w[i] * g;
+        }
+        for (i, muscle) in plant.muscles.iter().enumerate() {
+            let t = &self.tangents[i];
+            let acceleration = dot(&muscle.jacobian, &k.w);
+            k.z[i] = (r.z[i] + t.rate_per_v * acceleration * g) / (-(t.rate_per_z * g) + 1.0);
+            self.solvers[i].back_substitute(t.area * acceleration, &r.chains[i], &state.chains[i].boiling, &mut k.chains[i]);
+        }
+    }
+
+    /// Turns `F(u + h k1)` into the right-hand side of the second stage.
+    fn subtract_first_stage(&mut self, plant: &Plant<D>) {
+        let n = plant.dim();
+        for i in 0..n {
+            self.r.y[i] -= self.k1.y[i] * 2.0;
+            let row = &plant.coordinates.inertia[i * n..(i + 1) * n];
+            let inertial: D = row.iter().zip(&self.k1.w).map(|(&m, &a)| m * a).sum();
+            self.r.w[i] -= inertial * 2.0;
+        }
+        for (r, k) in self.r.chains.iter_mut().zip(&self.k1.chains) {
+            r.subtract_twice(k);
+        }
+        for (r, &k) in self.r.z.iter_mut().zip(&self.k1.z) {
+            *r -= k * 2.0;
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Stage {
+    First,
+    Second,
+}
+
+fn tangent<D: Scalar>(
+    plant: &Plant<D>,
+    i: usize,
+    state: &PlantState<D>,
+    inputs: &[InputSpan],
+    solver: &mut ChainSolver<D>,
+    g: f64,
+) -> MuscleTangent<D> {
+    let muscle = &plant.muscles[i];
+    let forces = plant.muscle_forces(i, state, inputs, 0.0);
+    let zero = D::constant(0.0);
+    let (sigma, driven) = match &muscle.drive {
+        Drive::Hydraulic { chain, .. } => (solver.factorise(chain, &state.chains[i], &forces.port, g), 1.0),
+        Drive::Pressure { .. } => (zero, 0.0),
+    };
+    let mut t = MuscleTangent {
+        stiffness: forces.stiffness_n_m,
+        damping: muscle.damping_n_s_m,
+        pull_per_pressure: forces.area_m2 * driven,
+        area: forces.area_m2,
+        sigma,
+        pull_per_z: zero,
+        rate_per_z: zero,
+        rate_per_v: zero,
+    };
+    if let (Some(stop), true) = (&muscle.stop, forces.stop_n.value() > 0.0) {
+        t.damping += stop.damping_n_s_m;
+    }
+    if let Some(friction) = &muscle.friction {
+        let slopes = friction.rate_jacobian(state.z[i], forces.speed_m_s);
+        t.pull_per_pressure -= friction.force_per_pressure(state.z[i], forces.pressure_pa) * driven;
+        t.pull_per_z = friction.level_n(forces.pressure_pa);
+        t.rate_per_z = slopes.drate_dz;
+        t.rate_per_v = slopes.drate_dv;
+    }
+    t
+}
+
+/// `F(u)`; for the rates of the coordinates the *force* is given, not the acceleration.
+fn rates<D: Scalar>(plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64, out: &mut Rates<D>) {
+    let c = &plant.coordinates;
+    out.y.copy_from_slice(&state.w);
+    for i in 0..plant.dim() {
+        out.w[i] = c.force[i] - c.damping[i] * state.w[i] - c.stiffness[i] * (state.y[i] - c.rest[i]);
+    }
+    for stop in &c.stops {
+        out.w[stop.coordinate] += CoordinateStop::force(stop, state.y[stop.coordinate], state.w[stop.coordinate]).1;
+    }
+    for (i, cable) in plant.cables.iter().enumerate() {
+        let (_, _, tension) = plant.cable(i, state, inputs, elapsed_s);
+        add_scaled(&mut out.w, &cable.jacobian, -tension);
+    }
+    for (i, muscle) in plant.muscles.iter().enumerate() {
+        let forces = plant.muscle_forces(i, state, inputs, elapsed_s);
+        add_scaled(&mut out.w, &muscle.jacobian, -forces.pull_n());
+        if let Some(friction) = &muscle.friction {
+            out.z[i] = friction.rate(state.z[i], forces.speed_m_s);
+        }
+        if let Drive::Hydraulic { chain, syringe_area_m2, plunger } = &muscle.drive {
+            let inflow = D::constant(syringe_area_m2 * inputs[*plunger].slope);
+            chain.rates(&state.chains[i], inflow, forces.port, &mut out.chains[i]);
+        }
+    }
+}
+
+fn move_to<D: Scalar>(to: &mut PlantState<D>, from: &PlantState<D>, k: &Rates<D>, h: f64) {
+    to.y.copy_from_slice(&from.y);
+    to.w.copy_from_slice(&from.w);
+    to.z.copy_from_slice(&from.z);
+    for (t, f) in to.chains.iter_mut().zip(&from.chains) {
+        t.copy_from(f);
+    }
+    advance(to, k, h);
+}
+
+fn advance<D: Scalar>(state: &mut PlantState<D>, k: &Rates<D>, h: f64) {
+    for (x, &k) in state.y.iter_mut().zip(&k.y) {
+        *x += k * h;
+    }
+    for (x, &k) in state.w.iter_mut().zip(&k.w) {
+        *x += k * h;
+    }
+    for (x, &k) in state.z.iter_mut().zip(&k.z) {
+        *x += k * h;
+    }
+    for (x, k) in state.chains.iter_mut().zip(&k.chains) {
+        x.move_by(k, h);
+    }
+}
+
+/// `matrix += scale * j j^T`.
+fn add_outer<D: Scalar>(matrix: &mut [D], j: &[f64], scale: D) {
+    let n = j.len();
+    for (row, &a) in j.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+        for (column, &b) in j.iter().enumerate().filter(|(_, b)| **b != 0.0) {
+            matrix[row * n + column] += scale * (a * b);
+        }
+    }
+}
+
+/// `x += scale * j`.
+fn add_scaled<D: Scalar>(x: &mut [D], j: &[f64], scale: D) {
+    for (x, &a) in x.iter_mut().zip(j).filter(|(_, a)| **a != 0.0) {
+        *x += scale * a;
+    }
+}

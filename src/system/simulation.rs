@@ -1,0 +1,257 @@
+//! A scene in time: fine steps of the plant inside steps of the rigid-body engine.
+
+use nalgebra::DMatrix;
+
+use crate::mechanism::Mechanism;
+use crate::scene::Scene;
+
+use super::build::{Built, Displacement, build};
+use super::energy::EnergyBook;
+use super::plant::InputSpan;
+use super::rosenbrock::Stepper;
+use super::{InputSource, SystemError};
+
+/// A scene that runs.
+///
+/// Over one engine step `h` the plant is integrated at `h/substeps` with the mechanism's inertia and levers taken at
+/// the start of the step. The engine is then given the mean generalised force that carries it to the same positions;
+/// what contacts add comes back as a change of velocity and, for the next step, as a known force.
+pub struct Simulation {
+    pub(super) scene: Scene,
+    pub(super) mechanism: Option<Mechanism>,
+    pub(super) built: Built,
+    stepper: Stepper<f64>,
+    pub(super) inputs: Vec<InputSource>,
+    pub(super) spans: Vec<InputSpan>,
+    pub(super) time_s: f64,
+    /// Reaction of contacts on the joint coordinates over the last step.
+    known_force: Vec<f64>,
+    weight: Vec<f64>,
+    loads: Vec<f64>,
+    inertia: DMatrix<f64>,
+    positions: Vec<f64>,
+    target: Vec<f64>,
+    hysteresis_z: Vec<f64>,
+    pub(super) energy: Option<EnergyBook>,
+}
+
+impl Simulation {
+    /// Builds a scene at its start, driven by its stock programmes.
+    pub fn new(scene: Scene) -> Result<Self, SystemError> {
+        let mechanism = match &scene.file.mechanism {
+            Some(spec) => {
+                let loaded = Mechanism::load(spec, scene.folder());
+                Some(loaded.map_err(|source| SystemError::Mechanism { file: scene.path.clone(), source })?)
+            }
+            None => None,
+        };
+        let built = build(&scene, mechanism.as_ref())?;
+        let joints = mechanism.as_ref().map_or(0, |m| m.coordinates().len());
+        let stepper = Stepper::new(&built.plant, &built.state);
+        let inputs: Vec<_> = scene.programs.iter().cloned().map(InputSource::Program).collect();
+        let mut simulation = Self {
+            stepper,
+            spans: vec![InputSpan::default(); inputs.len() + built.displacements.len()],
+            inputs,
+            time_s: 0.0,
+            known_force: vec![0.0; joints],
+            weight: vec![0.0; joints],
+            loads: vec![0.0; joints],
+            inertia: DMatrix::zeros(joints, joints),
+            positions: vec![0.0; joints],
+            target: vec![0.0; joints],
+            hysteresis_z: vec![0.0; built.displacements.len()],
+            energy: None,
+            scene,
+            mechanism,
+            built,
+        };
+        simulation.resolve_loads()?;
+        simulation.hold_spans();
+        Ok(simulation)
+    }
+
+    fn resolve_loads(&mut self) -> Result<(), SystemError> {
+        let coordinates = self.mechanism.as_ref().map_or(&[][..], Mechanism::coordinates);
+        for load in &self.scene.file.load {
+            let Some(i) = coordinates.iter().position(|c| c.name == load.joint) else {
+                let known: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
+                return Err(SystemError::Name {
+                    file: self.scene.path.clone(),
+                    table: "[[load]]".to_owned(),
+                    message: format!("joint = \"{}\" is no free joint of the mechanism", load.joint),
+                    remedy: format!("use one of: {}", known.join(", ")),
+                });
+            };
+            self.loads[i] += load.force_n.or(load.torque_n_m).unwrap_or(0.0);
+        }
+        Ok(())
+    }
+
+    /// Replaces the programme of an input; nothing happens if there is no such channel.
+    pub fn set_input(&mut self, channel: &str, source: InputSource) {
+        if let Some(i) = self.scene.file.input.iter().position(|c| c.channel == channel) {
+            self.inputs[i] = source;
+            self.hold_spans();
+        }
+    }
+
+    /// Starts the clock elsewhere than at zero: a recording's first instant.
+    pub fn start_at(&mut self, time_s: f64) {
+        self.time_s = time_s;
+        self.hold_spans();
+    }
+
+    /// Opens the energy book; call before the first step.
+    pub fn keep_energy_book(&mut self) {
+        self.energy = Some(EnergyBook::open(&self.built.plant, &self.built.state, &self.spans));
+    }
+
+    /// The energy book, if kept.
+    pub fn energy_book(&self) -> Option<&EnergyBook> {
+        self.energy.as_ref()
+    }
+
+    /// The scene being run.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Present time, s.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    fn hold_spans(&mut self) {
+        for (span, input) in self.spans.iter_mut().zip(&self.inputs) {
+            *span = InputSpan { value: input.value(self.time_s), slope: 0.0 };
+        }
+    }
+
+    /// Advances to a time in equal engine steps no longer than the scene's.
+    pub fn advance_to(&mut self, time_s: f64) -> Result<(), SystemError> {
+        let start = self.time_s;
+        let steps = ((time_s - start) / self.scene.file.simulation.step_s - 1e-9).ceil().max(1.0) as usize;
+        for i in 0..steps {
+            let end = if i + 1 == steps { time_s } else { start + (time_s - start) * (i + 1) as f64 / steps as f64 };
+            self.engine_step(end);
+        }
+        self.check_finite()
+    }
+
+    fn engine_step(&mut self, end_s: f64) {
+        let h = end_s - self.time_s;
+        if h <= 0.0 {
+            return;
+        }
+        self.renew_coordinates();
+        let joints = self.known_force.len();
+        self.positions.copy_from_slice(&self.built.state.y[..joints]);
+        let substeps = self.scene.file.simulation.substeps;
+        let fine = h / substeps as f64;
+        for i in 0..substeps {
+            let start = self.time_s + fine * i as f64;
+            self.renew_spans(start, fine);
+            self.fine_step(fine);
+        }
+        self.carry_engine(h, fine);
+        self.time_s = end_s;
+    }
+
+    fn fine_step(&mut self, h: f64) {
+        let Built { plant, state, .. } = &mut self.built;
+        if let Some(book) = &mut self.energy {
+            book.before(plant, state, &self.spans);
+        }
+        self.stepper.step(plant, state, &self.spans, h);
+        if let Some(book) = &mut self.energy {
+            book.after(plant, state, &self.spans, h);
+        }
+    }
+
+    /// Takes inertia, weights and cable levers from the mechanism's present pose.
+    fn renew_coordinates(&mut self) {
+        let Some(mechanism) = &mut self.mechanism else { return };
+        let joints = self.known_force.len();
+        if joints == 0 {
+            return;
+        }
+        let plant = &mut self.built.plant;
+        let n = plant.dim();
+        mechanism.mass_matrix(&mut self.inertia);
+        mechanism.weight(&mut self.weight);
+        for i in 0..joints {
+            for j in 0..joints {
+                plant.coordinates.inertia[i * n + j] = self.inertia[(i, j)];
+            }
+            plant.coordinates.force[i] = self.weight[i] + self.loads[i] + self.known_force[i];
+        }
+        for (i, route) in self.built.routes.iter().enumerate() {
+            if !matches!(route, crate::mechanism::Route::Via(_)) {
+                continue;
+            }
+            let cable = &mut plant.cables[i];
+            let length = mechanism.path_length(route, &mut cable.jacobian[..joints]);
+            let linear: f64 = cable.jacobian[..joints].iter().zip(&self.built.state.y).map(|(j, y)| j * y).sum();
+            let spec = &self.scene.file.cable[i];
+            let start_offset = self.built.start_offset_m[i];
+            cable.stretch_0_m = spec.pretension_n / spec.stiffness_n_m + length - self.built.path_0_m[i] - linear + start_offset;
+        }
+    }
+
+    fn renew_spans(&mut self, start_s: f64, h: f64) {
+        for (span, input) in self.spans.iter_mut().zip(&self.inputs) {
+            let value = input.value(start_s);
+            *span = InputSpan { value, slope: (input.value(start_s + h) - value) / h };
+        }
+        let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement) else { return };
+        for (i, &Displacement { plunger, input, .. }) in self.built.displacements.iter().enumerate() {
+            let from_mm = self.spans[plunger].value * 1e3;
+            let to_mm = from_mm + self.spans[plunger].slope * h * 1e3;
+            let before = model.output(from_mm, self.hysteresis_z[i]);
+            self.hysteresis_z[i] = model.advance(self.hysteresis_z[i], from_mm, to_mm);
+            let after = model.output(to_mm, self.hysteresis_z[i]);
+            self.spans[input] = InputSpan { value: before * 1e-3, slope: (after - before) * 1e-3 / h };
+        }
+    }
+
+    /// Lets the engine follow, and takes back what contacts changed.
+    fn carry_engine(&mut self, h: f64, last_fine: f64) {
+        let Some(mechanism) = &mut self.mechanism else { return };
+        let joints = self.known_force.len();
+        let Built { plant, state, .. } = &mut self.built;
+        for i in 0..joints {
+            self.target[i] = (state.y[i] - self.positions[i]) / h;
+        }
+        mechanism.advance(h, &self.target, &mut self.known_force);
+        if joints == 0 {
+            return;
+        }
+        mechanism.positions(&mut self.positions);
+        for i in 0..joints {
+            let moved = self.positions[i] - state.y[i];
+            state.y[i] = self.positions[i];
+            state.w[i] += moved / h;
+        }
+        if let Some(book) = &mut self.energy {
+            book.engine_changed(plant, state, &self.spans, last_fine);
+        }
+    }
+
+    fn check_finite(&self) -> Result<(), SystemError> {
+        let state = &self.built.state;
+        let diverged = |what: String| Err(SystemError::Diverged { time_s: self.time_s, what });
+        if let Some(i) = state.y.iter().chain(&state.w).position(|x| !x.is_finite()) {
+            let names = self.mechanism.iter().flat_map(|m| m.coordinates()).map(|c| c.name.clone());
+            let ends = self.scene.file.muscle.iter().map(|m| format!("end of {}", m.name));
+            let name = names.chain(ends).nth(i % state.y.len().max(1));
+            return diverged(format!("the motion of {}", name.unwrap_or_else(|| "a coordinate".to_owned())));
+        }
+        for (i, chain) in state.chains.iter().enumerate() {
+            if chain.pressure_pa.iter().chain(&chain.flow_m3_s).any(|x| !x.is_finite()) {
+                return diverged(format!("the pressure of {}", self.scene.file.muscle[i].name));
+            }
+        }
+        Ok(())
+    }
+}
