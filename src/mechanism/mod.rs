@@ -1,2 +1,40 @@
-//! (placeholder: filled by the next commits)
+//! Rigid mechanisms: a URDF becomes a rapier multibody behind independent joint coordinates.
+//!
+//! This folder is the only user of rapier and of the URDF reader, and none of their types leaves it.
+//! Muscles, cables, springs and stops are integrated elsewhere on the coordinates; the engine is
+//! told where that integration arrived ([`Mechanism::advance`]) and answers with contact reactions.
+
+mod advance;
+mod assembly;
+mod contacts;
+mod convert;
+mod coordinate;
+mod error;
+mod free_bodies;
 pub mod geometry;
+mod inertia;
+mod joint_values;
+mod joints;
+mod kinematics;
+mod model;
+mod reduce;
+mod route;
+mod shapes;
+mod snapshot;
+mod spec;
+mod stl;
+mod tree;
+mod urdf_file;
+mod world;
+mod xml_scan;
+
+pub use coordinate::{Coordinate, CoordinateKind, Stop};
+pub use error::MechanismError;
+pub use geometry::{Contact, Pose, Shape, Visual};
+pub use model::Mechanism;
+pub use route::{Arm, LinkPoint, Route};
+pub use snapshot::Snapshot;
+pub use spec::{
+    BodyMotion, BodyShapeSpec, ContactSpec, FreeBodySpec, JointSpec, LeverSpec, LinkMassSpec,
+    MechanismSpec, PointSpec, RouteSpec, StopSpec,
+};

@@ -1,1 +1,28 @@
-//! (placeholder: filled by the next commits)
+//! Recordings: time x named channels with units, measured or simulated.
+//!
+//! A leaf of the crate: it knows files and numbers, nothing of scenes. A channel keeps the unit its
+//! column name ends in (`plunger_mm`), so a file is written back as it was read; [`Recording::si`]
+//! gives SI values.
+
+mod channels;
+mod compare;
+mod csv_read;
+mod csv_write;
+mod error;
+mod folder;
+mod folder_keys;
+mod noise;
+mod piecewise;
+mod survey;
+mod unit;
+
+pub use channels::{Channel, Recording, TIME_COLUMN};
+pub use compare::{ChannelFit, compare};
+pub use csv_read::{read_csv, read_csv_from};
+pub use csv_write::{CsvWriter, RowWriter};
+pub use error::RecordingError;
+pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
+pub use noise::noise_sd;
+pub use piecewise::PiecewiseLinear;
+pub use survey::{Gap, Missing, Survey, gap_limit_s, median_interval_s, survey};
+pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};

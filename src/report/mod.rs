@@ -1,1 +1,13 @@
-//! (placeholder: filled by the next commits)
+//! Figures and the HTML page: self-contained text, no fonts or scripts fetched.
+
+mod axis;
+mod compare_figure;
+mod decimate;
+mod html;
+mod panel;
+mod svg;
+
+pub use compare_figure::{ComparedChannel, ComparedRun, compare_svg};
+pub use html::HtmlPage;
+pub use panel::{Band, Panel, Series, figure_svg};
+pub use svg::{BLUE, GREEN, GREY, ORANGE, PURPLE, Rect, VERMILION};

@@ -1,0 +1,135 @@
+//! The asymmetric model of Thai et al. 2021.
+
+use super::branch::Branch;
+use super::error::{HysteresisError, positive};
+use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
+
+/// How the state enters the output at small inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gate {
+    /// Times `tanh x`: the loop is closed at `x = 0` (our reading of the exponentials in eq. (3)).
+    #[default]
+    Tanh,
+    /// Not gated.
+    None,
+}
+
+/// The asymmetric hysteresis model of Thai et al. 2021, eqs. (3)-(4), with seven parameters:
+///
+/// `y = 0` for `x < 0`, else `ax1 x^p + ax2 x + az z tanh(x)`,
+/// `dz/dt = |dx/dt| (A sgn(dx/dt) - nu |z|^(n-1) z + rho)`.
+///
+/// `x`, `y`, `z` in mm; `ax1` in mm^(1-p), `ax2`, `az`, `A`, `n`, `rho` dimensionless, `nu` in mm^-n. Range: `A > 0`,
+/// `nu > 0`, `n > 0`, `|rho| < A`, inputs like those it was fitted to (0..3 mm).
+///
+/// Eq. (3) is misprinted: there is no `z` in it. `p = 2`, the sign of `az` and the gate are our reading. For
+/// `p = 2`: the printed parameters then give the printed mean speeds (a digit 4 in the text gives 4.54 mm/s
+/// for 5.34). For the sign: only so does unloading lie above loading. The gate is only moderately supported.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaperModel<D> {
+    pub alpha_x1: D,
+    pub alpha_x2: D,
+    pub alpha_z: D,
+    pub a: D,
+    pub n: D,
+    pub nu: D,
+    pub rho: D,
+    /// `p`, not one of the seven: a choice of form.
+    #[serde(default = "square")]
+    pub power: f64,
+    #[serde(default)]
+    pub gate: Gate,
+}
+
+fn square() -> f64 {
+    2.0
+}
+
+impl PaperModel<f64> {
+    /// The identified parameters as printed.
+    pub fn printed() -> Self {
+        Self::from_array([-0.082, 9.886, -1.809, 2.981, 1.035, 2.178, -0.428])
+    }
+}
+
+impl<D: Scalar> PaperModel<D> {
+    /// Parameters in the order of [`PaperModel::to_array`].
+    pub const PARAMETERS: [&'static str; 7] =
+        ["alpha_x1", "alpha_x2", "alpha_z", "a", "n", "nu", "rho"];
+
+    /// The model with `p = 2` and the tanh gate.
+    pub fn from_array([alpha_x1, alpha_x2, alpha_z, a, n, nu, rho]: [D; 7]) -> Self {
+        Self {
+            alpha_x1,
+            alpha_x2,
+            alpha_z,
+            a,
+            n,
+            nu,
+            rho,
+            power: square(),
+            gate: Gate::Tanh,
+        }
+    }
+
+    pub fn to_array(&self) -> [D; 7] {
+        [
+            self.alpha_x1,
+            self.alpha_x2,
+            self.alpha_z,
+            self.a,
+            self.n,
+            self.nu,
+            self.rho,
+        ]
+    }
+
+    /// Whether the state stays bounded and follows the motion.
+    pub fn check(&self) -> Result<(), HysteresisError> {
+        const MODEL: &str = "asymmetric model";
+        positive(MODEL, "n", self.n.value())?;
+        positive(MODEL, "nu", self.nu.value())?;
+        positive(MODEL, "power", self.power)?;
+        positive(MODEL, "a + rho", (self.a + self.rho).value())?;
+        positive(MODEL, "a - rho", (self.a - self.rho).value())
+    }
+
+    /// Output, mm.
+    pub fn output(&self, x_mm: D, z: D) -> D {
+        if x_mm.value() < 0.0 {
+            return D::constant(0.0);
+        }
+        let gate = match self.gate {
+            Gate::Tanh => x_mm.tanh(),
+            Gate::None => D::constant(1.0),
+        };
+        self.alpha_x1 * self.powered(x_mm) + self.alpha_x2 * x_mm + self.alpha_z * z * gate
+    }
+
+    /// State after the input went straight from `from_mm` to `to_mm`.
+    pub fn advance(&self, z: D, from_mm: D, to_mm: D) -> D {
+        let way = to_mm - from_mm;
+        let sign = if way.value() < 0.0 { -1.0 } else { 1.0 };
+        let branch = Branch {
+            drive: self.a * sign + self.rho,
+            decay_above: self.nu,
+            decay_below: self.nu,
+            exponent: self.n,
+        };
+        branch.travel(z, way * sign)
+    }
+
+    /// `x^p` for `x >= 0`; the square apart, as a power's derivative at zero would not be finite.
+    fn powered(&self, x_mm: D) -> D {
+        if self.power == 2.0 {
+            x_mm * x_mm
+        } else if x_mm.value() == 0.0 {
+            D::constant(0.0)
+        } else {
+            x_mm.powf(self.power)
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Every URDF joint with the scene's values: what moves, how, and from where.
+
+use std::path::Path;
+
+use urdf_rs::{Joint, JointType, Robot};
+
+use super::coordinate::{CoordinateKind, Stop};
+use super::error::{MechanismError, known_names};
+use super::joint_values::apply;
+use super::spec::JointSpec;
+
+/// q = multiplier · q_leader + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mimic {
+    pub leader: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+/// A joint ready for assembly. Units by `kind`, as in [`super::Coordinate`].
+#[derive(Clone, Debug)]
+pub(super) struct JointModel {
+    pub name: String,
+    pub kind: CoordinateKind,
+    /// False for fixed and locked joints.
+    pub moves: bool,
+    /// Unit vector in the joint's frame.
+    pub axis: [f64; 3],
+    /// Initial or locked position.
+    pub position: f64,
+    /// Whether the scene gave `position`.
+    pub position_given: bool,
+    pub stiffness: f64,
+    pub damping: f64,
+    pub rest: f64,
+    pub lower_stop: Option<Stop>,
+    pub upper_stop: Option<Stop>,
+    pub mimic: Option<Mimic>,
+}
+
+/// All joints in the URDF's order.
+pub(super) fn resolve(
+    file: &Path,
+    robot: &Robot,
+    specs: &[JointSpec],
+    warnings: &mut Vec<String>,
+) -> Result<Vec<JointModel>, MechanismError> {
+    let mut joints = robot
+        .joints
+        .iter()
+        .map(|joint| from_urdf(file, joint, warnings))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut mentioned = vec![false; joints.len()];
+    for spec in specs {
+        for name in &spec.joints {
+            let index = find(&joints, name)?;
+            if std::mem::replace(&mut mentioned[index], true) {
+                let remedy = "give each joint once";
+                return Err(MechanismError::spec("joint", name, "appears twice", remedy));
+            }
+            apply(spec, &mut joints[index])?;
+        }
+    }
+    attach_mimics(file, robot, &mut joints)?;
+    Ok(joints)
+}
+
+fn find(joints: &[JointModel], name: &str) -> Result<usize, MechanismError> {
+    joints.iter().position(|j| j.name == name).ok_or_else(|| {
+        let remedy = known_names(joints.iter().map(|j| j.name.as_str()));
+        MechanismError::spec("joint", name, "the URDF has no such joint", remedy)
+    })
+}
+
+fn from_urdf(
+    file: &Path,
+    joint: &Joint,
+    warnings: &mut Vec<String>,
+) -> Result<JointModel, MechanismError> {
+    let (kind, moves) = match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => (CoordinateKind::Angle, true),
+        JointType::Prismatic => (CoordinateKind::Length, true),
+        JointType::Fixed => (CoordinateKind::Angle, false),
+        JointType::Floating | JointType::Planar | JointType::Spherical => {
+            let problem = format!("type {:?} is not simulated", joint.joint_type);
+            let remedy = "build it from revolute and prismatic joints";
+            return Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy));
+        }
+    };
+    let dynamics = joint.dynamics.clone().unwrap_or_default();
+    if dynamics.friction != 0.0 {
+        warnings.push(format!(
+            "<dynamics friction> of joint \"{}\" is not read; use the effect bearing_friction",
+            joint.name
+        ));
+    }
+    if !dynamics.damping.is_finite() || dynamics.damping < 0.0 {
+        let problem = format!("damping = {} must be >= 0", dynamics.damping);
+        return Err(MechanismError::urdf(file, "joint", &joint.name, problem, "correct it"));
+    }
+    Ok(JointModel {
+        name: joint.name.clone(),
+        kind,
+        moves,
+        axis: if moves { unit_axis(file, joint)? } else { [1.0, 0.0, 0.0] },
+        position: 0.0,
+        position_given: false,
+        stiffness: 0.0,
+        damping: if moves { dynamics.damping } else { 0.0 },
+        rest: 0.0,
+        lower_stop: None,
+        upper_stop: None,
+        mimic: None,
+    })
+}
+
+fn unit_axis(file: &Path, joint: &Joint) -> Result<[f64; 3], MechanismError> {
+    let xyz = joint.axis.xyz.0;
+    let norm = xyz.iter().map(|v| v * v).sum::<f64>().sqrt();
+    if norm.is_finite() && norm > 1e-9 {
+        return Ok(xyz.map(|v| v / norm));
+    }
+    let problem = format!("axis = {xyz:?} has no direction");
+    let remedy = "give a vector such as \"0 0 1\"";
+    Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy))
+}
+
+/// Makes every follower point at its final leader, and takes over that one's position.
+fn attach_mimics(
+    file: &Path,
+    robot: &Robot,
+    joints: &mut [JointModel],
+) -> Result<(), MechanismError> {
+    for index in 0..joints.len() {
+        if robot.joints[index].mimic.is_none() || robot.joints[index].joint_type == JointType::Fixed
+        {
+            continue;
+        }
+        let mimic = final_leader(file, robot, index)?;
+        let leader = joints[mimic.leader].clone();
+        follow(&leader, mimic, &mut joints[index])?;
+    }
+    Ok(())
+}
+
+fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, MechanismError> {
+    let name = &robot.joints[follower].name;
+    let error = |problem: String, remedy: &str| {
+        MechanismError::urdf(file, "joint", name, problem, remedy)
+    };
+    let mut whole = Mimic {
+        leader: follower,
+        multiplier: 1.0,
+        offset: 0.0,
+    };
+    for _ in 0..=robot.joints.len() {
+        let Some(mimic) = &robot.joints[whole.leader].mimic else {
+            return Ok(whole);
+        };
+        let multiplier = mimic.multiplier.unwrap_or(1.0);
+        let offset = mimic.offset.unwrap_or(0.0);
+        if !multiplier.is_finite() || multiplier == 0.0 || !offset.is_finite() {
+            let problem = format!("mimic multiplier = {multiplier}, offset = {offset}");
+            return Err(error(problem, "give finite values, the multiplier not zero"));
+        }
+        let leader = robot.joints.iter().position(|j| j.name == mimic.joint);
+        let Some(leader) = leader else {
+            let problem = format!("mimics joint \"{}\", which does not exist", mimic.joint);
+            return Err(error(problem, "name an existing joint"));
+        };
+        whole = Mimic {
+            leader,
+            offset: whole.multiplier * offset + whole.offset,
+            multiplier: whole.multiplier * multiplier,
+        };
+    }
+    Err(error("mimics itself through others".into(), "cut the circle"))
+}
+
+fn follow(
+    leader: &JointModel,
+    mimic: Mimic,
+    follower: &mut JointModel,
+) -> Result<(), MechanismError> {
+    let error = |problem: String, remedy: String| {
+        Err(MechanismError::spec("joint", &follower.name, problem, remedy))
+    };
+    let position = mimic.multiplier * leader.position + mimic.offset;
+    let off = (follower.position - position).abs() > 1e-9 * (1.0 + position.abs());
+    if follower.position_given && off {
+        let problem = format!("stands at {}, but follows \"{}\"", follower.position, leader.name);
+        return error(problem, format!("leave its position out or make it {position}"));
+    }
+    if !follower.moves && leader.moves {
+        let problem = format!("is locked, but follows the free joint \"{}\"", leader.name);
+        return error(problem, format!("lock \"{}\" instead", leader.name));
+    }
+    follower.position = position;
+    follower.moves = leader.moves;
+    follower.mimic = leader.moves.then_some(mimic);
+    Ok(())
+}

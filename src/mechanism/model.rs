@@ -1,0 +1,218 @@
+//! The mechanism: loading, and what can be read from it.
+
+use std::path::Path;
+
+use nalgebra::DMatrix;
+use rapier3d_f64::dynamics::{Multibody, MultibodyIndex, RigidBodyHandle};
+use rapier3d_f64::math::Pose;
+use rapier3d_f64::pipeline::PhysicsWorld;
+
+use super::assembly::{Source, Weight};
+use super::convert::plain_pose;
+use super::coordinate::Coordinate;
+use super::error::MechanismError;
+use super::geometry::{self, Visual};
+use super::joints::{self, JointModel};
+use super::reduce::{Share, reduce};
+use super::spec::MechanismSpec;
+use super::tree::Tree;
+use super::world::{self, Body, Dof, leader_of};
+use super::{free_bodies, shapes, urdf_file};
+
+/// A rapier multibody behind independent joint coordinates.
+///
+/// Vectors of positions, velocities and forces are in the order of [`Mechanism::coordinates`];
+/// a slice of another length is filled or read as far as it goes. Link indices count the URDF's
+/// links in its order, then the free bodies.
+pub struct Mechanism {
+    pub(super) world: PhysicsWorld,
+    pub(super) multibody: Option<MultibodyIndex>,
+    pub(super) bodies: Vec<Body>,
+    pub(super) dofs: Vec<Dof>,
+    /// The dof that is each coordinate itself.
+    pub(super) leaders: Vec<usize>,
+    pub(super) coordinates: Vec<Coordinate>,
+    pub(super) joints: Vec<JointModel>,
+    pub(super) shares: Vec<Option<Share>>,
+    pub(super) link_names: Vec<String>,
+    /// Body of each URDF link, and the link's frame in it.
+    pub(super) placement: Vec<(usize, Pose)>,
+    pub(super) free_bodies: Vec<RigidBodyHandle>,
+    pub(super) visuals: Vec<Visual>,
+    pub(super) weights: Vec<Weight>,
+    pub(super) warnings: Vec<String>,
+    /// Columns: what one unit of each coordinate moves each dof.
+    pub(super) projection: DMatrix<f64>,
+    /// Bare mass matrix over all dofs, at the current pose.
+    pub(super) full_mass: DMatrix<f64>,
+    /// Length of the last step, for contact forces.
+    pub(super) last_step_s: f64,
+}
+
+impl Mechanism {
+    /// Reads the URDF (relative to `base_dir`) and puts every joint at its initial position, at rest.
+    ///
+    /// # Errors
+    /// Whatever would change the mechanics unnoticed is refused, naming file, element and remedy; what is merely
+    /// ignored is listed by [`Mechanism::warnings`]. URDF joint limits are not enforced (the engine's limit rows
+    /// converge badly): stops come from the scene. Effort and velocity limits describe a motor controller and have
+    /// no meaning here.
+    pub fn load(spec: &MechanismSpec, base_dir: &Path) -> Result<Self, MechanismError> {
+        let file = base_dir.join(&spec.urdf);
+        let (robot, mut scan) = urdf_file::read(&file)?;
+        check_spec(spec)?;
+        let mut warnings = std::mem::take(&mut scan.warnings);
+        let tree = Tree::new(&file, &robot)?;
+        let joints = joints::resolve(&file, &robot, &spec.joint, &mut warnings)?;
+        let (coordinates, shares) = reduce(&joints)?;
+        let source = Source {
+            file: &file,
+            robot: &robot,
+            scan: &scan,
+            tree: &tree,
+            joints: &joints,
+            spec,
+        };
+        let assembly = source.assemble(&mut warnings)?;
+        let mut visuals = shapes::visuals(&file, &robot, &mut warnings)?;
+        let mut built = world::build(&assembly, &joints, &shares, spec.gravity_m_s2);
+        if let Some(contact) = &spec.contact {
+            built.add_contacts(&file, &robot, &assembly, contact)?;
+        }
+        let mut link_names: Vec<String> = robot.links.iter().map(|l| l.name.clone()).collect();
+        let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
+        let leaders = (0..coordinates.len()).filter_map(|c| leader_of(&built.dofs, c)).collect();
+        let mut mechanism = Self {
+            projection: projection(&built.dofs, coordinates.len()),
+            full_mass: DMatrix::zeros(built.dofs.len(), built.dofs.len()),
+            world: built.world,
+            multibody: built.multibody,
+            bodies: built.bodies,
+            dofs: built.dofs,
+            leaders,
+            coordinates,
+            joints,
+            shares,
+            link_names,
+            placement: assembly.placement,
+            free_bodies,
+            visuals,
+            weights: assembly.weights,
+            warnings,
+            last_step_s: 0.0,
+        };
+        mechanism.refresh_mass();
+        mechanism.check_mass(&file)?;
+        Ok(mechanism)
+    }
+
+    /// What the URDF holds that has no effect, one line each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The independent joint coordinates.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// Position of each coordinate, rad or m.
+    pub fn positions(&self, out: &mut [f64]) {
+        for (value, &dof) in out.iter_mut().zip(&self.leaders) {
+            *value = self.dof_position(dof);
+        }
+    }
+
+    /// The engine's velocity of each coordinate, rad/s or m/s.
+    pub fn velocities(&self, out: &mut [f64]) {
+        for (value, &dof) in out.iter_mut().zip(&self.leaders) {
+            *value = self.multibody().map_or(0.0, |m| m.generalized_velocity()[dof]);
+        }
+    }
+
+    /// Names of the URDF's links, then of the free bodies.
+    pub fn link_names(&self) -> &[String] {
+        &self.link_names
+    }
+
+    /// Pose of each link, then of each free body, in the world.
+    pub fn link_poses(&self) -> Vec<geometry::Pose> {
+        let links = (0..self.placement.len()).map(|link| plain_pose(&self.link_pose(link)));
+        let free = self.free_bodies.iter().map(|h| {
+            let pose = self.world.bodies.get(*h).map_or(Pose::IDENTITY, |b| *b.position());
+            plain_pose(&pose)
+        });
+        links.chain(free).collect()
+    }
+
+    /// What to draw, fixed to links and free bodies.
+    pub fn visuals(&self) -> &[Visual] {
+        &self.visuals
+    }
+
+    pub(super) fn multibody(&self) -> Option<&Multibody> {
+        self.world.multibody_joints.get_multibody(self.multibody?)
+    }
+
+    /// Pose of a URDF link in the world.
+    pub(super) fn link_pose(&self, link: usize) -> Pose {
+        let (body, in_body) = self.placement[link];
+        self.body_pose(body) * in_body
+    }
+
+    pub(super) fn body_pose(&self, body: usize) -> Pose {
+        let link = self.multibody().and_then(|m| m.link(self.bodies[body].link_id));
+        link.map_or(Pose::IDENTITY, |l| *l.local_to_world())
+    }
+
+    pub(super) fn dof_position(&self, dof: usize) -> f64 {
+        let dof = &self.dofs[dof];
+        let link = self.multibody().and_then(|m| m.link(self.bodies[dof.body].link_id));
+        link.map_or(0.0, |l| l.joint().coords()[dof.axis()])
+    }
+
+    fn check_mass(&self, file: &Path) -> Result<(), MechanismError> {
+        let mass = self.projection.tr_mul(&(&self.full_mass * &self.projection));
+        for (coordinate, moved) in self.coordinates.iter().zip(mass.diagonal().iter()) {
+            if !(*moved > 0.0 && moved.is_finite()) {
+                let problem = format!("moves no inertia (M = {moved:e})");
+                let remedy = "give the links it carries mass and inertia";
+                let name = &coordinate.name;
+                return Err(MechanismError::urdf(file, "joint", name, problem, remedy));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(dofs.len(), coordinates, |row, column| {
+        let share = dofs[row].share;
+        if share.coordinate == column { share.multiplier } else { 0.0 }
+    })
+}
+
+fn check_spec(spec: &MechanismSpec) -> Result<(), MechanismError> {
+    if !spec.gravity_m_s2.iter().all(|g| g.is_finite()) {
+        let problem = format!("gravity_m_s2 = {:?} is not finite", spec.gravity_m_s2);
+        return Err(MechanismError::spec("gravity", "gravity_m_s2", problem, "correct it"));
+    }
+    let Some(contact) = &spec.contact else {
+        return Ok(());
+    };
+    let values = [
+        ("natural_frequency_hz", contact.natural_frequency_hz),
+        ("damping_ratio", contact.damping_ratio),
+        ("length_unit_m", contact.length_unit_m),
+    ];
+    let positive = values.iter().find(|(_, v)| !(*v > 0.0 && v.is_finite()));
+    let friction = Some(("friction_coefficient", contact.friction_coefficient));
+    let friction = friction.filter(|(_, v)| !(*v >= 0.0 && v.is_finite()));
+    match positive.copied().or(friction) {
+        Some((key, value)) => {
+            let problem = format!("{value} is out of range");
+            Err(MechanismError::spec("contact", key, problem, "give a positive number"))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,144 @@
+//! URDF geometry as plain shapes, and those as the engine's colliders.
+
+use std::path::{Path, PathBuf};
+
+use rapier3d_f64::math::{Pose, Rotation, Vector};
+use rapier3d_f64::prelude::ColliderBuilder;
+use urdf_rs::{Geometry, Robot};
+
+use super::convert::{plain_pose, pose_from_urdf};
+use super::error::MechanismError;
+use super::geometry::{Shape, Visual};
+use super::stl;
+
+const GREY: [f32; 4] = [0.7, 0.7, 0.72, 1.0];
+
+/// Everything the links look like; link indices are the URDF's.
+pub(super) fn visuals(
+    file: &Path,
+    robot: &Robot,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Visual>, MechanismError> {
+    let mut found = Vec::new();
+    for (link, model) in robot.links.iter().enumerate() {
+        for visual in &model.visual {
+            // A drawing that cannot be read does not stop a simulation; a wrong size does.
+            match shape(file, &model.name, &visual.geometry) {
+                Ok(shape) => found.push(Visual {
+                    link,
+                    pose: plain_pose(&pose_from_urdf(visual.origin.xyz.0, visual.origin.rpy.0)),
+                    shape,
+                    colour_rgba: colour(robot, visual.material.as_ref()),
+                }),
+                Err(error) if matches!(visual.geometry, Geometry::Mesh { .. }) => {
+                    warnings.push(format!("not drawn: {error}"));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn colour(robot: &Robot, material: Option<&urdf_rs::Material>) -> [f32; 4] {
+    let Some(material) = material else {
+        return GREY;
+    };
+    let named = || robot.materials.iter().find(|m| m.name == material.name);
+    let own = material.color.as_ref();
+    let rgba = own.or_else(|| named().and_then(|m| m.color.as_ref()));
+    rgba.map_or(GREY, |c| c.rgba.0.map(|v| v as f32))
+}
+
+/// A plain shape, its sizes checked.
+pub(super) fn shape(
+    file: &Path,
+    link: &str,
+    geometry: &Geometry,
+) -> Result<Shape, MechanismError> {
+    let positive = |what: &str, values: &[f64]| {
+        if values.iter().all(|v| *v > 0.0 && v.is_finite()) {
+            return Ok(());
+        }
+        let problem = format!("{what} = {values:?} must be > 0");
+        Err(MechanismError::urdf(file, "link", link, problem, "correct the geometry"))
+    };
+    match geometry {
+        Geometry::Box { size } => {
+            positive("box size", &size.0)?;
+            Ok(Shape::Box { size_m: size.0 })
+        }
+        &Geometry::Cylinder { radius, length } => {
+            positive("cylinder radius, length", &[radius, length])?;
+            Ok(Shape::Cylinder {
+                radius_m: radius,
+                length_m: length,
+            })
+        }
+        &Geometry::Sphere { radius } => {
+            positive("sphere radius", &[radius])?;
+            Ok(Shape::Sphere { radius_m: radius })
+        }
+        Geometry::Capsule { .. } => {
+            let remedy = "use a cylinder and two spheres";
+            let problem = "has a <capsule>, which is not read";
+            Err(MechanismError::urdf(file, "link", link, problem, remedy))
+        }
+        Geometry::Mesh { filename, scale } => mesh(file, filename, scale.map_or([1.0; 3], |s| s.0)),
+    }
+}
+
+fn mesh(file: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, MechanismError> {
+    let error = |file: PathBuf, reason: String| MechanismError::Read {
+        file,
+        reason,
+        remedy: "give an STL file, relative to the URDF".into(),
+    };
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let path = mesh_path(folder, name);
+    let bytes = std::fs::read(&path).map_err(|e| error(path.clone(), e.to_string()))?;
+    let found = stl::read(&bytes).map_err(|reason| error(path, reason))?;
+    let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
+    Ok(Shape::Mesh {
+        vertices_m: found.vertices.iter().map(scaled).collect(),
+        triangles: found.triangles,
+    })
+}
+
+/// `package://name/path` is looked for below the URDF's folder, with and without the package's name.
+fn mesh_path(folder: &Path, name: &str) -> PathBuf {
+    let name = name.strip_prefix("file://").unwrap_or(name);
+    let Some(packaged) = name.strip_prefix("package://") else {
+        return folder.join(name);
+    };
+    let whole = folder.join(packaged);
+    match packaged.split_once('/') {
+        Some((_, inner)) if !whole.exists() => folder.join(inner),
+        _ => whole,
+    }
+}
+
+/// The engine's collider of a shape; `None` for a mesh without volume.
+pub(super) fn collider(shape: &Shape) -> Option<ColliderBuilder> {
+    Some(match shape {
+        Shape::Box { size_m } => {
+            ColliderBuilder::cuboid(size_m[0] / 2.0, size_m[1] / 2.0, size_m[2] / 2.0)
+        }
+        Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m / 2.0, *radius_m),
+        Shape::Sphere { radius_m } => ColliderBuilder::ball(*radius_m),
+        Shape::Mesh { vertices_m, .. } => {
+            let points: Vec<Vector> = vertices_m.iter().map(|v| Vector::from_array(*v)).collect();
+            ColliderBuilder::convex_hull(&points)?
+        }
+    })
+}
+
+/// Pose of the engine's own shape frame in ours: its cylinders lie along y.
+pub(super) fn engine_frame(shape: &Shape) -> Pose {
+    match shape {
+        Shape::Cylinder { .. } => {
+            Pose::from_rotation(Rotation::from_rotation_x(std::f64::consts::FRAC_PI_2))
+        }
+        _ => Pose::IDENTITY,
+    }
+}

@@ -1,0 +1,163 @@
+//! A look at the raw XML for what the URDF reader drops without a word.
+
+use std::collections::BTreeSet;
+
+/// Elements that are read, each only where the URDF format has it.
+const READ: &[(&str, &[&str])] = &[
+    ("", &["robot"]),
+    ("robot", &["link", "joint", "material"]),
+    ("link", &["inertial", "visual", "collision"]),
+    ("inertial", &["origin", "mass", "inertia"]),
+    ("visual", &["origin", "geometry", "material"]),
+    ("collision", &["origin", "geometry"]),
+    ("geometry", &["box", "cylinder", "sphere", "mesh", "capsule"]),
+    ("material", &["color"]),
+    (
+        "joint",
+        &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"],
+    ),
+];
+
+/// What the scan found.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct XmlScan {
+    /// One line per dropped element.
+    pub warnings: Vec<String>,
+    /// Names of the links that have an `<inertial>`.
+    pub links_with_inertial: BTreeSet<String>,
+}
+
+struct Open<'a> {
+    element: &'a str,
+    name: &'a str,
+}
+
+/// Walks the tags of a document that an XML parser has already accepted.
+pub(super) fn scan(xml: &str) -> XmlScan {
+    let mut found = XmlScan::default();
+    let mut open: Vec<Open> = Vec::new();
+    let mut dropped_depth: Option<usize> = None;
+    let mut rest = xml;
+    while let Some((tag, after)) = next_tag(rest) {
+        rest = after;
+        if tag.starts_with('/') {
+            open.pop();
+            if dropped_depth.is_some_and(|depth| open.len() <= depth) {
+                dropped_depth = None;
+            }
+            continue;
+        }
+        let element = tag_name(tag);
+        if dropped_depth.is_none() && !look_at(element, &open, &mut found) && !tag.ends_with('/') {
+            dropped_depth = Some(open.len());
+        }
+        if !tag.ends_with('/') {
+            let name = attribute(tag, "name").unwrap_or("");
+            open.push(Open { element, name });
+        }
+    }
+    found
+}
+
+/// Notes one start tag; false when the element is dropped by the reader.
+fn look_at(element: &str, open: &[Open], found: &mut XmlScan) -> bool {
+    let parent = open.last().map_or("", |o| o.element);
+    let read = READ
+        .iter()
+        .any(|(p, children)| *p == parent && children.contains(&element));
+    let owner = open.iter().rev().find(|o| !o.name.is_empty());
+    if !read {
+        let place = owner.map_or(String::new(), |o| format!(" of {} \"{}\"", o.element, o.name));
+        found.warnings.push(format!(
+            "<{element}>{place} is not read and has no effect; what it describes belongs into the scene file"
+        ));
+    }
+    if element == "inertial"
+        && let Some(link) = owner
+    {
+        found.links_with_inertial.insert(link.name.to_owned());
+    }
+    read
+}
+
+/// The text between the next `<` and its `>`, and what follows; comments and declarations are skipped.
+fn next_tag(mut rest: &str) -> Option<(&str, &str)> {
+    loop {
+        rest = &rest[rest.find('<')? + 1..];
+        let skip_to = match rest {
+            r if r.starts_with("!--") => "-->",
+            r if r.starts_with("![CDATA[") => "]]>",
+            r if r.starts_with('?') => "?>",
+            r if r.starts_with('!') => ">",
+            _ => {
+                let end = tag_end(rest)?;
+                return Some((&rest[..end], &rest[end + 1..]));
+            }
+        };
+        rest = &rest[rest.find(skip_to)? + skip_to.len()..];
+    }
+}
+
+/// Index of the `>` that ends a tag; one inside a quoted attribute does not.
+fn tag_end(tag: &str) -> Option<usize> {
+    let mut quote = None;
+    tag.char_indices()
+        .find(|&(_, c)| {
+            match quote {
+                Some(q) if c == q => quote = None,
+                None if c == '"' || c == '\'' => quote = Some(c),
+                _ => {}
+            }
+            quote.is_none() && c == '>'
+        })
+        .map(|(i, _)| i)
+}
+
+fn tag_name(tag: &str) -> &str {
+    tag.split(|c: char| c.is_whitespace() || c == '/')
+        .next()
+        .unwrap_or("")
+}
+
+/// Value of an attribute of a start tag.
+fn attribute<'a>(tag: &'a str, key: &str) -> Option<&'a str> {
+    let mut rest = tag;
+    loop {
+        let at = rest.find(key)?;
+        let before_is_space = rest[..at].ends_with(char::is_whitespace);
+        rest = &rest[at + key.len()..];
+        let value = rest.trim_start().strip_prefix('=').map(str::trim_start);
+        if let (true, Some(value)) = (before_is_space, value) {
+            let quote = value.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+            return value[1..].split(quote).next();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dropped_elements_are_named_with_their_owner() {
+        let found = scan(
+            r#"<?xml version="1.0"?><!-- <link name="no"/> --><robot name="r">
+            <link name="a"><inertial><mass value="1"/></inertial></link>
+            <transmission name="t"><joint name="x"/></transmission>
+            <joint name="j" type="revolute"><safety_controller k_velocity="1"/></joint>
+            <gazebo:thing text="a > b"/></robot>"#,
+        );
+        assert_eq!(found.warnings.len(), 3, "{:?}", found.warnings);
+        assert!(found.warnings[0].starts_with("<transmission> of robot \"r\""));
+        assert!(found.warnings[1].starts_with("<safety_controller> of joint \"j\""));
+        assert!(found.warnings[2].starts_with("<gazebo:thing>"));
+        assert!(found.links_with_inertial.contains("a"));
+    }
+
+    #[test]
+    fn broken_text_does_not_panic() {
+        for text in ["", "<", "<a", "<a b='", "</", "<!--", "<a name>", "<é name=\"ü\">", "<a name="] {
+            scan(text);
+        }
+    }
+}

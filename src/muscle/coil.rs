@@ -1,0 +1,105 @@
+//! The coil: a spring around the tube, and its closed stop.
+
+use super::error::{MuscleError, not_negative};
+use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
+
+/// Stretch at which the muscle yields: plastic deformation at 175 mm of 50 mm (Thai et al. 2021).
+pub const YIELD_STRETCH: f64 = 3.5;
+/// Stretch up to which the muscle is safe in use (Thai et al. 2021).
+pub const SAFE_STRETCH: f64 = 2.45;
+
+/// A linear spring with preload: `U = F0 e + k e^2/2`, `F = F0 + k e`. Stock: 28.3 N/m, 0 N.
+///
+/// `e` elongation, m; `k` N/m; `F0` N. Range: up to the wire's yield, [`YIELD_STRETCH`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Coil<D> {
+    pub stiffness_n_m: D,
+    pub preload_n: D,
+}
+
+/// Rate of a close-coiled helical spring, N/m: `k = G d^4/(8 D^3 N)`.
+///
+/// `G` shear modulus of the wire, Pa; `d` wire diameter, m; `D` mean coil diameter, m; `N` active turns.
+/// Range: spring index `D/d` above about 4. Source: Wahl, Mechanical Springs.
+pub fn spring_rate<D: Scalar>(
+    shear_modulus_pa: D,
+    wire_diameter_m: D,
+    mean_diameter_m: D,
+    turns: D,
+) -> D {
+    shear_modulus_pa * wire_diameter_m.powi(4) / (mean_diameter_m.powi(3) * turns * 8.0)
+}
+
+impl<D: Scalar> Coil<D> {
+    /// Refuses negative or infinite numbers.
+    pub fn check(&self) -> Result<(), MuscleError> {
+        not_negative("stiffness_n_m", self.stiffness_n_m.value())?;
+        not_negative("preload_n", self.preload_n.value())
+    }
+
+    pub fn energy_j(&self, elongation_m: D) -> D {
+        elongation_m * (self.preload_n + self.stiffness_n_m * elongation_m * 0.5)
+    }
+
+    pub fn pull_n(&self, elongation_m: D) -> D {
+        self.preload_n + self.stiffness_n_m * elongation_m
+    }
+}
+
+/// The closed coil: `F_push = max(0, -k e - c de/dt)` for `e < 0`, else 0. Stock: 2e4 N/m, 3 N s/m.
+///
+/// It pushes the ends apart and never holds them together; its force is *subtracted* from the muscle's pull.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stop<D> {
+    pub stiffness_n_m: D,
+    pub damping_n_s_m: D,
+}
+
+/// The stop's push and its slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StopPush<D> {
+    /// Push, N, >= 0.
+    pub push_n: D,
+    /// `d push / d e`, N/m.
+    pub dpush_de: D,
+    /// `d push / d (de/dt)`, N s/m.
+    pub dpush_dv: D,
+}
+
+impl<D: Scalar> Stop<D> {
+    /// Refuses negative or infinite numbers.
+    pub fn check(&self) -> Result<(), MuscleError> {
+        not_negative("stiffness_n_m", self.stiffness_n_m.value())?;
+        not_negative("damping_n_s_m", self.damping_n_s_m.value())
+    }
+
+    /// The push at elongation `e` (m) and its rate (m/s).
+    pub fn push(&self, elongation_m: D, velocity_m_s: D) -> StopPush<D> {
+        let push = -(self.stiffness_n_m * elongation_m + self.damping_n_s_m * velocity_m_s);
+        if elongation_m.value() < 0.0 && push.value() > 0.0 {
+            return StopPush {
+                push_n: push,
+                dpush_de: -self.stiffness_n_m,
+                dpush_dv: -self.damping_n_s_m,
+            };
+        }
+        let zero = D::constant(0.0);
+        StopPush {
+            push_n: zero,
+            dpush_de: zero,
+            dpush_dv: zero,
+        }
+    }
+
+    /// Energy stored in the compressed stop, J.
+    pub fn energy_j(&self, elongation_m: D) -> D {
+        if elongation_m.value() < 0.0 {
+            self.stiffness_n_m * elongation_m * elongation_m * 0.5
+        } else {
+            D::constant(0.0)
+        }
+    }
+}

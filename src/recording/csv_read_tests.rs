@@ -1,0 +1,99 @@
+//! A good file is read whole; every mistake is refused with place and remedy.
+
+use super::*;
+
+fn read(text: &str) -> Result<Recording, RecordingError> {
+    read_csv_from(text.as_bytes(), "a.csv")
+}
+
+fn refusal(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+#[test]
+fn byte_order_mark_crlf_and_column_order_do_not_matter() {
+    let recording = read("\u{feff}time_s, force_n\r\n0,1\r\n0.5,-2e-3\r\n").unwrap();
+    assert_eq!(recording.time_s(), [0.0, 0.5]);
+    assert_eq!(recording.channel("force_n").unwrap().values, [1.0, -2e-3]);
+    let swapped = read("force_n,time_s\n1,0\n-0.002,0.5").unwrap();
+    assert_eq!(swapped, recording);
+}
+
+#[test]
+fn missing_cells_are_kept_as_nan() {
+    let recording = read("time_s,a_n,b_n\n0,,1\n1,NaN,2\n2,nan,3\n").unwrap();
+    assert!(recording.channels()[0].values.iter().all(|v| v.is_nan()));
+    assert_eq!(recording.channels()[1].values, [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn header_errors() {
+    let needs = "a recording needs a header line with \"time_s\" and at least one line of numbers";
+    assert_eq!(refusal(""), format!("a.csv: the file is empty; {needs}"));
+    assert_eq!(
+        refusal("time_s,a_n\n"),
+        format!("a.csv: there is no row below the header; {needs}")
+    );
+    assert_eq!(
+        refusal("t,a_n\n0,1\n"),
+        "a.csv: line 1: no column \"time_s\" (found: t, a_n); name the time column \"time_s\" and give \
+             it in seconds"
+    );
+    assert_eq!(
+        refusal("time_s,a_n,a_n\n0,1,2\n"),
+        "a.csv: line 1: column \"a_n\" occurs twice; rename or remove one"
+    );
+    assert_eq!(
+        refusal("time_s,a_n,\n0,1,\n"),
+        "a.csv: line 1: column 3 has no name; name it, or remove it and its comma"
+    );
+    assert_eq!(
+        refusal("time_s;a_n\n0,0;1,5\n"),
+        "a.csv: line 1: the columns are separated by semicolons; save the file with commas between the \
+             columns and points as decimal marks"
+    );
+}
+
+#[test]
+fn row_errors() {
+    assert_eq!(
+        refusal("time_s,a_n\n0,1\n1,1,5\n"),
+        "a.csv: line 3: 3 cells where the header names 2 columns; fill up the row, leaving missing cells \
+             empty between commas, and write decimals with a point"
+    );
+    assert_eq!(
+        refusal("time_s,a_n\n0,1\n1,off\n"),
+        "a.csv: line 3, column \"a_n\": \"off\" is not a finite number; write a number with a point as \
+             decimal mark, or leave the cell empty where the sample is missing"
+    );
+    assert!(refusal("time_s,a_n\n0,inf\n").contains("not a finite number"));
+    assert_eq!(
+        refusal("time_s,a_n\n0,1\n0.1,1\n0.1,1\n"),
+        "a.csv: line 4, column \"time_s\": 0.1 is not after 0.1; remove repeated rows, sort the rows by \
+             time, or split the file where its clock starts anew"
+    );
+    assert_eq!(
+        refusal("time_s,a_n\n,1\n"),
+        "a.csv: line 2, column \"time_s\": the time is missing; give every row its time, or remove the row"
+    );
+}
+
+#[test]
+fn lines_count_blank_ones_and_text_must_be_utf8() {
+    assert!(refusal("time_s,a_n\n0,1\n\n1,x\n").starts_with("a.csv: line 4, "));
+    assert!(refusal("\u{feff}time_s,a_n\r\n0,1\r\n1,x\r\n").starts_with("a.csv: line 3, "));
+    let error = read_csv_from(&b"time_s,a_n\n0,\xff\n"[..], "a.csv").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a.csv: line 2: is not UTF-8 text; save the file as CSV in UTF-8"
+    );
+}
+
+#[test]
+fn absent_file_is_named() {
+    let error = read_csv(Path::new("no/such.csv")).unwrap_err().to_string();
+    assert!(
+        error.starts_with("no/such.csv: cannot be read: "),
+        "{error}"
+    );
+}

@@ -1,0 +1,151 @@
+//! What can be wrong with recordings. Every message names the place, the cause and the remedy.
+
+use super::unit::known_suffixes;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// An error of [`crate::recording`].
+#[derive(Debug, Error)]
+pub enum RecordingError {
+    /// A file cannot be opened or read.
+    #[error("{}: cannot be read: {source}; check the path and its permissions", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error(
+        "{}: cannot be written: {source}; check that its folder exists, is writable and has space left",
+        file.display()
+    )]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A column name without a known unit.
+    #[error(
+        "column \"{column}\": its name ends in no known unit; rename it to end in one of {}",
+        known_suffixes()
+    )]
+    UnknownUnit {
+        /// The column.
+        column: String,
+    },
+    /// Something wrong at a line of a CSV file.
+    #[error("{file}: line {line}: {problem}")]
+    Line {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// Cause and remedy.
+        problem: String,
+    },
+    /// Something wrong in one cell of a CSV file.
+    #[error("{file}: line {line}, column \"{column}\": {problem}")]
+    Cell {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// Cause and remedy.
+        problem: String,
+    },
+    /// A CSV file without data.
+    #[error(
+        "{file}: {what}; a recording needs a header line with \"time_s\" and at least one line of numbers"
+    )]
+    NoData {
+        /// The file.
+        file: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A channel that a recording does not have.
+    #[error("no column \"{column}\" (found: {found}); check the name and its unit")]
+    NoChannel {
+        /// The column asked for.
+        column: String,
+        /// The columns there are.
+        found: String,
+    },
+    /// A run's file lacks a column its set declares.
+    #[error(
+        "{}: no column \"{column}\", which recordings.toml declares (found: {found}); rename the column or the [[channel]]",
+        file.display()
+    )]
+    MissingInRun {
+        /// The run's file.
+        file: PathBuf,
+        /// The declared column.
+        column: String,
+        /// The columns there are.
+        found: String,
+    },
+    /// A channel with another number of samples than the time has.
+    #[error("column \"{column}\": {values} values for {times} times; give one value per time")]
+    Length {
+        /// The column.
+        column: String,
+        /// Its values.
+        values: usize,
+        /// Samples of the time.
+        times: usize,
+    },
+    /// The same column twice.
+    #[error("column \"{column}\" occurs twice; rename or remove one")]
+    DuplicateChannel {
+        /// The column.
+        column: String,
+    },
+    /// A time that is not after the one before, or not finite.
+    #[error(
+        "sample {index}: time_s = {time_s} is not after {previous_s}; times must be finite and increase"
+    )]
+    Time {
+        /// Index of the sample, from 0.
+        index: usize,
+        /// Its time [s].
+        time_s: f64,
+        /// The time before it [s].
+        previous_s: f64,
+    },
+    /// A channel with no usable value.
+    #[error("column \"{column}\": every sample is missing; record it, or leave the channel out")]
+    AllMissing {
+        /// The column.
+        column: String,
+    },
+    /// Measured and simulated samples do not belong together.
+    #[error(
+        "measured and simulated times differ at sample {index}; simulate at the recording's sample times"
+    )]
+    TimesDiffer {
+        /// First sample that differs, from 0.
+        index: usize,
+    },
+    /// `recordings.toml` is no TOML.
+    #[error("{}: is not valid TOML: {problem}; mend that line", file.display())]
+    Toml {
+        /// The file.
+        file: PathBuf,
+        /// What the parser said, with line and column.
+        problem: String,
+    },
+    /// Something wrong at a key of `recordings.toml`.
+    #[error("{}: {table}: {problem}", file.display())]
+    Key {
+        /// The file.
+        file: PathBuf,
+        /// The table, as `[[run]] 2 ("sine.csv")`.
+        table: String,
+        /// Key, cause and remedy.
+        problem: String,
+    },
+}

@@ -1,0 +1,241 @@
+//! A folder of recordings: `recordings.toml` and one CSV file per run.
+
+use super::folder_keys::Keys;
+use super::{Recording, RecordingError, TIME_COLUMN, parse_column, read_csv};
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+use toml::Table;
+
+/// Name of the file that says what the recordings of a folder are.
+pub const SET_FILE_NAME: &str = "recordings.toml";
+
+const FORMAT: i64 = 1;
+const RUN_KEYS: [&str; 2] = ["file", "use"];
+
+/// What a channel is to a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Commanded and measured; drives the simulation.
+    Input,
+    /// What the simulation must reproduce.
+    Output,
+}
+
+/// What a run may be used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunUse {
+    /// To fit parameters.
+    Fit,
+    /// Held out, to test what was fitted.
+    Holdout,
+}
+
+/// A declared channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelSpec {
+    /// Its column, with the unit as suffix.
+    pub column: String,
+    /// Input or output.
+    pub role: Role,
+    /// Standard deviation of its noise in the column's unit, if stated.
+    pub noise_sd: Option<f64>,
+}
+
+/// A declared run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its file, relative to the folder.
+    pub file: String,
+    /// Its use, if stated.
+    pub run_use: Option<RunUse>,
+    /// Known conditions, by a name that carries its unit: `hanging_mass_kg`.
+    pub conditions: BTreeMap<String, f64>,
+}
+
+/// The recordings of one folder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordingSet {
+    /// The folder.
+    pub dir: PathBuf,
+    /// Scene by name or path, as written.
+    pub scene: String,
+    /// Declared channels.
+    pub channels: Vec<ChannelSpec>,
+    /// Declared runs.
+    pub runs: Vec<Run>,
+}
+
+/// A run's data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedRun {
+    /// Every column of the file.
+    pub recording: Recording,
+    /// What the user should know of it; empty when nothing.
+    pub notes: Vec<String>,
+}
+
+impl RecordingSet {
+    /// Reads `recordings.toml`, given its folder or itself.
+    ///
+    /// # Errors
+    /// File, table, key and remedy of the first thing that is wrong.
+    pub fn load(path: &Path) -> Result<Self, RecordingError> {
+        let file = match path.is_dir() {
+            true => path.join(SET_FILE_NAME),
+            false => path.to_owned(),
+        };
+        let text = std::fs::read_to_string(&file).map_err(|source| RecordingError::Read {
+            file: file.clone(),
+            source,
+        })?;
+        Self::parse(&text, &file)
+    }
+
+    /// Parses the text of a `recordings.toml`; `file` is where it stands.
+    ///
+    /// # Errors
+    /// As [`RecordingSet::load`].
+    pub fn parse(text: &str, file: &Path) -> Result<Self, RecordingError> {
+        let table: Table = toml::from_str(text).map_err(|error| RecordingError::Toml {
+            file: file.to_owned(),
+            problem: error.to_string().trim_end().to_owned(),
+        })?;
+        let top = Keys::new(file, "top level", &table);
+        check_format(&top)?;
+        top.refuse_unknown(&["format", "scene", "channel", "run"])?;
+        Ok(Self {
+            dir: file.parent().unwrap_or(Path::new("")).to_owned(),
+            scene: top.required_text("scene", "muscle_bench")?.to_owned(),
+            channels: channels(&top, file)?,
+            runs: runs(&top, file)?,
+        })
+    }
+
+    /// The declared channels of one role.
+    pub fn of_role(&self, role: Role) -> impl Iterator<Item = &ChannelSpec> {
+        self.channels.iter().filter(move |spec| spec.role == role)
+    }
+
+    /// Reads a run's file and checks that every declared column is there.
+    ///
+    /// Columns that are not declared are kept and named in a note.
+    ///
+    /// # Errors
+    /// As [`read_csv`]; a declared column is missing.
+    pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
+        let file = self.dir.join(&run.file);
+        let recording = read_csv(&file)?;
+        let mut declared = self.channels.iter().map(|spec| &spec.column);
+        if let Some(column) = declared.find(|column| recording.find(column).is_none()) {
+            return Err(RecordingError::MissingInRun {
+                file,
+                column: column.clone(),
+                found: recording.columns().join(", "),
+            });
+        }
+        let notes = self.undeclared_note(run, &recording).into_iter().collect();
+        Ok(LoadedRun { recording, notes })
+    }
+
+    fn undeclared_note(&self, run: &Run, recording: &Recording) -> Option<String> {
+        let is_declared = |column: &str| self.channels.iter().any(|spec| spec.column == column);
+        let mut others = recording.columns();
+        others.retain(|column| !is_declared(column));
+        (!others.is_empty()).then(|| {
+            format!(
+                "{}: columns that recordings.toml does not declare are not used: {}",
+                run.file,
+                others.join(", ")
+            )
+        })
+    }
+}
+
+fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
+    match top.number("format")? {
+        Some(format) if format == FORMAT as f64 => Ok(()),
+        Some(format) => Err(top.error(format!(
+            "format = {format} is not known; this version reads format = {FORMAT}"
+        ))),
+        None => Err(top.error(format!("key \"format\" is missing; add format = {FORMAT}"))),
+    }
+}
+
+fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingError> {
+    let mut channels: Vec<ChannelSpec> = Vec::new();
+    for (index, table) in top.tables("channel")?.into_iter().enumerate() {
+        let keys = Keys::new(file, label("channel", index, table.get("column")), table);
+        let spec = channel(&keys)?;
+        if channels.iter().any(|other| other.column == spec.column) {
+            return Err(keys.error("the column is declared twice; remove one [[channel]]"));
+        }
+        channels.push(spec);
+    }
+    if channels.iter().all(|spec| spec.role == Role::Input) {
+        return Err(top.error("no channel has role = \"output\"; declare one that was measured"));
+    }
+    Ok(channels)
+}
+
+fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
+    keys.refuse_unknown(&["column", "role", "noise_sd"])?;
+    let column = keys.required_text("column", "plunger_mm")?;
+    if column == TIME_COLUMN {
+        return Err(keys.error("the time is no channel; remove this [[channel]]"));
+    }
+    parse_column(column).map_err(|error| keys.error(error.to_string()))?;
+    let role = keys
+        .word("role", &[("input", Role::Input), ("output", Role::Output)])?
+        .ok_or_else(|| {
+            keys.error("key \"role\" is missing; add role = \"input\" or role = \"output\"")
+        })?;
+    let noise_sd = keys.number("noise_sd")?;
+    if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
+        return Err(keys.error(format!(
+            "noise_sd = {sd} must be > 0; leave it out to have it estimated"
+        )));
+    }
+    Ok(ChannelSpec {
+        column: column.to_owned(),
+        role,
+        noise_sd,
+    })
+}
+
+fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {
+    let mut seen = HashSet::new();
+    let mut runs = Vec::new();
+    for (index, table) in top.tables("run")?.into_iter().enumerate() {
+        let keys = Keys::new(file, label("run", index, table.get("file")), table);
+        let run = run(&keys)?;
+        if !seen.insert(run.file.clone()) {
+            return Err(keys.error("the file is listed twice; remove one [[run]]"));
+        }
+        runs.push(run);
+    }
+    Ok(runs)
+}
+
+fn run(keys: &Keys<'_>) -> Result<Run, RecordingError> {
+    let mut conditions = BTreeMap::new();
+    for key in keys.others(&RUN_KEYS) {
+        if let Some(value) = keys.number(key)? {
+            conditions.insert(key.to_owned(), value);
+        }
+    }
+    Ok(Run {
+        file: keys.required_text("file", "sine.csv")?.to_owned(),
+        run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
+        conditions,
+    })
+}
+
+/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
+fn label(kind: &str, index: usize, name: Option<&toml::Value>) -> String {
+    let name = name.map_or(String::new(), |name| format!(" ({name})"));
+    format!("[[{kind}]] {}{name}", index + 1)
+}
+
+#[cfg(test)]
+#[path = "folder_tests.rs"]
+mod tests;

@@ -1,0 +1,159 @@
+//! Reading TOML keys with errors that name file, table, key and remedy.
+
+use super::RecordingError;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A table of `recordings.toml` and where it stands.
+pub(super) struct Keys<'a> {
+    file: &'a Path,
+    name: String,
+    table: &'a Table,
+}
+
+impl<'a> Keys<'a> {
+    pub(super) fn new(file: &'a Path, name: impl Into<String>, table: &'a Table) -> Self {
+        Self {
+            file,
+            name: name.into(),
+            table,
+        }
+    }
+
+    /// An error at this table.
+    pub(super) fn error(&self, problem: impl Into<String>) -> RecordingError {
+        RecordingError::Key {
+            file: self.file.to_owned(),
+            table: self.name.clone(),
+            problem: problem.into(),
+        }
+    }
+
+    /// Refuses keys that are not among the known ones.
+    pub(super) fn refuse_unknown(&self, known: &[&str]) -> Result<(), RecordingError> {
+        match self.table.keys().find(|key| !known.contains(&key.as_str())) {
+            None => Ok(()),
+            Some(key) => Err(self.error(format!(
+                "unknown key \"{key}\"{}; the keys here are {}",
+                did_you_mean(key, known),
+                known.join(", ")
+            ))),
+        }
+    }
+
+    pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, RecordingError> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::String(text)) if !text.is_empty() => Ok(Some(text)),
+            Some(other) => Err(self.error(format!(
+                "{key} = {other} must be a text between quotes, not empty"
+            ))),
+        }
+    }
+
+    pub(super) fn required_text(
+        &self,
+        key: &str,
+        example: &str,
+    ) -> Result<&'a str, RecordingError> {
+        self.text(key)?.ok_or_else(|| {
+            self.error(format!(
+                "key \"{key}\" is missing; add {key} = \"{example}\""
+            ))
+        })
+    }
+
+    /// A text that is one of a few words.
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &str,
+        words: &[(&str, T)],
+    ) -> Result<Option<T>, RecordingError> {
+        let Some(text) = self.text(key)? else {
+            return Ok(None);
+        };
+        if let Some((_, meaning)) = words.iter().find(|(word, _)| *word == text) {
+            return Ok(Some(*meaning));
+        }
+        let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        Err(self.error(format!(
+            "{key} = \"{text}\" is not known{}; write one of \"{}\"",
+            did_you_mean(text, &known),
+            known.join("\", \"")
+        )))
+    }
+
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, RecordingError> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::Integer(whole)) => Ok(Some(*whole as f64)),
+            Some(Value::Float(number)) if number.is_finite() => Ok(Some(*number)),
+            Some(other) => Err(self.error(format!("{key} = {other} must be a finite number"))),
+        }
+    }
+
+    /// The tables of `[[key]]`; at least one.
+    pub(super) fn tables(&self, key: &str) -> Result<Vec<&'a Table>, RecordingError> {
+        let wrong = || self.error(format!("no [[{key}]] table; add one per {key}"));
+        let list = self.table.get(key).and_then(Value::as_array);
+        let tables: Option<Vec<&Table>> = list
+            .filter(|list| !list.is_empty())
+            .and_then(|list| list.iter().map(Value::as_table).collect());
+        tables.ok_or_else(wrong)
+    }
+
+    /// The keys that are not among `known`.
+    pub(super) fn others(&self, known: &[&str]) -> Vec<&'a str> {
+        let keys = self.table.keys().map(String::as_str);
+        keys.filter(|key| !known.contains(key)).collect()
+    }
+}
+
+/// `; did you mean "role"?` when a known word is near, else nothing.
+fn did_you_mean(word: &str, known: &[&str]) -> String {
+    known
+        .iter()
+        .map(|candidate| (edit_distance(word, candidate), candidate))
+        .min()
+        .filter(|(distance, _)| *distance <= (word.chars().count() / 3).max(1))
+        .map_or(String::new(), |(_, near)| {
+            format!(", did you mean \"{near}\"?")
+        })
+}
+
+/// Letters to insert, delete or replace to turn one word into the other (Levenshtein).
+fn edit_distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, letter) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, other) in to.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *other);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[to.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edit_distance_of_known_words() {
+        assert_eq!(edit_distance("kitten", "sitting"), 3);
+        assert_eq!(edit_distance("", "role"), 4);
+        assert_eq!(edit_distance("role", "role"), 0);
+    }
+
+    #[test]
+    fn only_near_words_are_proposed() {
+        assert_eq!(
+            did_you_mean("rol", &["role", "column"]),
+            ", did you mean \"role\"?"
+        );
+        assert_eq!(did_you_mean("weather", &["role", "column"]), "");
+    }
+}

@@ -1,0 +1,232 @@
+//! The picture of `smam compare`: every run and output, measured and simulated, with the residual.
+
+use super::axis::three_digits;
+use super::panel::{Band, Panel, Series, draw_legend};
+use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to};
+use crate::recording::{gap_limit_s, parse_column};
+
+/// Runs beside each other; more wrap to the next row.
+const RUNS_PER_ROW: usize = 4;
+const CELL_WIDTH: f64 = 430.0;
+const SIGNAL_HEIGHT: f64 = 236.0;
+const RESIDUAL_HEIGHT: f64 = 140.0;
+const CELL_HEIGHT: f64 = SIGNAL_HEIGHT + RESIDUAL_HEIGHT + 18.0;
+const HEADER_HEIGHT: f64 = 58.0;
+const EDGE: f64 = 10.0;
+
+/// One run of the figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparedRun {
+    /// Its name, in the titles.
+    pub name: String,
+    /// Sample times [s].
+    pub time_s: Vec<f64>,
+    /// Its output channels.
+    pub channels: Vec<ComparedChannel>,
+}
+
+/// One output channel of a run; all values in the column's own unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComparedChannel {
+    /// Its column, with the unit as suffix.
+    pub column: String,
+    /// Measured samples, NaN where missing.
+    pub measured: Vec<f64>,
+    /// Simulated samples at the same times.
+    pub simulated: Vec<f64>,
+    /// Standard deviation of the measurement noise; `None`: no band is drawn.
+    pub noise_sd: Option<f64>,
+    /// Root mean square of measured minus simulated.
+    pub rmse: f64,
+}
+
+/// Draws the runs as columns and their channels as rows, as one self-contained SVG.
+///
+/// A cell shows measured and simulated over time, and below measured minus simulated with the band of
+/// +- 2 noise standard deviations. Lines are cut where samples are missing and at gaps.
+pub fn compare_svg(runs: &[ComparedRun]) -> String {
+    let rows_of_cells = |group: &[ComparedRun]| group.iter().map(|run| run.channels.len()).max();
+    let groups: Vec<&[ComparedRun]> = runs.chunks(RUNS_PER_ROW).collect();
+    let row_count: usize = groups.iter().filter_map(|g| rows_of_cells(g)).sum();
+    let width = CELL_WIDTH * runs.len().clamp(2, RUNS_PER_ROW) as f64 + 2.0 * EDGE;
+    let height = HEADER_HEIGHT + CELL_HEIGHT * row_count as f64 + EDGE;
+    let mut svg = Svg::new(width, height);
+    draw_header(&mut svg);
+    let mut y = HEADER_HEIGHT;
+    for group in groups {
+        for (column, run) in group.iter().enumerate() {
+            for (row, channel) in run.channels.iter().enumerate() {
+                let corner = (
+                    EDGE + CELL_WIDTH * column as f64,
+                    y + CELL_HEIGHT * row as f64,
+                );
+                draw_cell(&mut svg, corner, run, channel);
+            }
+        }
+        y += CELL_HEIGHT * rows_of_cells(group).unwrap_or(0) as f64;
+    }
+    svg.finish()
+}
+
+fn draw_header(svg: &mut Svg) {
+    svg.text(
+        (EDGE + 12.0, 24.0),
+        Anchor::Start,
+        15.0,
+        "Measured and simulated",
+    );
+    let entries = [
+        ("measured", BLUE, 1.0),
+        ("simulated", VERMILION, 1.0),
+        ("measured - simulated", GREY, 1.0),
+        ("± 2 noise sd", BLUE, 0.25),
+    ];
+    draw_legend(svg, (EDGE + 12.0, 45.0), &entries);
+}
+
+fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &ComparedChannel) {
+    let signal_area = Rect {
+        x: corner.0,
+        y: corner.1,
+        width: CELL_WIDTH,
+        height: SIGNAL_HEIGHT,
+    };
+    let residual_area = Rect {
+        y: signal_area.bottom(),
+        height: RESIDUAL_HEIGHT,
+        ..signal_area
+    };
+    signal_panel(run, channel).draw(svg, signal_area);
+    residual_panel(run, channel).draw(svg, residual_area);
+}
+
+fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
+    let name = parse_column(&channel.column).ok();
+    let name_room = CELL_WIDTH - 180.0;
+    Panel {
+        title: vec![
+            cut_to(
+                &format!("{}: {}", run.name, channel.column),
+                12.0,
+                name_room + 100.0,
+            ),
+            accuracy(channel),
+        ],
+        y_label: name.map_or(channel.column.clone(), |n| n.axis_label()),
+        series: vec![
+            line(&run.time_s, &channel.measured, BLUE),
+            line(&run.time_s, &channel.simulated, VERMILION),
+        ],
+        ..Panel::default()
+    }
+}
+
+/// `RMSE 0.0312 mm, noise sd 0.0200 mm (ratio 1.56)`.
+fn accuracy(channel: &ComparedChannel) -> String {
+    let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
+    let rmse = three_digits(channel.rmse);
+    match channel.noise_sd {
+        Some(sd) => format!(
+            "RMSE {rmse} {symbol}, noise sd {} {symbol} (ratio {})",
+            three_digits(sd),
+            three_digits(channel.rmse / sd)
+        ),
+        None => format!("RMSE {rmse} {symbol}, noise sd unknown"),
+    }
+}
+
+fn residual_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
+    let pairs = channel.measured.iter().zip(&channel.simulated);
+    let residual: Vec<f64> = pairs.map(|(was, is)| was - is).collect();
+    let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
+    let band = channel.noise_sd.map(|sd| Band {
+        label: String::new(),
+        colour: BLUE,
+        low: -2.0 * sd,
+        high: 2.0 * sd,
+    });
+    Panel {
+        x_label: "time (s)".to_owned(),
+        y_label: format!("residual ({symbol})"),
+        series: vec![line(&run.time_s, &residual, GREY)],
+        bands: band.into_iter().collect(),
+        ..Panel::default()
+    }
+}
+
+/// A line over time, cut at gaps.
+fn line(time_s: &[f64], values: &[f64], colour: &'static str) -> Series {
+    let limit_s = gap_limit_s(time_s);
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (time, value) in time_s.iter().zip(values) {
+        if x.last().is_some_and(|last| time - last > limit_s) {
+            x.push(*time);
+            y.push(f64::NAN);
+        }
+        x.push(*time);
+        y.push(*value);
+    }
+    Series {
+        label: String::new(),
+        colour,
+        x,
+        y,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(name: &str, columns: &[&str]) -> ComparedRun {
+        let time_s: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.1).collect();
+        let channel = |column: &&str| ComparedChannel {
+            column: (*column).to_owned(),
+            measured: time_s.iter().map(|t| t.sin()).collect(),
+            simulated: time_s.iter().map(|t| t.sin() + 0.03).collect(),
+            noise_sd: Some(0.02),
+            rmse: 0.03,
+        };
+        ComparedRun {
+            name: name.to_owned(),
+            channels: columns.iter().map(channel).collect(),
+            time_s: time_s.clone(),
+        }
+    }
+
+    #[test]
+    fn every_run_and_channel_has_its_two_panels() {
+        let svg = compare_svg(&[
+            run("sine", &["elongation_mm", "pressure_kpa"]),
+            run("steps", &["elongation_mm"]),
+        ]);
+        assert_eq!(svg.matches("<polyline").count(), 3 * 3);
+        assert!(svg.contains(">sine: pressure_kpa<") && svg.contains(">steps: elongation_mm<"));
+        assert!(svg.contains(">RMSE 0.0300 mm, noise sd 0.0200 mm (ratio 1.50)<"));
+        assert!(svg.contains(">elongation (mm)<") && svg.contains(">residual (kPa)<"));
+        assert!(svg.contains(">time (s)<"));
+    }
+
+    #[test]
+    fn fifth_run_wraps() {
+        let runs: Vec<ComparedRun> = (0..5)
+            .map(|i| run(&format!("r{i}"), &["bend_deg"]))
+            .collect();
+        let svg = compare_svg(&runs);
+        let width = 4.0 * CELL_WIDTH + 2.0 * EDGE;
+        let height = HEADER_HEIGHT + 2.0 * CELL_HEIGHT + EDGE;
+        assert!(svg.contains(&format!("width=\"{width}\" height=\"{height}\"")));
+    }
+
+    #[test]
+    fn lines_are_cut_at_gaps() {
+        let series = line(&[0.0, 1.0, 2.0, 9.0], &[1.0; 4], BLUE);
+        assert_eq!(series.x, [0.0, 1.0, 2.0, 9.0, 9.0]);
+        assert!(series.y[3].is_nan());
+    }
+
+    #[test]
+    fn nothing_to_compare_is_still_a_picture() {
+        assert!(compare_svg(&[]).ends_with("</svg>\n"));
+    }
+}

@@ -1,0 +1,239 @@
+//! One plot: lines and bands over a pair of axes. Every figure is made of these.
+
+use super::axis::Axis;
+use super::decimate::decimate;
+use super::svg::{Anchor, GREY, Rect, Svg, cut_to, text_width};
+
+const TITLE_SIZE: f64 = 12.0;
+const TEXT_SIZE: f64 = 11.0;
+const LEFT_MARGIN: f64 = 66.0;
+const RIGHT_MARGIN: f64 = 14.0;
+const LINE_HEIGHT: f64 = 16.0;
+const TICK_ROOM: f64 = 18.0;
+const POINTS_PER_LINE: usize = 1500;
+const GRID: &str = "#e4e4e4";
+
+/// A line over x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; empty: not in the legend.
+    pub label: String,
+    /// Its colour, as SVG writes it.
+    pub colour: &'static str,
+    /// Its points; a NaN cuts the line.
+    pub x: Vec<f64>,
+    /// As many as `x`.
+    pub y: Vec<f64>,
+}
+
+/// A horizontal band, for instance of +- 2 standard deviations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Its name in the legend; empty: not in the legend.
+    pub label: String,
+    /// Its colour, as SVG writes it; drawn pale.
+    pub colour: &'static str,
+    /// Lower edge, in units of y.
+    pub low: f64,
+    /// Upper edge, in units of y.
+    pub high: f64,
+}
+
+/// A plot with titles, axes, lines and bands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// Lines of title, the first one bold; may be empty.
+    pub title: Vec<String>,
+    /// Text below the x axis; empty: neither text nor room for it.
+    pub x_label: String,
+    /// Text beside the y axis, with the unit.
+    pub y_label: String,
+    /// Drawn in this order.
+    pub series: Vec<Series>,
+    /// Drawn below the lines.
+    pub bands: Vec<Band>,
+}
+
+impl Panel {
+    /// What has a name in the legend, with its colour and opacity.
+    pub(super) fn legend(&self) -> Vec<(&str, &'static str, f64)> {
+        let lines = self
+            .series
+            .iter()
+            .map(|s| (s.label.as_str(), s.colour, 1.0));
+        let bands = self
+            .bands
+            .iter()
+            .map(|b| (b.label.as_str(), b.colour, 0.25));
+        lines
+            .chain(bands)
+            .filter(|(label, ..)| !label.is_empty())
+            .collect()
+    }
+
+    /// Draws title, axes and lines within a rectangle.
+    pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
+        let plot = self.plot_area(outer);
+        let x_axis = Axis::over(
+            self.series.iter().flat_map(|s| s.x.iter().copied()),
+            0.0,
+            (plot.width / 70.0) as usize,
+        );
+        let y_axis = Axis::over(self.y_values(), 0.05, (plot.height / 32.0) as usize);
+        self.draw_text(svg, outer, plot);
+        draw_x_ticks(svg, plot, &x_axis);
+        draw_y_ticks(svg, plot, &y_axis);
+        let at = |x: f64, y: f64| {
+            let right = plot.x + x_axis.share(x) * plot.width;
+            (right, plot.bottom() - y_axis.share(y) * plot.height)
+        };
+        for band in &self.bands {
+            let (top, bottom) = (at(0.0, band.high).1, at(0.0, band.low).1);
+            let rect = Rect {
+                y: top,
+                height: bottom - top,
+                ..plot
+            };
+            svg.fill(rect, band.colour, 0.25);
+        }
+        for series in &self.series {
+            for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
+                let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
+                svg.polyline(&points, series.colour, 1.2);
+            }
+        }
+        svg.frame(plot, GREY);
+    }
+
+    fn y_values(&self) -> impl Iterator<Item = f64> {
+        let lines = self.series.iter().flat_map(|s| s.y.iter().copied());
+        lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
+    }
+
+    fn plot_area(&self, outer: Rect) -> Rect {
+        let above = LINE_HEIGHT * self.title.len() as f64 + 8.0;
+        let label_room = if self.x_label.is_empty() {
+            0.0
+        } else {
+            LINE_HEIGHT
+        };
+        Rect {
+            x: outer.x + LEFT_MARGIN,
+            y: outer.y + above,
+            width: outer.width - LEFT_MARGIN - RIGHT_MARGIN,
+            height: outer.height - above - TICK_ROOM - label_room,
+        }
+    }
+
+    fn draw_text(&self, svg: &mut Svg, outer: Rect, plot: Rect) {
+        for (index, line) in self.title.iter().enumerate() {
+            let y = outer.y + LINE_HEIGHT * (index as f64 + 1.0) - 2.0;
+            let size = if index == 0 { TITLE_SIZE } else { TEXT_SIZE };
+            let text = cut_to(line, size, plot.width);
+            svg.text((plot.x, y), Anchor::Start, size, &text);
+        }
+        let middle_x = plot.x + plot.width / 2.0;
+        if !self.x_label.is_empty() {
+            let y = plot.bottom() + TICK_ROOM + LINE_HEIGHT - 4.0;
+            svg.text((middle_x, y), Anchor::Middle, TEXT_SIZE, &self.x_label);
+        }
+        let middle_y = plot.y + plot.height / 2.0;
+        let label = cut_to(&self.y_label, TEXT_SIZE, plot.height + 24.0);
+        svg.text_up((outer.x + 12.0, middle_y), TEXT_SIZE, &label);
+    }
+}
+
+fn draw_x_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
+    for (value, text) in axis.ticks() {
+        let x = plot.x + axis.share(value) * plot.width;
+        svg.line((x, plot.y), (x, plot.bottom()), GRID, 1.0);
+        // At an end the text stays within the panel.
+        let half = text_width(&text, TEXT_SIZE) / 2.0;
+        let centre = x.min(plot.right() + RIGHT_MARGIN - half);
+        let y = plot.bottom() + 14.0;
+        svg.text((centre, y), Anchor::Middle, TEXT_SIZE, &text);
+    }
+}
+
+fn draw_y_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
+    for (value, text) in axis.ticks() {
+        let y = plot.bottom() - axis.share(value) * plot.height;
+        svg.line((plot.x, y), (plot.right(), y), GRID, 1.0);
+        svg.text((plot.x - 5.0, y + 4.0), Anchor::End, TEXT_SIZE, &text);
+    }
+}
+
+/// Draws a legend in one row, from a point [px] to the right.
+pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), entries: &[(&str, &'static str, f64)]) {
+    let (mut x, y) = at;
+    for (label, colour, opacity) in entries {
+        let is_line = *opacity >= 1.0;
+        let height = if is_line { 3.0 } else { 12.0 };
+        let swatch = Rect {
+            x,
+            y: y - 4.0 - height / 2.0,
+            width: 22.0,
+            height,
+        };
+        svg.fill(swatch, colour, *opacity);
+        svg.text((x + 28.0, y), Anchor::Start, TEXT_SIZE, label);
+        x += 28.0 + text_width(label, TEXT_SIZE) + 20.0;
+    }
+}
+
+/// A figure of panels below each other, each with its legend under its title.
+///
+/// `width` and `panel_height` in pixels; 640 by 300 is legible on a page.
+pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
+    const GAP: f64 = 10.0;
+    const LEGEND_HEIGHT: f64 = 20.0;
+    let row_height = panel_height + LEGEND_HEIGHT + GAP;
+    let mut svg = Svg::new(width, row_height * panels.len() as f64 + GAP);
+    for (index, panel) in panels.iter().enumerate() {
+        let y = GAP + row_height * index as f64;
+        let legend_at = (LEFT_MARGIN, y + panel_height + 12.0);
+        draw_legend(&mut svg, legend_at, &panel.legend());
+        panel.draw(
+            &mut svg,
+            Rect {
+                x: 0.0,
+                y,
+                width,
+                height: panel_height,
+            },
+        );
+    }
+    svg.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::BLUE;
+
+    #[test]
+    fn figure_names_axes_and_lines_and_cuts_at_missing_points() {
+        let panel = Panel {
+            title: vec!["Force & stroke".to_owned()],
+            x_label: "stroke (mm)".to_owned(),
+            y_label: "force (N)".to_owned(),
+            series: vec![Series {
+                label: "measured".to_owned(),
+                colour: BLUE,
+                x: vec![0.0, 1.0, 2.0, 3.0],
+                y: vec![1.0, f64::NAN, 2.0, 3.0],
+            }],
+            bands: vec![],
+        };
+        let svg = figure_svg(&[panel], 640.0, 300.0);
+        for text in [
+            "Force &amp; stroke",
+            ">stroke (mm)<",
+            ">force (N)<",
+            ">measured<",
+        ] {
+            assert!(svg.contains(text), "{text}");
+        }
+        assert_eq!(svg.matches("<polyline").count(), 2);
+    }
+}
