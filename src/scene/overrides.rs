@@ -49,33 +49,34 @@ impl Override {
 
     /// Puts the value into the scene's table. In lists of tables a segment is an index or a `name`.
     pub fn apply(&self, scene: &mut Table) -> Result<(), SceneError> {
+        let mut root = Value::Table(std::mem::take(scene));
+        let result = self.put(&mut root);
+        if let Value::Table(table) = root {
+            *scene = table;
+        }
+        result
+    }
+
+    fn put(&self, root: &mut Value) -> Result<(), SceneError> {
         let path: Vec<&str> = calibration_key(&self.key).split('.').collect();
-        let refuse = |message: String| SceneError::Override {
+        let missing = |depth: usize| SceneError::Override {
             key: self.key.clone(),
-            message,
+            message: format!("there is no `{}` in the scene", path[..=depth].join(".")),
             remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
         };
-        let (last, parents) = path.split_last().ok_or_else(|| refuse("the key is empty".to_owned()))?;
-        let mut here: &mut Value = &mut Value::Boolean(false);
-        for (depth, segment) in parents.iter().enumerate() {
-            let next = if depth == 0 { scene.get_mut(*segment) } else { child(here, segment) };
-            here = next.ok_or_else(|| refuse(format!("there is no `{}` in the scene", path[..=depth].join("."))))?;
+        let last = path.len() - 1;
+        let mut here = root;
+        for (depth, segment) in path[..last].iter().enumerate() {
+            here = child(here, segment).ok_or_else(|| missing(depth))?;
         }
-        let slot = if parents.is_empty() { scene.get_mut(*last) } else { child(here, last) };
-        match slot {
-            Some(slot) => {
-                *slot = coerced(&self.value, slot);
-                Ok(())
-            }
-            // Keys with a default need not stand in the file; a wrong name is refused when the scene is read.
-            None => match here.as_table_mut() {
-                Some(table) => {
-                    table.insert((*last).to_owned(), self.value.clone());
-                    Ok(())
-                }
-                None => Err(refuse(format!("there is no `{}` in the scene", path.join(".")))),
-            },
+        if let Some(slot) = child(here, path[last]) {
+            *slot = coerced(&self.value, slot);
+            return Ok(());
         }
+        // Keys with a default need not stand in the file; a wrong name is refused when the scene is read.
+        let table = here.as_table_mut().ok_or_else(|| missing(last))?;
+        table.insert(path[last].to_owned(), self.value.clone());
+        Ok(())
     }
 }
 

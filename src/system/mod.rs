@@ -1,2 +1,29 @@
-//! (placeholder: filled by the next commits)
+//! A scene as a system in time: wiring, stepping order, energy book, channels.
+//!
+//! [`Simulation`] is the full scene with its rigid-body engine; [`Plant`] the equations it integrates.
+
+mod axis;
+mod build;
+mod channels;
+mod elastic;
+mod energy;
+mod error;
+mod events;
+mod graph;
+mod inputs;
+mod ldl;
 pub mod observe;
+mod plant;
+mod rosenbrock;
+mod run;
+mod simulation;
+
+pub use elastic::{Elastic, ElasticPoint};
+pub use energy::EnergyBook;
+pub use error::SystemError;
+pub use events::Warnings;
+pub use inputs::InputSource;
+pub use plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant, PlantState};
+pub use rosenbrock::Stepper;
+pub use run::{RunError, Schedule, record, run};
+pub use simulation::Simulation;

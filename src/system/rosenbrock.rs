@@ -12,7 +12,7 @@
 //! The unknowns are eliminated down to the coordinates' accelerations: the line is tridiagonal ([`ChainSolver`]), the
 //! friction states are local, so what remains is a symmetric matrix of the size of the mechanism.
 
-use crate::hydraulics::{ChainRates, ChainSolver, ChainState, Port};
+use crate::hydraulics::{ChainRates, ChainSolver, ChainState};
 use crate::scalar::Scalar;
 
 use super::ldl::Ldl;

@@ -107,6 +107,20 @@ impl Simulation {
         self.energy = Some(EnergyBook::open(&self.built.plant, &self.built.state, &self.spans));
     }
 
+    /// The inputs at the present instant.
+    pub(super) fn end_spans(&self) -> Vec<InputSpan> {
+        let mut spans = self.spans.clone();
+        for (span, input) in spans.iter_mut().zip(&self.inputs) {
+            span.value = input.value(self.time_s);
+        }
+        if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement) {
+            for (i, d) in self.built.displacements.iter().enumerate() {
+                spans[d.input].value = model.output(spans[d.plunger].value * 1e3, self.hysteresis_z[i]) * 1e-3;
+            }
+        }
+        spans
+    }
+
     /// The energy book, if kept.
     pub fn energy_book(&self) -> Option<&EnergyBook> {
         self.energy.as_ref()

@@ -1,0 +1,151 @@
+//! Channels of a running scene: what each output column reads.
+
+use crate::recording::parse_column;
+use crate::scene::{OutputSpec, Quantity, Scene};
+
+use super::axis::Axis;
+use super::plant::Drive;
+use super::{Simulation, SystemError};
+
+/// What one output column reads from the state.
+#[derive(Clone, Debug)]
+enum Reader {
+    Elongation(usize),
+    SyringePressure(usize),
+    MusclePressure(usize),
+    Pull(usize),
+    Tension(usize),
+    Joints(Vec<usize>, f64),
+    Body(usize, usize),
+    Axis(Axis),
+    /// Elongation of a displacement model: the pseudo-input that carries it.
+    Displacement(usize),
+}
+
+/// The columns of a scene with their units.
+#[derive(Clone, Debug)]
+pub(super) struct Channels {
+    /// Of each input: SI units in one of its unit.
+    input_factors: Vec<f64>,
+    readers: Vec<(Reader, f64)>,
+    pub names: Vec<String>,
+}
+
+impl Channels {
+    /// Resolves the names of a scene's outputs.
+    pub(super) fn new(simulation: &Simulation) -> Result<Self, SystemError> {
+        let scene = &simulation.scene;
+        let mut names = Vec::new();
+        let mut input_factors = Vec::new();
+        for input in &scene.file.input {
+            input_factors.push(parse_column(&input.channel)?.unit.factor);
+            names.push(input.channel.clone());
+        }
+        let mut readers = Vec::new();
+        for output in &scene.file.output {
+            readers.push((reader(simulation, output)?, parse_column(&output.channel)?.unit.factor));
+            names.push(output.channel.clone());
+        }
+        Ok(Self { input_factors, readers, names })
+    }
+
+    /// Values of all columns now, inputs first, each in its own unit.
+    pub(super) fn read(&self, simulation: &Simulation, out: &mut Vec<f64>) {
+        out.clear();
+        for (input, factor) in simulation.inputs.iter().zip(&self.input_factors) {
+            out.push(input.value(simulation.time_s) / factor);
+        }
+        for (reader, factor) in &self.readers {
+            out.push(reader.value_si(simulation) / factor);
+        }
+    }
+}
+
+impl Reader {
+    fn value_si(&self, simulation: &Simulation) -> f64 {
+        let (plant, state) = (&simulation.built.plant, &simulation.built.state);
+        let spans = &simulation.end_spans();
+        match self {
+            Self::Elongation(m) => plant.muscle_forces(*m, state, spans, 0.0).elongation_m,
+            Self::Pull(m) => plant.muscle_forces(*m, state, spans, 0.0).pull_n(),
+            Self::MusclePressure(m) => plant.muscle_pressure(*m, state, spans, 0.0),
+            Self::SyringePressure(m) => match plant.muscles[*m].drive {
+                Drive::Hydraulic { .. } => state.chains[*m].pressure_pa[0],
+                Drive::Pressure { .. } => plant.muscle_pressure(*m, state, spans, 0.0),
+            },
+            Self::Tension(c) => plant.cable(*c, state, spans, 0.0).2,
+            Self::Joints(joints, constant) => constant + joints.iter().map(|&j| state.y[j]).sum::<f64>(),
+            Self::Body(link, axis) => simulation
+                .mechanism
+                .as_ref()
+                .map_or(f64::NAN, |m| m.link_poses()[*link].translation_m[*axis]),
+            Self::Axis(axis) => axis.force_n(&simulation.inputs, simulation.time_s),
+            Self::Displacement(input) => spans[*input].value,
+        }
+    }
+}
+
+fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, SystemError> {
+    let scene = &simulation.scene;
+    let of = output.of.first().map_or("", String::as_str);
+    let scene_muscle = scene.file.muscle.iter().position(|m| m.name == of);
+    let muscle = scene_muscle.and_then(|i| simulation.built.muscle_index[i]);
+    Ok(match output.quantity {
+        Quantity::Elongation => match (muscle, scene_muscle) {
+            (Some(m), _) => Reader::Elongation(m),
+            (None, Some(i)) => simulation
+                .built
+                .displacements
+                .iter()
+                .find(|d| d.muscle == i)
+                .map(|d| Reader::Displacement(d.input))
+                .ok_or_else(|| no_such(scene, output, "this muscle"))?,
+            (None, None) => return Err(no_such(scene, output, "this muscle")),
+        },
+        Quantity::SyringePressure => Reader::SyringePressure(muscle.ok_or_else(|| no_such(scene, output, "a pressure"))?),
+        Quantity::MusclePressure => Reader::MusclePressure(muscle.ok_or_else(|| no_such(scene, output, "a pressure"))?),
+        Quantity::Pull => Reader::Pull(muscle.ok_or_else(|| no_such(scene, output, "a pull"))?),
+        Quantity::Tension => {
+            let cable = scene.file.cable.iter().position(|c| c.name == of);
+            Reader::Tension(cable.ok_or_else(|| no_such(scene, output, "this cable"))?)
+        }
+        Quantity::JointPosition => joints(simulation, output)?,
+        Quantity::BodyX => body(simulation, output, 0)?,
+        Quantity::BodyY => body(simulation, output, 1)?,
+        Quantity::BodyZ => body(simulation, output, 2)?,
+        Quantity::AxisForce => Reader::Axis(axis(scene).ok_or_else(|| no_such(scene, output, "an [axis]"))?),
+    })
+}
+
+fn axis(scene: &Scene) -> Option<Axis> {
+    let spec = scene.file.axis.clone()?;
+    let input = |name: &str| scene.file.input.iter().position(|i| i.channel == name);
+    let position = input(&spec.position_input)?;
+    let pressure = spec.pressure_input.as_deref().and_then(input);
+    Some(Axis { spec, position, pressure })
+}
+
+fn joints(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, SystemError> {
+    let coordinates = simulation.mechanism.iter().flat_map(|m| m.coordinates());
+    let names: Vec<&str> = coordinates.map(|c| c.name.as_str()).collect();
+    let found: Option<Vec<usize>> = output.of.iter().map(|name| names.iter().position(|n| n == name)).collect();
+    match found {
+        Some(found) if !found.is_empty() => Ok(Reader::Joints(found, 0.0)),
+        _ => Err(no_such(&simulation.scene, output, &format!("these joints (free joints: {})", names.join(", ")))),
+    }
+}
+
+fn body(simulation: &Simulation, output: &OutputSpec, axis: usize) -> Result<Reader, SystemError> {
+    let links = simulation.mechanism.as_ref().map_or(&[][..], |m| m.link_names());
+    let link = links.iter().position(|l| Some(l) == output.of.first());
+    link.map(|link| Reader::Body(link, axis)).ok_or_else(|| no_such(&simulation.scene, output, "this body"))
+}
+
+fn no_such(scene: &Scene, output: &OutputSpec, what: &str) -> SystemError {
+    SystemError::Name {
+        file: scene.path.clone(),
+        table: format!("[[output]] \"{}\"", output.channel),
+        message: format!("of = {:?}: the scene does not have {what}", output.of),
+        remedy: "name a muscle, cable, joint or body of this scene in `of`".to_owned(),
+    }
+}
