@@ -54,6 +54,7 @@ impl HeldTable {
         }
     }
 
+    #[inline]
     fn cell(&self, lambda: f64) -> Option<&Cell> {
         let place = self.first - STEPS / lambda;
         if lambda > 0.0 && place >= 0.0 {
@@ -64,6 +65,7 @@ impl HeldTable {
     }
 
     /// `sum c_k I_k'` and `sum c_k I_k''`; none outside the table.
+    #[inline]
     pub fn pull_and_stiffness<D: Scalar>(&self, c: &[D; 3], lambda: D) -> Option<(D, D)> {
         let cell = self.cell(lambda.value())?;
         let t = (lambda - cell.start) * cell.inverse_width;
@@ -121,6 +123,7 @@ fn stretch(node: i32) -> f64 {
     STEPS / f64::from(node)
 }
 
+#[inline]
 fn mix<D: Scalar>(c: &[D; 3], basis: &[f64; 3]) -> D {
     c[0] * basis[0] + c[1] * basis[1] + c[2] * basis[2]
 }
