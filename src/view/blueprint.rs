@@ -1,7 +1,7 @@
 //! The arrangement of views for a scene: mechanism large on the left, plots along the chain on the right.
 
 use rerun::blueprint::components::{BackgroundKind, Corner2D, Eye3DKind, LinkAxis, PanelState};
-use rerun::blueprint::components::{PlayState, TimelineName, VisualBounds2D as Bounds};
+use rerun::blueprint::components::{PlayState, TimelineName};
 use rerun::datatypes::{Range1D, Range2D};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
@@ -34,6 +34,7 @@ pub(super) fn send(
     };
     let (blueprint, storage) = RecordingStreamBuilder::new(info.application_id().clone())
         .blueprint()
+        .enabled(true)
         .memory()?;
     blueprint.set_time_sequence("blueprint", 0);
     log(&blueprint, graph, first)?;
@@ -52,7 +53,7 @@ pub(super) fn send(
 fn log(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStreamResult<()> {
     let root = Writer::new(out).root(page(graph, first))?;
     let viewport = ViewportBlueprint::new()
-        .with_root_container(root.0)
+        .with_root_container(root)
         .with_auto_layout(false)
         .with_auto_views(false);
     out.log("viewport", &viewport)?;
@@ -125,29 +126,31 @@ fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
 }
 
 fn space(graph: &SceneGraph) -> Pane {
-    let eye = EyeControls3D::new()
-        .with_kind(Eye3DKind::Orbital)
-        .with_position(graph.camera_position_m)
-        .with_look_target(graph.camera_target_m)
-        .with_eye_up(eye_up(graph));
     let title = if graph.name.is_empty() {
         "Mechanism"
     } else {
         &graph.name
     };
-    view(
-        Kind::Space,
-        title,
-        path(["world"]),
-        vec![
-            ("EyeControls3D", Box::new(eye)),
-            (
-                "LineGrid3D",
-                Box::new(LineGrid3D::new().with_visible(false)),
-            ),
-            ("Background", Box::new(ground())),
-        ],
-    )
+    let mut properties: Vec<(&'static str, Box<dyn AsComponents>)> = vec![
+        (
+            "LineGrid3D",
+            Box::new(LineGrid3D::new().with_visible(false)),
+        ),
+        ("Background", Box::new(ground())),
+    ];
+    // Without a camera, Rerun looks at everything.
+    if graph.camera_position_m != graph.camera_target_m {
+        properties.push(("EyeControls3D", Box::new(eye(graph))));
+    }
+    view(Kind::Space, title, path(["world"]), properties)
+}
+
+fn eye(graph: &SceneGraph) -> EyeControls3D {
+    EyeControls3D::new()
+        .with_kind(Eye3DKind::Orbital)
+        .with_position(graph.camera_position_m)
+        .with_look_target(graph.camera_target_m)
+        .with_eye_up(eye_up(graph))
 }
 
 /// Up on the screen: z, unless the camera looks along it.
@@ -169,7 +172,7 @@ fn loop_view(graph: &SceneGraph, number: usize) -> Pane {
         axis_title(&graph.channels[x])
     );
     let [width, height] = FRAME;
-    let bounds = bounds([-0.2, width + 0.08], [-height - 0.22, 0.24]);
+    let bounds = bounds([-0.2, width + 0.08], [-height - 0.22, 0.3]);
     plane(&title, path(["loops", &(number + 1).to_string()]), bounds)
 }
 
@@ -217,23 +220,23 @@ fn series(title: &str, origin: EntityPath) -> Pane {
     )
 }
 
-fn plane(title: &str, origin: EntityPath, bounds: Bounds) -> Pane {
+fn plane(title: &str, origin: EntityPath, bounds: Range2D) -> Pane {
     view(
         Kind::Plane,
         title,
         origin,
         vec![
-            ("VisualBounds2D", Box::new(VisualBounds2D::new(bounds.0))),
+            ("VisualBounds2D", Box::new(VisualBounds2D::new(bounds))),
             ("Background", Box::new(ground())),
         ],
     )
 }
 
-fn bounds(x: [f64; 2], y: [f64; 2]) -> Bounds {
-    Bounds(Range2D {
+fn bounds(x: [f64; 2], y: [f64; 2]) -> Range2D {
+    Range2D {
         x_range: Range1D(x),
         y_range: Range1D(y),
-    })
+    }
 }
 
 fn ground() -> Background {

@@ -59,12 +59,11 @@ pub(super) struct Events;
 
 impl Layer for Events {
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
-        let events = || {
-            let of = |frame: &'_ Frame| frame.events.len();
-            frames.iter().filter(move |frame| of(frame) > 0)
-        };
-        let times_s = events().flat_map(|frame| frame.events.iter().map(|_| frame.time_s));
-        let texts: Vec<&str> = events()
+        let times_s = frames
+            .iter()
+            .flat_map(|frame| std::iter::repeat_n(frame.time_s, frame.events.len()));
+        let texts: Vec<&str> = frames
+            .iter()
             .flat_map(|frame| frame.events.iter().map(String::as_str))
             .collect();
         if texts.is_empty() {
