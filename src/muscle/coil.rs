@@ -103,3 +103,37 @@ impl<D: Scalar> Stop<D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::wall_tests::near;
+    use super::*;
+    use num_dual::{Dual64, first_derivative};
+
+    #[test]
+    fn coil_and_stop() {
+        near(spring_rate(69.1e9, 0.2e-3, 1.25e-3, 250.0), 28.3, 2e-3);
+        let (_, pull) = first_derivative(
+            |e| {
+                Coil {
+                    stiffness_n_m: Dual64::from(28.3),
+                    preload_n: Dual64::from(0.1),
+                }
+                .energy_j(e)
+            },
+            0.02,
+        );
+        near(pull, 28.3 * 0.02 + 0.1, 1e-14);
+        let stop = Stop {
+            stiffness_n_m: 2e4,
+            damping_n_s_m: 3.0,
+        };
+        near(stop.push(-1e-4, -0.1).push_n, 2.3, 1e-12);
+        assert_eq!(
+            stop.push(-1e-4, 1.0).push_n,
+            0.0,
+            "it never holds the ends together"
+        );
+        assert_eq!(stop.push(1e-4, -1.0).push_n, 0.0);
+    }
+}

@@ -19,7 +19,7 @@ struct Cell {
     start: f64,
     inverse_width: f64,
     energy: [f64; 3],
-    pull: [[f64; 3]; 6],
+    pull: [[f64; 6]; 3],
 }
 
 /// `I_k(lambda) = integral over the wall of (I1 - 3)^k d sigma`, k = 1, 2, 3, with the outer radius held.
@@ -54,6 +54,7 @@ impl HeldTable {
         }
     }
 
+    #[inline]
     fn cell(&self, lambda: f64) -> Option<&Cell> {
         let place = self.first - STEPS / lambda;
         if lambda > 0.0 && place >= 0.0 {
@@ -64,12 +65,16 @@ impl HeldTable {
     }
 
     /// `sum c_k I_k'` and `sum c_k I_k''`; none outside the table.
+    #[inline]
     pub fn pull_and_stiffness<D: Scalar>(&self, c: &[D; 3], lambda: D) -> Option<(D, D)> {
         let cell = self.cell(lambda.value())?;
         let t = (lambda - cell.start) * cell.inverse_width;
-        let p = cell.pull.map(|basis| mix(c, &basis));
-        let pull = p[0] + t * (p[1] + t * (p[2] + t * (p[3] + t * (p[4] + t * p[5]))));
-        let slope = p[1] + t * (p[2] * 2.0 + t * (p[3] * 3.0 + t * (p[4] * 4.0 + t * p[5] * 5.0)));
+        let p = mix(c, &cell.pull);
+        // Estrin's order: short chains, as this is the innermost law of every time step.
+        let tt = t * t;
+        let pull = (p[0] + t * p[1]) + tt * ((p[2] + t * p[3]) + tt * (p[4] + t * p[5]));
+        let slope =
+            (p[1] + t * p[2] * 2.0) + tt * ((p[3] * 3.0 + t * p[4] * 4.0) + tt * p[5] * 5.0);
         Some((pull, slope * cell.inverse_width))
     }
 
@@ -78,10 +83,11 @@ impl HeldTable {
         let cell = self.cell(lambda.value())?;
         let t = (lambda - cell.start) * cell.inverse_width;
         let mut area = D::constant(0.0);
-        for (power, basis) in cell.pull.iter().enumerate().rev() {
-            area = (area + mix(c, basis) / (power + 1) as f64) * t;
+        for (power, &p) in mix(c, &cell.pull).iter().enumerate().rev() {
+            area = (area + p / (power + 1) as f64) * t;
         }
-        Some(mix(c, &cell.energy) + area / cell.inverse_width)
+        let [start] = mix(c, &cell.energy.map(|energy| [energy]));
+        Some(start + area / cell.inverse_width)
     }
 }
 
@@ -89,14 +95,12 @@ impl Cell {
     fn new(section: &Section, start: f64, end: f64) -> Self {
         let width = end - start;
         let (left, right) = (basis(section, start), basis(section, end));
-        let mut pull = [[0.0; 3]; 6];
-        for k in 0..3 {
-            let ends = [left[k], right[k]]
-                .map(|[_, g, slope, curvature]| [g, slope * width, curvature * width * width]);
-            for (coefficients, value) in pull.iter_mut().zip(quintic(ends)) {
-                coefficients[k] = value;
-            }
-        }
+        let pull = std::array::from_fn(|k| {
+            quintic(
+                [left[k], right[k]]
+                    .map(|[_, g, slope, curvature]| [g, slope * width, curvature * width * width]),
+            )
+        });
         Self {
             start,
             inverse_width: width.recip(),
@@ -111,7 +115,7 @@ impl Cell {
         // Powers of (I1 - 3) vanish faster than the first at lambda = 1, where they carry no load.
         let scale = exact[0][1].abs();
         (0..3).all(|k| {
-            let middle = self.pull.iter().rev().fold(0.0, |sum, c| sum * 0.5 + c[k]);
+            let middle = self.pull[k].iter().rev().fold(0.0, |sum, c| sum * 0.5 + c);
             (middle - exact[k][1]).abs() <= TOLERANCE * (scale + exact[k][1].abs())
         })
     }
@@ -121,8 +125,10 @@ fn stretch(node: i32) -> f64 {
     STEPS / f64::from(node)
 }
 
-fn mix<D: Scalar>(c: &[D; 3], basis: &[f64; 3]) -> D {
-    c[0] * basis[0] + c[1] * basis[1] + c[2] * basis[2]
+/// `sum over k of c_k rows_k`, entry by entry.
+#[inline]
+fn mix<D: Scalar, const N: usize>(c: &[D; 3], rows: &[[f64; N]; 3]) -> [D; N] {
+    std::array::from_fn(|i| c[0] * rows[0][i] + c[1] * rows[1][i] + c[2] * rows[2][i])
 }
 
 /// `I_k` and its first three derivatives, k = 1, 2, 3.

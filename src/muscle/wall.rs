@@ -114,7 +114,7 @@ impl WallGeometry {
 }
 
 impl<D: Scalar> Wall<D> {
-    /// Checks the numbers and tabulates the geometry (under a millisecond; see [`Wall::with_material`]).
+    /// Checks the numbers and tabulates the geometry (about a millisecond; see [`Wall::with_material`]).
     pub fn new(geometry: WallGeometry, material: Material<D>) -> Result<Self, MuscleError> {
         geometry.check()?;
         material.map(|x| x.value()).check()?;

@@ -73,7 +73,7 @@ fn val_neo_hookean_closed_form_in_and_outside_the_table() {
     let wall = Wall::new(STOCK, Material::NeoHookean { c1_pa: c1 }).unwrap();
     let (area, share) = (STOCK.coil_area_m2(), (0.255f64 / 0.525).powi(2));
     for step in 0..1000 {
-        let lambda = 0.82 + 0.006 * f64::from(step);
+        let lambda = 0.8215 + 0.006 * f64::from(step); // never 1, where all is zero
         let e = (lambda - 1.0) * 0.05;
         let (energy, pull) = neo_hookean(lambda, share);
         near(wall.energy_j(e), c1 * area * 0.05 * energy, 2e-10);
@@ -243,34 +243,10 @@ fn refuses_impossible_walls() {
     assert_eq!(error.to_string(), "shear modulus, Pa = -2 must be > 0");
 }
 
-#[test]
-fn coil_and_stop() {
-    near(spring_rate(69.1e9, 0.2e-3, 1.25e-3, 250.0), 28.3, 2e-3);
-    let (_, pull) = first_derivative(
-        |e| {
-            Coil {
-                stiffness_n_m: Dual64::from(28.3),
-                preload_n: Dual64::from(0.1),
-            }
-            .energy_j(e)
-        },
-        0.02,
-    );
-    near(pull, 28.3 * 0.02 + 0.1, 1e-14);
-    let stop = Stop {
-        stiffness_n_m: 2e4,
-        damping_n_s_m: 3.0,
-    };
-    near(stop.push(-1e-4, -0.1).push_n, 2.3, 1e-12);
-    assert_eq!(
-        stop.push(-1e-4, 1.0).push_n,
-        0.0,
-        "it never holds the ends together"
-    );
-    assert_eq!(stop.push(1e-4, -1.0).push_n, 0.0);
-}
-
 proptest! {
+    // Each case tabulates a geometry of its own.
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
     #[test]
     fn table_meets_the_quadrature(lambda in 0.9f64..5.0, bore in 0.15f64..0.9, c2 in 0.0f64..0.5, c3 in 0.0f64..0.1) {
         let section = Section::new(bore * bore);

@@ -1,1 +1,39 @@
-//! (placeholder: filled by the next commits)
+//! Shows a run in Rerun: to an `.rrd` file, to a viewer on this machine, or served on loopback.
+//!
+//! This folder is the only user of the crate `rerun`. A [`Viewer`] is an [`Observer`](crate::system::observe::Observer):
+//! it keeps the frames of a short stretch, then sends each quantity as one column, so that memory
+//! stays flat and ten thousand frames cost milliseconds.
+//!
+//! Entities: `world/links/<link>` (poses and shapes), `world/cables/<cable>`, `world/muscles/<muscle>`,
+//! `world/contacts`, `plots/<quantity>_<unit>/<channel>`, `joints/<n>`, `energy/<name>`, `loops/<n>`,
+//! `headline`, `events`, `legend`. The only timeline is `time`, the simulated time.
+
+mod blueprint;
+mod cables;
+mod channels;
+mod coil;
+mod colour;
+mod contacts;
+mod error;
+mod headline;
+mod layer;
+mod layout;
+mod legend;
+mod links;
+mod loop_trace;
+mod loops;
+mod muscles;
+mod options;
+mod scalars;
+mod shape;
+mod sink;
+mod solids;
+#[cfg(test)]
+mod tests;
+mod ticks;
+mod viewer;
+
+pub use error::ViewError;
+pub use options::{Pace, ViewOptions};
+pub use sink::{DEFAULT_PORT, ViewSink};
+pub use viewer::{ViewSummary, Viewer};

@@ -1,0 +1,80 @@
+//! Words: the bending angle in large type, and what happened.
+
+use rerun::{RecordingStream, TextDocument, TextLog};
+
+use super::channels::{headline, label};
+use super::error::ViewError;
+use super::layer::{Layer, time_column};
+use crate::system::observe::{Frame, SceneGraph};
+
+/// The angle at the cursor; a row only when its text changes.
+pub(super) struct Headline {
+    channel: usize,
+    name: String,
+    last: String,
+}
+
+impl Headline {
+    /// None if the scene has no angle.
+    pub(super) fn new(graph: &SceneGraph) -> Option<Self> {
+        let channel = headline(&graph.channels, graph.input_count)?;
+        Some(Headline {
+            channel,
+            name: label(&graph.channels[channel]),
+            last: String::new(),
+        })
+    }
+
+    fn text(&self, frame: &Frame) -> String {
+        format!("# {:.1}°\n{}", frame.channels[self.channel], self.name)
+    }
+}
+
+impl Layer for Headline {
+    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
+        let (mut times_s, mut texts) = (Vec::new(), Vec::new());
+        for frame in frames {
+            let text = self.text(frame);
+            if text != self.last {
+                self.last.clone_from(&text);
+                times_s.push(frame.time_s);
+                texts.push(text);
+            }
+        }
+        if texts.is_empty() {
+            return Ok(());
+        }
+        let count = texts.len();
+        let documents = TextDocument::update_fields()
+            .with_many_text(texts)
+            .with_many_media_type(std::iter::repeat_n(rerun::MediaType::markdown(), count));
+        let columns = documents.columns_of_unit_batches()?;
+        out.send_columns("headline", [time_column(times_s)], columns)?;
+        Ok(())
+    }
+}
+
+/// Events as log lines.
+pub(super) struct Events;
+
+impl Layer for Events {
+    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
+        let times_s = frames
+            .iter()
+            .flat_map(|frame| std::iter::repeat_n(frame.time_s, frame.events.len()));
+        let texts: Vec<&str> = frames
+            .iter()
+            .flat_map(|frame| frame.events.iter().map(String::as_str))
+            .collect();
+        if texts.is_empty() {
+            return Ok(());
+        }
+        let log = TextLog::update_fields().with_many_text(texts);
+        out.send_columns(
+            "events",
+            [time_column(times_s)],
+            log.columns_of_unit_batches()?,
+        )?;
+        Ok(())
+    }
+}

@@ -1,0 +1,83 @@
+//! Muscles as coils: the coil is logged once; each frame only stretches and colours it.
+
+use rerun::{LineStrip3D, LineStrips3D, Points3D, Radius, RecordingStream, Transform3D};
+
+use super::coil::{coil, z_towards};
+use super::colour::{AXIS, opaque, pressure};
+use super::error::ViewError;
+use super::layer::{Layer, path, times};
+use super::options::ViewOptions;
+use super::solids::quaternion;
+use crate::system::observe::{Frame, MuscleFrame, MuscleGraph, SceneGraph};
+
+pub(super) struct Muscles {
+    muscles: Vec<MuscleGraph>,
+    scale_pa: f64,
+}
+
+impl Muscles {
+    pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
+        Muscles {
+            muscles: graph.muscles.clone(),
+            scale_pa: options.pressure_scale_pa,
+        }
+    }
+}
+
+impl Layer for Muscles {
+    fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
+        self.muscles
+            .iter()
+            .try_for_each(|muscle| log_coil(out, muscle))
+    }
+
+    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
+        for (number, muscle) in self.muscles.iter().enumerate() {
+            let states = frames.iter().map(|frame| frame.muscles[number]);
+            log_stretch(out, muscle, frames, states.clone())?;
+            let colours = states.map(|state| opaque(pressure(state.pressure_pa, self.scale_pa)));
+            let coil = path(["world", "muscles", &muscle.name, "coil"]);
+            let lines = LineStrips3D::update_fields().with_colors(colours);
+            out.send_columns(coil, [times(frames)], lines.columns_of_unit_batches()?)?;
+        }
+        Ok(())
+    }
+}
+
+fn log_coil(out: &RecordingStream, muscle: &MuscleGraph) -> Result<(), ViewError> {
+    let coil = coil(muscle);
+    let strip = LineStrips3D::update_fields()
+        .with_strips([LineStrip3D::from_iter(&coil.points_m)])
+        .with_radii([Radius::new_scene_units(coil.wire_radius_m as f32)]);
+    out.log_static(path(["world", "muscles", &muscle.name, "coil"]), &strip)?;
+    let anchor = Points3D::new([[0.0; 3]])
+        .with_colors([opaque(AXIS)])
+        .with_radii([Radius::new_ui_points(4.0)])
+        .with_labels([muscle.name.as_str()])
+        .with_show_labels(true);
+    out.log_static(path(["world", "muscles", &muscle.name, "anchor"]), &anchor)?;
+    Ok(())
+}
+
+/// A transform's columns replace each other as a whole, so each row carries all three parts.
+fn log_stretch(
+    out: &RecordingStream,
+    muscle: &MuscleGraph,
+    frames: &[Frame],
+    states: impl Iterator<Item = MuscleFrame>,
+) -> Result<(), ViewError> {
+    let length_m = muscle.rest_length_m.max(1e-6);
+    let stretches = states.map(|state| [1.0, 1.0, (1.0 + state.elongation_m / length_m) as f32]);
+    let turned = quaternion(z_towards(muscle.direction));
+    let transforms = Transform3D::update_fields()
+        .with_many_translation(frames.iter().map(|_| muscle.anchor_m))
+        .with_many_quaternion(frames.iter().map(|_| turned))
+        .with_many_scale(stretches);
+    let entity = path(["world", "muscles", &muscle.name]);
+    out.send_columns(
+        entity,
+        [times(frames)],
+        transforms.columns_of_unit_batches()?,
+    )?;
+    Ok(())
+}
