@@ -69,9 +69,32 @@ impl Scene {
         Ok(Self { path: path.to_owned(), file, programs })
     }
 
+    /// Every number, word and list of the scene by the key that `--set` takes, defaults included.
+    pub fn keys(&self) -> Vec<(String, String)> {
+        let mut keys = Vec::new();
+        if let Ok(value) = toml::Value::try_from(&self.file) {
+            list_keys("", &value, &mut keys);
+        }
+        keys
+    }
+
     /// Folder that relative paths of the scene start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new("."))
+    }
+}
+
+fn list_keys(prefix: &str, value: &toml::Value, keys: &mut Vec<(String, String)>) {
+    let join = |segment: &str| if prefix.is_empty() { segment.to_owned() } else { format!("{prefix}.{segment}") };
+    match value {
+        toml::Value::Table(table) => table.iter().for_each(|(k, v)| list_keys(&join(k), v, keys)),
+        toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
+            for (i, item) in list.iter().enumerate() {
+                let name = item.get("name").and_then(toml::Value::as_str).map_or_else(|| i.to_string(), str::to_owned);
+                list_keys(&join(&name), item, keys);
+            }
+        }
+        other => keys.push((prefix.to_owned(), other.to_string())),
     }
 }
 

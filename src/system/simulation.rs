@@ -131,6 +131,11 @@ impl Simulation {
         &self.scene
     }
 
+    /// What the mechanism's files hold that has no effect here, one line each.
+    pub fn warnings(&self) -> &[String] {
+        self.mechanism.as_ref().map_or(&[], Mechanism::warnings)
+    }
+
     /// Present time, s.
     pub fn time_s(&self) -> f64 {
         self.time_s

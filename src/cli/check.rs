@@ -1,0 +1,47 @@
+//! `smam check`.
+
+use std::process::ExitCode;
+
+use clap::Args;
+use smam::scene::{Override, Scene};
+use smam::system::Simulation;
+
+use super::CliError;
+
+/// Arguments of `smam check`.
+#[derive(Args)]
+pub struct CheckArguments {
+    /// Path of a scene file, or a name that `smam scenes` lists
+    scene: String,
+    /// Change a key of the scene before checking
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// List every key that --set can change, with its value
+    #[arg(long)]
+    keys: bool,
+}
+
+/// Reads, validates and builds the scene without running it.
+pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
+    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let scene = Scene::load(&arguments.scene, &overrides)?;
+    if arguments.keys {
+        for (key, value) in scene.keys() {
+            println!("{key} = {value}");
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let path = scene.path.display().to_string();
+    let simulation = Simulation::new(scene)?;
+    simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
+    let file = &simulation.scene().file;
+    println!(
+        "{path}: right; {} muscles, {} cables, {} inputs, {} outputs, {} checks",
+        file.muscle.len(),
+        file.cable.len(),
+        file.input.len(),
+        file.output.len(),
+        file.expect.len()
+    );
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,69 @@
+//! Commands of `smam`. Everything they do is library code; here are only words, files and progress.
+
+mod check;
+mod compare;
+mod error;
+mod interrupt;
+mod junit;
+mod model;
+mod observers;
+mod run;
+mod scenes;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use error::CliError;
+
+/// Hydraulic soft microtubule artificial muscles in rigid-body scenes: simulate them, and compare with recordings.
+#[derive(Parser)]
+#[command(name = "smam", version, arg_required_else_help = false, after_help = EXAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+const EXAMPLES: &str = "Examples:
+  smam run bending_catheter                  a catheter bends and its forceps grip; writes out/
+  smam run muscle_bench --check              the paper's figures of one muscle, checked
+  smam compare path/to/recordings            your recording beside its simulation
+  smam run muscle_bench --set muscles.friction.m0_n=0.2 --output mine.csv";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene and record it
+    Run(run::RunArguments),
+    /// Simulate what was recorded and show measured against simulated
+    Compare(compare::CompareArguments),
+    /// Read a scene and say whether it is right
+    Check(check::CheckArguments),
+    /// List the scenes that come with the program
+    Scenes,
+    /// Generate a model file
+    Model(model::ModelArguments),
+}
+
+/// Parses the arguments and runs the command.
+pub fn run() -> Result<ExitCode, CliError> {
+    match Arguments::parse().command {
+        None => {
+            println!("{}", first_words());
+            Ok(ExitCode::SUCCESS)
+        }
+        Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Scenes) => scenes::scenes(),
+        Some(Command::Model(arguments)) => model::model(&arguments),
+    }
+}
+
+fn first_words() -> String {
+    format!(
+        "smam simulates hydraulic soft microtubule artificial muscles and what they move.\n\n\
+         Type first:\n  smam run bending_catheter     a catheter bends and its forceps grip\n  \
+         smam scenes                   what else there is\n  smam compare DIR              your own recording beside its simulation\n  \
+         smam --help                   everything\n\n{EXAMPLES}"
+    )
+}

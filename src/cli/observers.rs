@@ -1,0 +1,150 @@
+//! Who watches a run: the CSV file, the recorder for checks, the progress bar, the viewer.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use smam::recording::{Channel, CsvWriter, Recording};
+use smam::system::observe::{Frame, Observer, SceneGraph};
+
+use super::CliError;
+
+/// All observers of one run; those not asked for are absent.
+#[derive(Default)]
+pub struct Observers {
+    pub csv: Option<CsvFile>,
+    pub recorder: Option<Recorder>,
+    pub progress: Option<Progress>,
+    #[cfg(feature = "viz")]
+    pub viewers: Vec<smam::view::Viewer>,
+}
+
+impl Observer for Observers {
+    type Error = CliError;
+
+    fn begin(&mut self, graph: &SceneGraph) -> Result<(), CliError> {
+        if let Some(csv) = &mut self.csv {
+            csv.begin(graph)?;
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.begin(graph);
+        }
+        #[cfg(feature = "viz")]
+        for viewer in &mut self.viewers {
+            viewer.begin(graph)?;
+        }
+        Ok(())
+    }
+
+    fn frame(&mut self, frame: &Frame) -> Result<(), CliError> {
+        if let Some(csv) = &mut self.csv {
+            csv.frame(frame)?;
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.frame(frame);
+        }
+        if let Some(progress) = &mut self.progress {
+            progress.frame(frame.time_s);
+        }
+        #[cfg(feature = "viz")]
+        for viewer in &mut self.viewers {
+            viewer.frame(frame)?;
+        }
+        Ok(())
+    }
+}
+
+/// Streams frames into a CSV file, of all channels or of some.
+pub struct CsvFile {
+    path: std::path::PathBuf,
+    writer: Option<CsvWriter>,
+}
+
+impl CsvFile {
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.to_owned(), writer: None }
+    }
+
+    fn begin(&mut self, graph: &SceneGraph) -> Result<(), CliError> {
+        if let Some(folder) = self.path.parent().filter(|p| !p.as_os_str().is_empty()) {
+            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { file: folder.to_owned(), source })?;
+        }
+        let columns: Vec<&str> = graph.channels.iter().map(String::as_str).collect();
+        self.writer = Some(CsvWriter::create(&self.path, &columns).map_err(failed_write)?);
+        Ok(())
+    }
+
+    fn frame(&mut self, frame: &Frame) -> Result<(), CliError> {
+        match &mut self.writer {
+            Some(writer) => writer.row(frame.time_s, &frame.channels).map_err(failed_write),
+            None => Ok(()),
+        }
+    }
+
+    /// Puts the file in its place, complete or interrupted.
+    pub fn finish(self) -> Result<(), CliError> {
+        self.writer.map_or(Ok(()), |w| w.finish().map_err(failed_write))
+    }
+}
+
+/// A full disk or a closed folder is a failure, not wrong usage.
+fn failed_write(error: smam::recording::RecordingError) -> CliError {
+    CliError::Failed(error.to_string())
+}
+
+/// Keeps the run in memory for the checks.
+#[derive(Default)]
+pub struct Recorder {
+    names: Vec<String>,
+    time_s: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Recorder {
+    fn begin(&mut self, graph: &SceneGraph) {
+        self.names.clone_from(&graph.channels);
+        self.columns = vec![Vec::new(); self.names.len()];
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        self.time_s.push(frame.time_s);
+        self.columns.iter_mut().zip(&frame.channels).for_each(|(c, v)| c.push(*v));
+    }
+
+    /// The run so far.
+    pub fn finish(self) -> Result<Recording, CliError> {
+        let channels = self.names.into_iter().zip(self.columns).map(|(n, v)| Channel::new(n, v));
+        Ok(Recording::new(self.time_s, channels.collect())?)
+    }
+}
+
+/// A progress bar on stderr, shown only when the run takes over a second and stderr is a terminal.
+pub struct Progress {
+    bar: ProgressBar,
+    begun: Instant,
+    shown: bool,
+}
+
+impl Progress {
+    pub fn new(end_s: f64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some((end_s * 1e3) as u64), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % of {msg}, {eta} left") {
+            bar.set_style(style);
+        }
+        bar.set_message(format!("{end_s} s"));
+        Self { bar, begun: Instant::now(), shown: false }
+    }
+
+    fn frame(&mut self, time_s: f64) {
+        if !self.shown && self.begun.elapsed() > Duration::from_secs(1) && std::io::stderr().is_terminal() {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+            self.shown = true;
+        }
+        self.bar.set_position((time_s * 1e3) as u64);
+    }
+
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,251 @@
+//! `smam run`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Args;
+use smam::recording::{Recording, read_csv, survey};
+use smam::scene::{Override, Scene};
+use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
+
+use super::interrupt::{interrupted, stop_flag};
+use super::observers::{CsvFile, Observers, Progress, Recorder};
+use super::{CliError, junit};
+
+/// Arguments of `smam run`.
+#[derive(Args)]
+pub struct RunArguments {
+    /// Path of a scene file, or a name that `smam scenes` lists
+    scene: String,
+    /// Drive the scene's inputs from this recording, at its sample times
+    #[arg(long, value_name = "CSV")]
+    input: Option<PathBuf>,
+    /// Write the recording here instead of out/NAME.csv
+    #[arg(long, value_name = "CSV")]
+    output: Option<PathBuf>,
+    /// Write the Rerun stream here instead of out/NAME.rrd
+    #[arg(long, value_name = "FILE")]
+    rrd: Option<PathBuf>,
+    /// Open the Rerun viewer and watch the run
+    #[arg(long)]
+    view: bool,
+    /// Serve the Rerun stream on the loopback interface and wait for viewers
+    #[arg(long)]
+    serve: bool,
+    /// Change a key of the scene; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Length of the run, s, instead of the scene's
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+    /// Print where the plunger's work went
+    #[arg(long)]
+    energy: bool,
+    /// Print each [[expect]] of the scene with its figure; exit 1 when one fails
+    #[arg(long)]
+    check: bool,
+    /// Write the results of --check for a CI system
+    #[arg(long, value_name = "XML", requires = "check")]
+    junit: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
+    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let scene = Scene::load(&arguments.scene, &overrides)?;
+    let name = scene.file.name.clone();
+    let mut simulation = Simulation::new(scene)?;
+    simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
+    let schedule = schedule(arguments, &mut simulation)?;
+    if arguments.energy {
+        simulation.keep_energy_book();
+    }
+    let end_s = schedule.0.last().copied().unwrap_or(0.0);
+    let mut observers = observers(arguments, &name, end_s)?;
+    let begun = Instant::now();
+    let outcome = run_simulation(&mut simulation, &schedule, stop_flag(), &mut observers);
+    let wall_s = begun.elapsed().as_secs_f64();
+    let reached_s = simulation.time_s();
+    if let Some(progress) = observers.progress.take() {
+        progress.finish();
+    }
+    let recording = finish(&mut observers)?;
+    let mut warnings = outcome?;
+    eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.0.first().unwrap_or(&0.0));
+    warnings.summary(reached_s).iter().for_each(|w| eprintln!("warning: {w}"));
+    say_what_to_open(arguments, &name);
+    if let Some(book) = simulation.energy_book() {
+        print_energy(book);
+    }
+    hold_server(arguments);
+    if interrupted() {
+        eprintln!("interrupted at {reached_s:.3} s: what was computed is written");
+        return Ok(ExitCode::from(1));
+    }
+    match recording {
+        Some(recording) => check(arguments, &simulation, &recording),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Schedule, CliError> {
+    let spec = simulation.scene().file.simulation;
+    let limit = arguments.duration;
+    if let Some(d) = limit.filter(|d| !(*d > 0.0 && d.is_finite())) {
+        return Err(CliError::Usage(format!("--duration {d}: must be > 0\n  remedy: give the length of the run in seconds")));
+    }
+    let Some(path) = &arguments.input else {
+        return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
+    };
+    let recording = read_csv(path)?;
+    survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
+    drive(simulation, &recording, path)?;
+    let first = recording.time_s().first().copied().unwrap_or(0.0);
+    let within = recording.time_s().iter().copied().filter(|t| limit.is_none_or(|l| t - first <= l));
+    Ok(Schedule(within.collect()))
+}
+
+/// Drives every input of the scene from the recording; columns that are no input are named in a note.
+fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Result<(), CliError> {
+    let inputs: Vec<String> = simulation.scene().file.input.iter().map(|i| i.channel.clone()).collect();
+    for input in &inputs {
+        if recording.find(input).is_none() {
+            return Err(CliError::Usage(format!(
+                "{}: the input column \"{input}\" is missing; found: {}\n  remedy: add the column; the scene's inputs are {}",
+                path.display(),
+                recording.columns().join(", "),
+                inputs.join(", ")
+            )));
+        }
+        simulation.set_input(input, InputSource::Recorded(recording.piecewise_si(input)?));
+    }
+    let others: Vec<&str> = recording.columns().into_iter().filter(|c| !inputs.iter().any(|i| i == c)).collect();
+    if !others.is_empty() {
+        eprintln!("note: {}: no input of the scene, left alone: {}", path.display(), others.join(", "));
+    }
+    Ok(())
+}
+
+/// Neither file was named: both go to `out/`.
+fn writes_defaults(arguments: &RunArguments) -> bool {
+    arguments.output.is_none() && arguments.rrd.is_none() && !arguments.view && !arguments.serve && !arguments.check
+}
+
+fn csv_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
+    let default = || writes_defaults(arguments).then(|| Path::new("out").join(format!("{name}.csv")));
+    arguments.output.clone().or_else(default)
+}
+
+fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
+    let default = || (cfg!(feature = "viz") && writes_defaults(arguments)).then(|| Path::new("out").join(format!("{name}.rrd")));
+    arguments.rrd.clone().or_else(default)
+}
+
+fn observers(arguments: &RunArguments, name: &str, end_s: f64) -> Result<Observers, CliError> {
+    let mut observers = Observers {
+        csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
+        recorder: arguments.check.then(Recorder::default),
+        progress: Some(Progress::new(end_s)),
+        ..Observers::default()
+    };
+    add_viewers(arguments, name, &mut observers)?;
+    Ok(observers)
+}
+
+#[cfg(feature = "viz")]
+fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) -> Result<(), CliError> {
+    use smam::view::{ViewOptions, ViewSink, Viewer};
+    let mut sinks = Vec::new();
+    if let Some(path) = rrd_path(arguments, name) {
+        if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
+            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { file: folder.to_owned(), source })?;
+        }
+        sinks.push(ViewSink::File(path));
+    }
+    if arguments.view {
+        sinks.push(ViewSink::spawn());
+    }
+    if arguments.serve {
+        sinks.push(ViewSink::serve());
+    }
+    for sink in sinks {
+        let viewer = Viewer::open(&sink, ViewOptions::for_sink(&sink))?;
+        eprintln!("{}", viewer.announcement());
+        observers.viewers.push(viewer);
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "viz"))]
+fn add_viewers(arguments: &RunArguments, name: &str, _: &mut Observers) -> Result<(), CliError> {
+    if arguments.view || arguments.serve || rrd_path(arguments, name).is_some() {
+        return Err(CliError::Usage(
+            "--rrd, --view and --serve need the viewer, which this build leaves out\n  remedy: build with the default features".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn finish(observers: &mut Observers) -> Result<Option<Recording>, CliError> {
+    if let Some(csv) = observers.csv.take() {
+        csv.finish()?;
+    }
+    #[cfg(feature = "viz")]
+    for viewer in &mut observers.viewers {
+        viewer.finish()?;
+    }
+    observers.recorder.take().map(Recorder::finish).transpose()
+}
+
+fn say_what_to_open(arguments: &RunArguments, name: &str) {
+    if let Some(path) = csv_path(arguments, name) {
+        eprintln!("recording: {}", path.display());
+    }
+    if let Some(path) = rrd_path(arguments, name) {
+        eprintln!("to look at it: rerun {}    (the viewer: pip install rerun-sdk==0.36.3)", path.display());
+    }
+}
+
+fn print_energy(book: &smam::system::EnergyBook) {
+    println!("energy book, mJ:");
+    for (name, joule) in book.lines() {
+        println!("  {name:<28} {:>14.6}", joule * 1e3);
+    }
+    let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
+    println!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
+}
+
+/// A server goes on until it is interrupted.
+fn hold_server(arguments: &RunArguments) {
+    if arguments.serve {
+        eprintln!("serving until Ctrl-C");
+        while !interrupted() {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+    }
+}
+
+fn check(arguments: &RunArguments, simulation: &Simulation, recording: &Recording) -> Result<ExitCode, CliError> {
+    let scene = simulation.scene();
+    let verdicts = judge(scene, recording)?;
+    if verdicts.is_empty() {
+        println!("{}: no [[expect]] in this scene", scene.file.name);
+    }
+    for verdict in &verdicts {
+        println!("{}", line(verdict));
+    }
+    if let Some(path) = &arguments.junit {
+        let text = junit::report(&scene.file.name, &verdicts);
+        std::fs::write(path, text).map_err(|source| CliError::Write { file: path.clone(), source })?;
+    }
+    let failed = verdicts.iter().filter(|v| !v.passed).count();
+    println!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+fn line(v: &Verdict) -> String {
+    let source = if v.source.is_empty() { String::new() } else { format!("   ({})", v.source) };
+    let mark = if v.passed { "ok  " } else { "FAIL" };
+    format!("{mark} {:<34} {:>12.5} {:<4} expected {}{source}", v.name, v.value, v.unit, v.bounds)
+}
