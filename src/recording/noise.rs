@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn uneven_sampling_steps_missing_and_gaps_do_not_mislead() {
-        let jitter = |i: u32| if i % 3 == 0 { 0.004 } else { 0.0 };
+        let jitter = |i: u32| if i.is_multiple_of(3) { 0.004 } else { 0.0 };
         let gap = |i: u32| if i > 2000 { 7.0 } else { 0.0 };
         let time_s: Vec<f64> = (0..4000)
             .map(|i| f64::from(i) * 0.01 + jitter(i) + gap(i))

@@ -28,7 +28,14 @@ impl Axis {
         }
         let room = margin * (high - low);
         let (low, high) = (low - room, high + room);
-        let step = round_step((high - low) / tick_count.max(1) as f64);
+        let mut step = round_step((high - low) / tick_count.max(1) as f64);
+        // Rounding up can leave a single tick, from which no scale can be read.
+        for _ in 0..3 {
+            if (high / step).floor() - (low / step).ceil() < 2.0 {
+                // Below 0.4 by more than rounding errors: the next smaller of the round steps.
+                step = round_step(0.39 * step);
+            }
+        }
         Self { low, high, step }
     }
 
@@ -51,7 +58,7 @@ impl Axis {
 
     fn text(&self, value: f64) -> String {
         let largest = self.low.abs().max(self.high.abs());
-        if largest >= 1e5 || largest < 1e-3 {
+        if !(1e-3..1e5).contains(&largest) {
             let digits = (largest.log10().floor() - self.step.log10().floor()).max(0.0) as usize;
             return if value == 0.0 {
                 "0".to_owned()
@@ -96,6 +103,7 @@ mod tests {
     fn ticks_are_round_numbers() {
         assert_eq!(texts(0.0, 42.0, 5), ["0", "10", "20", "30", "40"]);
         assert_eq!(texts(-0.07, 0.06, 4), ["-0.05", "0.00", "0.05"]);
+        assert_eq!(texts(-0.3, 0.19, 2), ["-0.2", "-0.1", "0.0", "0.1"]);
         assert_eq!(texts(0.0, 2.4e6, 3), ["0", "1e6", "2e6"]);
         assert_eq!(
             texts(1830.0, 1835.0, 5),

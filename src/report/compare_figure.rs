@@ -2,7 +2,7 @@
 
 use super::axis::three_digits;
 use super::panel::{Band, Panel, Series, draw_legend};
-use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to};
+use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION};
 use crate::recording::{gap_limit_s, parse_column};
 
 /// Runs beside each other; more wrap to the next row.
@@ -102,14 +102,9 @@ fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &Com
 
 fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
     let name = parse_column(&channel.column).ok();
-    let name_room = CELL_WIDTH - 180.0;
     Panel {
         title: vec![
-            cut_to(
-                &format!("{}: {}", run.name, channel.column),
-                12.0,
-                name_room + 100.0,
-            ),
+            format!("{}: {}", run.name, channel.column),
             accuracy(channel),
         ],
         y_label: name.map_or(channel.column.clone(), |n| n.axis_label()),

@@ -42,7 +42,7 @@ pub struct Band {
 /// A plot with titles, axes, lines and bands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// Lines of title, the first one bold; may be empty.
+    /// Lines of title, the first one larger; may be empty.
     pub title: Vec<String>,
     /// Text below the x axis; empty: neither text nor room for it.
     pub x_label: String,
