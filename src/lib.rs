@@ -5,6 +5,7 @@
 
 pub mod hydraulics;
 pub mod hysteresis;
+pub mod identify;
 pub mod mechanism;
 pub mod muscle;
 pub mod recording;

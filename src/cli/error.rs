@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use smam::identify::IdentifyError;
 use smam::mechanism::MechanismError;
 use smam::recording::RecordingError;
 use smam::scene::SceneError;
@@ -17,6 +18,8 @@ pub enum CliError {
     System(#[from] SystemError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]
@@ -34,7 +37,8 @@ impl CliError {
     /// 1 for what failed, 2 for what was asked wrongly.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::System(SystemError::Diverged { .. }) | Self::Write { .. } | Self::Failed(_) => ExitCode::from(1),
+            Self::System(SystemError::Diverged { .. })
+            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. })) | Self::Write { .. } | Self::Failed(_) => ExitCode::from(1),
             #[cfg(feature = "viz")]
             Self::View(_) => ExitCode::from(1),
             _ => ExitCode::from(2),

@@ -155,7 +155,7 @@ fn observers(arguments: &RunArguments, name: &str, end_s: f64) -> Result<Observe
 
 #[cfg(feature = "viz")]
 fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) -> Result<(), CliError> {
-    use smam::view::{ViewOptions, ViewSink, Viewer};
+    use smam::view::{DEFAULT_PORT, ViewOptions, ViewSink, Viewer};
     let mut sinks = Vec::new();
     if let Some(path) = rrd_path(arguments, name) {
         if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
@@ -164,13 +164,13 @@ fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) 
         sinks.push(ViewSink::File(path));
     }
     if arguments.view {
-        sinks.push(ViewSink::spawn());
+        sinks.push(ViewSink::Window);
     }
     if arguments.serve {
-        sinks.push(ViewSink::serve());
+        sinks.push(ViewSink::Serve { port: DEFAULT_PORT });
     }
     for sink in sinks {
-        let viewer = Viewer::open(&sink, ViewOptions::for_sink(&sink))?;
+        let viewer = Viewer::open(&sink, ViewOptions::default())?;
         eprintln!("{}", viewer.announcement());
         observers.viewers.push(viewer);
     }

@@ -1,0 +1,151 @@
+//! Bounded least squares.
+//!
+//! The crates looked at (`levenberg-marquardt`, `argmin`) have no bounds on the parameters; with them comes most of
+//! the rest of the method, so it stands here on nalgebra's Cholesky.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Range of one parameter, in its own unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub min: f64,
+    pub max: f64,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LmOptions {
+    pub max_iterations: usize,
+    /// Stop when the cost falls by less than this share.
+    pub relative_decrease: f64,
+    /// Step of the forward differences, as a share of the range.
+    pub difference: f64,
+}
+
+impl Default for LmOptions {
+    fn default() -> Self {
+        Self { max_iterations: 30, relative_decrease: 1e-6, difference: 1e-5 }
+    }
+}
+
+/// Where the search ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LmResult {
+    pub parameters: Vec<f64>,
+    /// Sum of squares there.
+    pub cost: f64,
+    pub evaluations: usize,
+}
+
+/// Minimises `sum r_i(x)²` within bounds (Levenberg-Marquardt with projection, forward differences).
+///
+/// `residuals` returns `None` where the model cannot be evaluated; such points are stepped back from. Returns `None`
+/// when the start itself cannot be evaluated.
+pub fn minimise(
+    residuals: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+    start: &[f64],
+    bounds: &[Bounds],
+    options: LmOptions,
+) -> Option<LmResult> {
+    let mut search = Search { residuals, bounds, evaluations: 0 };
+    let mut u = search.to_unit(start);
+    let mut r = search.evaluate(&u)?;
+    let mut damping = 1e-3;
+    for _ in 0..options.max_iterations {
+        let jacobian = search.jacobian(&u, &r, options.difference);
+        let Some((next_u, next_r, next_damping)) = search.step(&u, &r, &jacobian, damping) else { break };
+        let decrease = 1.0 - next_r.norm_squared() / r.norm_squared();
+        (u, r, damping) = (next_u, next_r, next_damping);
+        if decrease < options.relative_decrease {
+            break;
+        }
+    }
+    Some(LmResult { parameters: search.from_unit(&u), cost: r.norm_squared(), evaluations: search.evaluations })
+}
+
+/// Parameters are searched as shares of their ranges, so that their units do not matter.
+struct Search<'a> {
+    residuals: &'a dyn Fn(&[f64]) -> Option<DVector<f64>>,
+    bounds: &'a [Bounds],
+    evaluations: usize,
+}
+
+impl Search<'_> {
+    fn to_unit(&self, x: &[f64]) -> DVector<f64> {
+        let shares = x.iter().zip(self.bounds).map(|(x, b)| ((x - b.min) / (b.max - b.min)).clamp(0.0, 1.0));
+        DVector::from_iterator(x.len(), shares)
+    }
+
+    fn from_unit(&self, u: &DVector<f64>) -> Vec<f64> {
+        u.iter().zip(self.bounds).map(|(u, b)| b.min + u * (b.max - b.min)).collect()
+    }
+
+    fn evaluate(&mut self, u: &DVector<f64>) -> Option<DVector<f64>> {
+        self.evaluations += 1;
+        (self.residuals)(&self.from_unit(u)).filter(|r| r.iter().all(|x| x.is_finite()))
+    }
+
+    fn jacobian(&mut self, u: &DVector<f64>, r: &DVector<f64>, difference: f64) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(r.len(), u.len());
+        for j in 0..u.len() {
+            // Away from the nearer bound.
+            let h = if u[j] < 0.5 { difference } else { -difference };
+            let mut moved = u.clone();
+            moved[j] += h;
+            if let Some(there) = self.evaluate(&moved) {
+                jacobian.set_column(j, &((there - r) / h));
+            }
+        }
+        jacobian
+    }
+
+    /// A step that lowers the cost, or `None` when damping no longer finds one.
+    fn step(
+        &mut self,
+        u: &DVector<f64>,
+        r: &DVector<f64>,
+        jacobian: &DMatrix<f64>,
+        mut damping: f64,
+    ) -> Option<(DVector<f64>, DVector<f64>, f64)> {
+        let normal = jacobian.tr_mul(jacobian);
+        let gradient = jacobian.tr_mul(r);
+        let scale = normal.diagonal().max().max(f64::MIN_POSITIVE);
+        for _ in 0..12 {
+            let mut damped = normal.clone();
+            for j in 0..u.len() {
+                damped[(j, j)] += damping * (normal[(j, j)] + 1e-9 * scale);
+            }
+            if let Some(cholesky) = damped.cholesky() {
+                let next = (u - cholesky.solve(&gradient)).map(|x| x.clamp(0.0, 1.0));
+                if let Some(there) = self.evaluate(&next).filter(|t| t.norm_squared() < r.norm_squared()) {
+                    return Some((next, there, (damping / 5.0).max(1e-12)));
+                }
+            }
+            damping = (damping * 4.0).max(1e-9);
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_an_exponential_within_bounds() {
+        let data: Vec<f64> = (0..20).map(|i| 3.0 * (-0.4 * f64::from(i)).exp()).collect();
+        let residuals = |x: &[f64]| {
+            Some(DVector::from_iterator(20, data.iter().enumerate().map(|(i, d)| x[0] * (-x[1] * i as f64).exp() - d)))
+        };
+        let bounds = [Bounds { min: 0.0, max: 10.0 }, Bounds { min: 0.0, max: 2.0 }];
+        let result = minimise(&residuals, &[1.0, 1.0], &bounds, LmOptions::default()).expect("start is valid");
+        assert!((result.parameters[0] - 3.0).abs() < 1e-5 && (result.parameters[1] - 0.4).abs() < 1e-5, "{result:?}");
+    }
+
+    #[test]
+    fn a_minimum_outside_ends_on_the_bound() {
+        let residuals = |x: &[f64]| Some(DVector::from_vec(vec![x[0] - 5.0]));
+        let result = minimise(&residuals, &[0.5], &[Bounds { min: 0.0, max: 1.0 }], LmOptions::default()).expect("valid");
+        assert_eq!(result.parameters, [1.0]);
+    }
+}

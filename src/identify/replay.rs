@@ -1,0 +1,93 @@
+//! Simulating what was recorded.
+
+use crate::recording::{Recording, RecordingError, RecordingSet, Role, Run, parse_column};
+use crate::scene::{Override, Scene, SceneError};
+use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
+
+/// Why recordings cannot be replayed.
+#[derive(Debug, thiserror::Error)]
+pub enum IdentifyError {
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    System(#[from] SystemError),
+    #[error("{file}: {message}\n  remedy: {remedy}")]
+    Mismatch { file: String, message: String, remedy: String },
+}
+
+/// A recorded run with its data.
+#[derive(Clone, Debug)]
+pub struct RecordedRun {
+    pub run: Run,
+    pub recording: Recording,
+}
+
+/// Loads the runs of a set; the notes go to `note`.
+pub fn load_runs(set: &RecordingSet, runs: &[Run], note: &mut dyn FnMut(String)) -> Result<Vec<RecordedRun>, IdentifyError> {
+    let mut loaded = Vec::new();
+    for run in runs {
+        let data = set.load_run(run)?;
+        let notes = data.notes.into_iter().chain(crate::recording::survey(&data.recording).notes());
+        notes.for_each(|n| note(format!("{}: {n}", run.file)));
+        loaded.push(RecordedRun { run: run.clone(), recording: data.recording });
+    }
+    Ok(loaded)
+}
+
+/// The scene keys that a run's known conditions set, in the keys' units.
+pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, IdentifyError> {
+    let mut overrides = Vec::new();
+    for (name, value) in &run.conditions {
+        let Some(spec) = scene.file.condition.iter().find(|c| c.name == *name) else {
+            let known: Vec<&str> = scene.file.condition.iter().map(|c| c.name.as_str()).collect();
+            return Err(IdentifyError::Mismatch {
+                file: run.file.clone(),
+                message: format!("the condition `{name}` is unknown to the scene {}", scene.file.name),
+                remedy: format!("the scene knows: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") }),
+            });
+        };
+        let si = parse_column(name)?.unit.to_si(*value);
+        overrides.extend(spec.keys.iter().map(|key| Override::number(key, si)));
+    }
+    Ok(overrides)
+}
+
+/// Simulates a run at its sample times with its recorded inputs and known conditions.
+///
+/// `every` > 1 takes only each so-many-th sample (for fits); the times of the result are those taken.
+pub fn replay(scene: &str, overrides: &[Override], run: &RecordedRun, every: usize) -> Result<Recording, IdentifyError> {
+    let plain = Scene::load(scene, overrides)?;
+    let conditions = condition_overrides(&plain, &run.run)?;
+    let scene = match conditions.is_empty() {
+        true => plain,
+        false => Scene::load(scene, &[overrides, &conditions].concat())?,
+    };
+    let mut simulation = Simulation::new(scene)?;
+    let inputs: Vec<String> = simulation.scene().file.input.iter().map(|i| i.channel.clone()).collect();
+    for input in &inputs {
+        simulation.set_input(input, InputSource::Recorded(run.recording.piecewise_si(input)?));
+    }
+    let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
+    Ok(record(&mut simulation, &Schedule(times))?)
+}
+
+/// Checks that every declared output is a channel of the scene and every input of the scene was recorded.
+pub(super) fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
+    let outputs: Vec<&str> = scene.file.output.iter().map(|o| o.channel.as_str()).collect();
+    let refuse = |message: String, remedy: String| IdentifyError::Mismatch { file: "recordings.toml".to_owned(), message, remedy };
+    if let Some(odd) = set.of_role(Role::Output).find(|c| !outputs.contains(&c.column.as_str())) {
+        return Err(refuse(
+            format!("the output `{}` is no channel of the scene {}", odd.column, scene.file.name),
+            format!("the scene's outputs are {}", outputs.join(", ")),
+        ));
+    }
+    match scene.file.input.iter().find(|i| !set.of_role(Role::Input).any(|c| c.column == i.channel)) {
+        Some(missing) => Err(refuse(
+            format!("the scene {} needs the input `{}`, which is not declared", scene.file.name, missing.channel),
+            "declare it as a [[channel]] with role = \"input\"".to_owned(),
+        )),
+        None => Ok(()),
+    }
+}
