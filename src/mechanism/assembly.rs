@@ -109,7 +109,10 @@ impl Source<'_> {
         }
         let own = self.checked_inertial(link_model)?;
         if let Some(fault) = own.fault() {
-            warnings.push(format!("link \"{}\": {fault}; no real body has that", link_model.name));
+            warnings.push(format!(
+                "link \"{}\": {fault}; no real body has that",
+                link_model.name
+            ));
         }
         let (body, pose) = made.placement[link];
         let own = own.seen_from(&pose);
@@ -127,11 +130,20 @@ impl Source<'_> {
     fn checked_inertial(&self, link: &Link) -> Result<Inertial, MechanismError> {
         let inertial = inertial_from_urdf(link);
         let error = |problem: String, remedy: &str| {
-            Err(MechanismError::urdf(self.file, "link", &link.name, problem, remedy))
+            Err(MechanismError::urdf(
+                self.file, "link", &link.name, problem, remedy,
+            ))
         };
-        let finite = inertial.inertia_kg_m2.iter().chain(inertial.com_m.iter()).all(|v| v.is_finite());
+        let finite = inertial
+            .inertia_kg_m2
+            .iter()
+            .chain(inertial.com_m.iter())
+            .all(|v| v.is_finite());
         if !finite {
-            return error("<inertial> holds a value that is not finite".into(), "correct it");
+            return error(
+                "<inertial> holds a value that is not finite".into(),
+                "correct it",
+            );
         }
         if !(inertial.mass_kg > 0.0 && inertial.mass_kg.is_finite()) {
             let remedy = "give the real mass, or leave <inertial> out of a massless frame";
@@ -150,7 +162,10 @@ impl Source<'_> {
             return error("the URDF has no such link".into(), known);
         };
         if !(mass_kg > 0.0 && mass_kg.is_finite()) {
-            return error(format!("mass_kg = {mass_kg} must be > 0"), "correct it".into());
+            return error(
+                format!("mass_kg = {mass_kg} must be > 0"),
+                "correct it".into(),
+            );
         }
         let (body, pose) = made.placement[link];
         // A link without <inertial> has its default, the origin.
@@ -166,14 +181,22 @@ impl Source<'_> {
     }
 
     fn check_moving_masses(&self, made: &Assembly) -> Result<(), MechanismError> {
-        let massless = made.bodies.iter().find(|b| b.inertial.mass_kg <= 0.0 && b.joint.is_some());
+        let massless = made
+            .bodies
+            .iter()
+            .find(|b| b.inertial.mass_kg <= 0.0 && b.joint.is_some());
         let Some(joint) = massless.and_then(|body| body.joint) else {
             return Ok(());
         };
-        let problem = format!("moves with joint \"{}\" but has no <inertial>", self.joints[joint].name);
+        let problem = format!(
+            "moves with joint \"{}\" but has no <inertial>",
+            self.joints[joint].name
+        );
         let remedy = "give it mass and inertia (or fix it to a link that has them)";
         let link = &self.robot.joints[joint].child.link;
-        Err(MechanismError::urdf(self.file, "link", link, problem, remedy))
+        Err(MechanismError::urdf(
+            self.file, "link", link, problem, remedy,
+        ))
     }
 }
 

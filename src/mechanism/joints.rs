@@ -84,7 +84,13 @@ fn from_urdf(
         JointType::Floating | JointType::Planar | JointType::Spherical => {
             let problem = format!("type {:?} is not simulated", joint.joint_type);
             let remedy = "build it from revolute and prismatic joints";
-            return Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy));
+            return Err(MechanismError::urdf(
+                file,
+                "joint",
+                &joint.name,
+                problem,
+                remedy,
+            ));
         }
     };
     let dynamics = joint.dynamics.clone().unwrap_or_default();
@@ -96,13 +102,23 @@ fn from_urdf(
     }
     if !dynamics.damping.is_finite() || dynamics.damping < 0.0 {
         let problem = format!("damping = {} must be >= 0", dynamics.damping);
-        return Err(MechanismError::urdf(file, "joint", &joint.name, problem, "correct it"));
+        return Err(MechanismError::urdf(
+            file,
+            "joint",
+            &joint.name,
+            problem,
+            "correct it",
+        ));
     }
     Ok(JointModel {
         name: joint.name.clone(),
         kind,
         moves,
-        axis: if moves { unit_axis(file, joint)? } else { [1.0, 0.0, 0.0] },
+        axis: if moves {
+            unit_axis(file, joint)?
+        } else {
+            [1.0, 0.0, 0.0]
+        },
         position: 0.0,
         position_given: false,
         stiffness: 0.0,
@@ -122,7 +138,13 @@ fn unit_axis(file: &Path, joint: &Joint) -> Result<[f64; 3], MechanismError> {
     }
     let problem = format!("axis = {xyz:?} has no direction");
     let remedy = "give a vector such as \"0 0 1\"";
-    Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy))
+    Err(MechanismError::urdf(
+        file,
+        "joint",
+        &joint.name,
+        problem,
+        remedy,
+    ))
 }
 
 /// Makes every follower point at its final leader, and takes over that one's position.
@@ -145,9 +167,8 @@ fn attach_mimics(
 
 fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, MechanismError> {
     let name = &robot.joints[follower].name;
-    let error = |problem: String, remedy: &str| {
-        MechanismError::urdf(file, "joint", name, problem, remedy)
-    };
+    let error =
+        |problem: String, remedy: &str| MechanismError::urdf(file, "joint", name, problem, remedy);
     let mut whole = Mimic {
         leader: follower,
         multiplier: 1.0,
@@ -161,7 +182,10 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
         let offset = mimic.offset.unwrap_or(0.0);
         if !multiplier.is_finite() || multiplier == 0.0 || !offset.is_finite() {
             let problem = format!("mimic multiplier = {multiplier}, offset = {offset}");
-            return Err(error(problem, "give finite values, the multiplier not zero"));
+            return Err(error(
+                problem,
+                "give finite values, the multiplier not zero",
+            ));
         }
         let leader = robot.joints.iter().position(|j| j.name == mimic.joint);
         let Some(leader) = leader else {
@@ -174,7 +198,10 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
             multiplier: whole.multiplier * multiplier,
         };
     }
-    Err(error("mimics itself through others".into(), "cut the circle"))
+    Err(error(
+        "mimics itself through others".into(),
+        "cut the circle",
+    ))
 }
 
 fn follow(
@@ -183,13 +210,24 @@ fn follow(
     follower: &mut JointModel,
 ) -> Result<(), MechanismError> {
     let error = |problem: String, remedy: String| {
-        Err(MechanismError::spec("joint", &follower.name, problem, remedy))
+        Err(MechanismError::spec(
+            "joint",
+            &follower.name,
+            problem,
+            remedy,
+        ))
     };
     let position = mimic.multiplier * leader.position + mimic.offset;
     let off = (follower.position - position).abs() > 1e-9 * (1.0 + position.abs());
     if follower.position_given && off {
-        let problem = format!("stands at {}, but follows \"{}\"", follower.position, leader.name);
-        return error(problem, format!("leave its position out or make it {position}"));
+        let problem = format!(
+            "stands at {}, but follows \"{}\"",
+            follower.position, leader.name
+        );
+        return error(
+            problem,
+            format!("leave its position out or make it {position}"),
+        );
     }
     if !follower.moves && leader.moves {
         let problem = format!("is locked, but follows the free joint \"{}\"", leader.name);

@@ -46,12 +46,14 @@ fn shares(joints: &[JointModel]) -> Vec<Option<Share>> {
             Some(m) => (m.leader, m.multiplier, m.offset),
             None => (index, 1.0, 0.0),
         };
-        number[leader].filter(|_| joint.moves).map(|coordinate| Share {
-            coordinate,
-            multiplier,
-            offset,
-            leads: joint.mimic.is_none(),
-        })
+        number[leader]
+            .filter(|_| joint.moves)
+            .map(|coordinate| Share {
+                coordinate,
+                multiplier,
+                offset,
+                leads: joint.mimic.is_none(),
+            })
     };
     joints.iter().enumerate().map(share).collect()
 }
@@ -91,11 +93,7 @@ fn add(
     add_stop(&joint.name, upper, &mut coordinate.upper_stop)
 }
 
-fn add_stop(
-    joint: &str,
-    stop: Option<Stop>,
-    sum: &mut Option<Stop>,
-) -> Result<(), MechanismError> {
+fn add_stop(joint: &str, stop: Option<Stop>, sum: &mut Option<Stop>) -> Result<(), MechanismError> {
     let (Some(stop), Some(have)) = (stop, sum.as_mut()) else {
         *sum = sum.or(stop);
         return Ok(());

@@ -59,7 +59,12 @@ impl Mechanism {
             }
             _ => {
                 let problem = "needs exactly one of them";
-                Err(MechanismError::spec("route", "lever, via", problem, "give lever or via"))
+                Err(MechanismError::spec(
+                    "route",
+                    "lever, via",
+                    problem,
+                    "give lever or via",
+                ))
             }
         }
     }
@@ -79,7 +84,10 @@ impl Mechanism {
     /// The points to draw the cable through, in the world, m. Empty for a lever route without `draw`.
     pub fn cable_points(&self, route: &Route) -> Vec<[f64; 3]> {
         let (Route::Levers { draw: points, .. } | Route::Via(points)) = route;
-        points.iter().map(|p| self.world_point(p).to_array()).collect()
+        points
+            .iter()
+            .map(|p| self.world_point(p).to_array())
+            .collect()
     }
 
     fn lever_length(&self, arms: &[Arm], constant_m: f64, jacobian: &mut [f64]) -> f64 {
@@ -95,14 +103,20 @@ impl Mechanism {
     }
 
     fn via_length(&self, points: &[LinkPoint], jacobian: &mut [f64]) -> f64 {
-        let world: Vec<Vector3<f64>> = points.iter().map(|p| na_vector(self.world_point(p))).collect();
+        let world: Vec<Vector3<f64>> = points
+            .iter()
+            .map(|p| na_vector(self.world_point(p)))
+            .collect();
         let mut length = 0.0;
         let mut slope = DVector::zeros(self.dofs.len());
         for (ends, world) in points.windows(2).zip(world.windows(2)) {
             let segment = world[1] - world[0];
             let distance = segment.norm();
             length += distance;
-            let bodies = [self.placement[ends[0].link].0, self.placement[ends[1].link].0];
+            let bodies = [
+                self.placement[ends[0].link].0,
+                self.placement[ends[1].link].0,
+            ];
             // Within one rigid body nothing changes; nor has a segment without length a direction.
             if distance > 0.0 && bodies[0] != bodies[1] {
                 let unit = segment / distance;
@@ -129,12 +143,19 @@ impl Mechanism {
             let error = |problem: String, remedy: String| {
                 MechanismError::spec("route.lever", &lever.joint, problem, remedy)
             };
-            let joint = self.joints.iter().position(|j| j.name == lever.joint).ok_or_else(|| {
-                let known = known_names(self.joints.iter().map(|j| j.name.as_str()));
-                error("the URDF has no such joint".into(), known)
-            })?;
+            let joint = self
+                .joints
+                .iter()
+                .position(|j| j.name == lever.joint)
+                .ok_or_else(|| {
+                    let known = known_names(self.joints.iter().map(|j| j.name.as_str()));
+                    error("the URDF has no such joint".into(), known)
+                })?;
             if !lever.lever_m.is_finite() {
-                return Err(error(format!("lever_m = {}", lever.lever_m), "correct it".into()));
+                return Err(error(
+                    format!("lever_m = {}", lever.lever_m),
+                    "correct it".into(),
+                ));
             }
             match self.shares[joint] {
                 Some(share) => {

@@ -51,17 +51,19 @@ fn colour(robot: &Robot, material: Option<&urdf_rs::Material>) -> [f32; 4] {
 }
 
 /// A plain shape, its sizes checked.
-pub(super) fn shape(
-    file: &Path,
-    link: &str,
-    geometry: &Geometry,
-) -> Result<Shape, MechanismError> {
+pub(super) fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, MechanismError> {
     let positive = |what: &str, values: &[f64]| {
         if values.iter().all(|v| *v > 0.0 && v.is_finite()) {
             return Ok(());
         }
         let problem = format!("{what} = {values:?} must be > 0");
-        Err(MechanismError::urdf(file, "link", link, problem, "correct the geometry"))
+        Err(MechanismError::urdf(
+            file,
+            "link",
+            link,
+            problem,
+            "correct the geometry",
+        ))
     };
     match geometry {
         Geometry::Box { size } => {
@@ -124,7 +126,9 @@ pub(super) fn collider(shape: &Shape) -> Option<ColliderBuilder> {
         Shape::Box { size_m } => {
             ColliderBuilder::cuboid(size_m[0] / 2.0, size_m[1] / 2.0, size_m[2] / 2.0)
         }
-        Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m / 2.0, *radius_m),
+        Shape::Cylinder { radius_m, length_m } => {
+            ColliderBuilder::cylinder(length_m / 2.0, *radius_m)
+        }
         Shape::Sphere { radius_m } => ColliderBuilder::ball(*radius_m),
         Shape::Mesh { vertices_m, .. } => {
             let points: Vec<Vector> = vertices_m.iter().map(|v| Vector::from_array(*v)).collect();

@@ -100,7 +100,9 @@ impl Built {
         if let (Some(joint), Some(parent)) = (model.joint, self.bodies.get(model.parent)) {
             let joint = engine_joint(&joints[joint], &model.frame);
             let parent = parent.handle;
-            self.world.multibody_joints.insert(parent, handle, joint, true);
+            self.world
+                .multibody_joints
+                .insert(parent, handle, joint, true);
         }
         if let Some(body) = self.world.bodies.get_mut(handle) {
             body.recompute_mass_properties_from_colliders(&self.world.colliders);
@@ -172,7 +174,10 @@ impl Built {
                 return Err(error("the URDF has no such link", known));
             };
             if robot.links[link].collision.is_empty() {
-                return Err(error("this link has no <collision>", "add one to the URDF".into()));
+                return Err(error(
+                    "this link has no <collision>",
+                    "add one to the URDF".into(),
+                ));
             }
             for collision in &robot.links[link].collision {
                 let shape = shape(file, name, &collision.geometry)?;
@@ -260,7 +265,8 @@ fn couplings(dofs: &[Dof], bodies: &[Body]) -> Vec<MultibodyDofCoupling> {
 
 /// Index of the dof that measures a coordinate: that of its own joint.
 pub(super) fn leader_of(dofs: &[Dof], coordinate: usize) -> Option<usize> {
-    dofs.iter().position(|d| d.share.coordinate == coordinate && d.share.leads)
+    dofs.iter()
+        .position(|d| d.share.coordinate == coordinate && d.share.leads)
 }
 
 fn set_contact_parameters(world: &mut PhysicsWorld, contact: &ContactSpec) {

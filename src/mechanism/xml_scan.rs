@@ -10,11 +10,16 @@ const READ: &[(&str, &[&str])] = &[
     ("inertial", &["origin", "mass", "inertia"]),
     ("visual", &["origin", "geometry", "material"]),
     ("collision", &["origin", "geometry"]),
-    ("geometry", &["box", "cylinder", "sphere", "mesh", "capsule"]),
+    (
+        "geometry",
+        &["box", "cylinder", "sphere", "mesh", "capsule"],
+    ),
     ("material", &["color"]),
     (
         "joint",
-        &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"],
+        &[
+            "origin", "parent", "child", "axis", "limit", "dynamics", "mimic",
+        ],
     ),
 ];
 
@@ -67,7 +72,9 @@ fn look_at(element: &str, open: &[Open], found: &mut XmlScan) -> bool {
         .any(|(p, children)| *p == parent && children.contains(&element));
     let owner = open.iter().rev().find(|o| !o.name.is_empty());
     if !read {
-        let place = owner.map_or(String::new(), |o| format!(" of {} \"{}\"", o.element, o.name));
+        let place = owner.map_or(String::new(), |o| {
+            format!(" of {} \"{}\"", o.element, o.name)
+        });
         found.warnings.push(format!(
             "<{element}>{place} is not read and has no effect; what it describes belongs into the scene file"
         ));
@@ -156,7 +163,17 @@ mod tests {
 
     #[test]
     fn broken_text_does_not_panic() {
-        for text in ["", "<", "<a", "<a b='", "</", "<!--", "<a name>", "<é name=\"ü\">", "<a name="] {
+        for text in [
+            "",
+            "<",
+            "<a",
+            "<a b='",
+            "</",
+            "<!--",
+            "<a name>",
+            "<é name=\"ü\">",
+            "<a name=",
+        ] {
             scan(text);
         }
     }
