@@ -293,7 +293,7 @@ pub enum Quantity {
     Tension,
     /// Sum of the positions of joints.
     JointPosition,
-    /// Position of a free body along x, y or z.
+    /// Position of a free body along x, y or z; with a second name in `of`, in that link's frame.
     BodyX,
     BodyY,
     BodyZ,

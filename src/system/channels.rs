@@ -16,7 +16,8 @@ enum Reader {
     Pull(usize),
     Tension(usize),
     Joints(Vec<usize>, f64),
-    Body(usize, usize),
+    /// A body's position along an axis, in the world or in another link's frame.
+    Body { body: usize, axis: usize, frame: Option<usize> },
     Axis(Axis),
     /// Elongation of a displacement model: the pseudo-input that carries it.
     Displacement(usize),
@@ -75,10 +76,11 @@ impl Reader {
             },
             Self::Tension(c) => plant.cable(*c, state, spans, 0.0).2,
             Self::Joints(joints, constant) => constant + joints.iter().map(|&j| state.y[j]).sum::<f64>(),
-            Self::Body(link, axis) => simulation
-                .mechanism
-                .as_ref()
-                .map_or(f64::NAN, |m| m.link_poses()[*link].translation_m[*axis]),
+            Self::Body { body, axis, frame } => simulation.mechanism.as_ref().map_or(f64::NAN, |mechanism| {
+                let poses = mechanism.link_poses();
+                let position = poses[*body].translation_m;
+                frame.map_or(position, |f| poses[f].to_local(position))[*axis]
+            }),
             Self::Axis(axis) => axis.force_n(&simulation.inputs, simulation.time_s),
             Self::Displacement(input) => spans[*input].value,
         }
@@ -137,8 +139,12 @@ fn joints(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
 
 fn body(simulation: &Simulation, output: &OutputSpec, axis: usize) -> Result<Reader, SystemError> {
     let links = simulation.mechanism.as_ref().map_or(&[][..], |m| m.link_names());
-    let link = links.iter().position(|l| Some(l) == output.of.first());
-    link.map(|link| Reader::Body(link, axis)).ok_or_else(|| no_such(&simulation.scene, output, "this body"))
+    let find = |name: Option<&String>| links.iter().position(|l| Some(l) == name);
+    match (find(output.of.first()), output.of.get(1), find(output.of.get(1))) {
+        (Some(body), None, _) => Ok(Reader::Body { body, axis, frame: None }),
+        (Some(body), Some(_), Some(frame)) => Ok(Reader::Body { body, axis, frame: Some(frame) }),
+        _ => Err(no_such(&simulation.scene, output, &format!("these bodies or links (known: {})", links.join(", ")))),
+    }
 }
 
 fn no_such(scene: &Scene, output: &OutputSpec, what: &str) -> SystemError {
