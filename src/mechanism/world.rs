@@ -28,6 +28,8 @@ pub(super) struct Body {
     /// Its index in the multibody.
     pub link_id: usize,
     pub parent: usize,
+    /// The dofs between it and the root, ascending.
+    pub moved_by: Vec<usize>,
     pub mass_kg: f64,
     pub com_m: Vector3<f64>,
     pub inertia_kg_m2: Matrix3<f64>,
@@ -108,10 +110,19 @@ impl Built {
             body.recompute_mass_properties_from_colliders(&self.world.colliders);
         }
         let link = self.world.multibody_joints.rigid_body_link(handle);
+        let mut moved_by = self
+            .bodies
+            .get(model.parent)
+            .map_or(Vec::new(), |p| p.moved_by.clone());
+        if model.joint.is_some() {
+            // Every body but the root brings one dof.
+            moved_by.push(self.bodies.len() - 1);
+        }
         self.bodies.push(Body {
             handle,
             link_id: link.map_or(0, |l| l.id),
             parent: model.parent,
+            moved_by,
             mass_kg: model.inertial.mass_kg,
             com_m: model.inertial.com_m,
             inertia_kg_m2: model.inertial.inertia_kg_m2,
