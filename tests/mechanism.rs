@@ -716,3 +716,52 @@ fn mixed_up_routes_are_refused() {
     let message = m.route(&unknown).unwrap_err().to_string();
     assert!(message.contains("known: \"slide\""), "{message}");
 }
+
+/// Every attribute of every model in turn becomes nonsense, and the text is cut at many places.
+#[test]
+fn no_urdf_makes_it_panic() {
+    for file in [
+        "muscle_bench.urdf",
+        "antagonistic_pulley.urdf",
+        "bending_catheter.urdf",
+    ] {
+        let text = std::fs::read_to_string(models().join(file)).unwrap();
+        let quotes: Vec<usize> = text.match_indices('"').map(|(i, _)| i).collect();
+        let mut texts: Vec<String> = (0..text.len())
+            .step_by(397)
+            .map(|i| text[..i].to_owned())
+            .collect();
+        for (k, pair) in quotes.chunks_exact(2).enumerate() {
+            let values = [
+                "",
+                "nan",
+                "inf nan 0",
+                "-1",
+                "1e308",
+                "1e308 0 -1e308",
+                "0 0 0",
+                "jaw_left",
+            ];
+            texts.push(format!(
+                "{}{}{}",
+                &text[..=pair[0]],
+                values[k % values.len()],
+                &text[pair[1]..]
+            ));
+            texts.push(format!(
+                "{}{}{}",
+                &text[..=pair[0]],
+                values[(k / 3) % values.len()],
+                &text[pair[1]..]
+            ));
+        }
+        for text in texts {
+            let Ok(mut m) = load_urdf(&text, "") else {
+                continue;
+            };
+            let n = m.coordinates().len();
+            m.advance(1e-3, &vec![0.1; n], &mut vec![0.0; n]);
+            assert!(m.link_poses().len() > 1);
+        }
+    }
+}

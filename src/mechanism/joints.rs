@@ -93,6 +93,17 @@ fn from_urdf(
             ));
         }
     };
+    let origin = [joint.origin.xyz.0, joint.origin.rpy.0].concat();
+    if !origin.iter().all(|v| v.is_finite()) {
+        let problem = format!("origin = {origin:?} is not finite");
+        return Err(MechanismError::urdf(
+            file,
+            "joint",
+            &joint.name,
+            problem,
+            "correct it",
+        ));
+    }
     let dynamics = joint.dynamics.clone().unwrap_or_default();
     if dynamics.friction != 0.0 {
         warnings.push(format!(

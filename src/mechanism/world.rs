@@ -13,12 +13,12 @@ use rapier3d_f64::pipeline::PhysicsWorld;
 use urdf_rs::Robot;
 
 use super::assembly::{Assembly, BodyModel};
-use super::convert::{engine_vector, pose_from_urdf};
+use super::convert::engine_vector;
 use super::coordinate::CoordinateKind;
 use super::error::{MechanismError, known_names};
 use super::joints::JointModel;
 use super::reduce::Share;
-use super::shapes::{collider, engine_frame, shape};
+use super::shapes::{collider, engine_frame, placed_shape};
 use super::spec::ContactSpec;
 
 /// A rigid body of the mechanism as the engine holds it.
@@ -191,9 +191,9 @@ impl Built {
                 ));
             }
             for collision in &robot.links[link].collision {
-                let shape = shape(file, name, &collision.geometry)?;
+                let (own, shape) =
+                    placed_shape(file, name, &collision.origin, &collision.geometry)?;
                 let (body, link_pose) = assembly.placement[link];
-                let own = pose_from_urdf(collision.origin.xyz.0, collision.origin.rpy.0);
                 let Some(builder) = collider(&shape) else {
                     return Err(error("its mesh has no volume", "use a closed mesh".into()));
                 };
