@@ -86,55 +86,99 @@ pub(super) fn append(
     urdf.hinge("jaw_right", [tip, "jaw_right_link"], pin, "0 1 0", mimic);
 }
 
-/// One jaw; `side` is +1 for the one above the tube's axis.
+/// Sizes of one jaw and the side it is on.
+struct JawShape {
+    /// +1 for the jaw above the tube's axis, −1 for the one below.
+    side: f64,
+    /// From parallel faces to closed.
+    angle: f64,
+    half_ball: f64,
+    thickness: f64,
+    /// Where the face begins, and its length.
+    start: f64,
+    length: f64,
+    width: f64,
+}
+
+impl JawShape {
+    fn new(forceps: &Forceps, side: f64) -> Self {
+        let half_ball = forceps.ball_diameter_m / 2.0;
+        let start = 0.25 * forceps.jaw_length_m;
+        Self {
+            side,
+            angle: forceps.face_angle(),
+            half_ball,
+            thickness: 0.4 * half_ball,
+            start,
+            length: forceps.jaw_length_m - start,
+            width: forceps.jaw_width_m,
+        }
+    }
+
+    /// A place laid out as when the faces are parallel (x, z), closed by `angle`, and pitched down by `pitch` more.
+    fn place(&self, x: f64, z: f64, pitch: f64) -> Place {
+        let (sin, cos) = self.angle.sin_cos();
+        Place {
+            xyz: [x * cos + z * sin, 0.0, self.side * (z * cos - x * sin)],
+            rpy: [0.0, self.side * (self.angle + pitch), 0.0],
+        }
+    }
+
+    /// The plate that grips.
+    fn face(&self) -> (Place, String) {
+        let z = self.half_ball + self.thickness / 2.0;
+        let place = self.place(self.start + self.length / 2.0, z, 0.0);
+        (place, cuboid([self.length, self.width, self.thickness]))
+    }
+
+    /// The arm from the pin to the face.
+    fn heel(&self) -> (Place, String) {
+        let rise = self.half_ball + self.thickness / 2.0;
+        let place = self.place(self.start / 2.0, rise / 2.0, -rise.atan2(self.start));
+        let length = self.start.hypot(rise) + self.thickness;
+        (place, cuboid([length, 0.6 * self.width, self.thickness]))
+    }
+
+    /// The rib along the face's back.
+    fn rib(&self) -> (Place, String) {
+        let z = self.half_ball + 1.2 * self.thickness;
+        let place = self.place(self.start + self.length / 2.0, z, 0.0);
+        (
+            place,
+            cuboid([0.9 * self.length, 0.5 * self.width, 0.6 * self.thickness]),
+        )
+    }
+
+    fn tip(&self) -> (Place, String) {
+        let z = self.half_ball + self.thickness / 2.0;
+        (
+            self.place(self.start + self.length, z, 0.0),
+            sphere(0.6 * self.thickness),
+        )
+    }
+}
+
 fn jaw(forceps: &Forceps, name: &str, side: f64, tube_radius_m: f64, urdf: &mut UrdfText) {
-    let angle = forceps.face_angle();
-    let half = forceps.ball_diameter_m / 2.0;
-    let thickness = 0.4 * half;
-    let start = 0.25 * forceps.jaw_length_m;
-    let length = forceps.jaw_length_m - start;
-    // Laid out as when the faces are parallel, then closed by `angle`: (x, z) turns towards the tube's axis.
-    let (sin, cos) = angle.sin_cos();
-    let place = |x: f64, z: f64| Place {
-        xyz: [x * cos + z * sin, 0.0, side * (z * cos - x * sin)],
-        rpy: [0.0, side * angle, 0.0],
-    };
-    let width = forceps.jaw_width_m;
-    let face = place(start + length / 2.0, half + thickness / 2.0);
-    let face_box = cuboid([length, width, thickness]);
-    urdf.open_link(name);
-    urdf.inertial(&jaw_inertial(forceps, side));
-    urdf.visual(face, &face_box, "grip");
-    let heel = place(start / 2.0, half / 2.0 + thickness / 4.0);
-    let rise = half + thickness / 2.0;
-    let leaning = Place {
-        rpy: [0.0, side * (angle - rise.atan2(start)), 0.0],
-        ..heel
-    };
-    let heel_length = start.hypot(rise) + thickness;
-    urdf.visual(
-        leaning,
-        &cuboid([heel_length, 0.6 * width, thickness]),
-        "steel",
-    );
-    let back = place(start + length / 2.0, half + 1.2 * thickness);
-    urdf.visual(
-        back,
-        &cuboid([0.9 * length, 0.5 * width, 0.6 * thickness]),
-        "steel",
-    );
-    let tip = place(forceps.jaw_length_m, half + thickness / 2.0);
-    urdf.visual(tip, &sphere(0.6 * thickness), "grip");
+    let shape = JawShape::new(forceps, side);
     let across = Place {
         xyz: [0.0; 3],
         rpy: [std::f64::consts::FRAC_PI_2, 0.0, 0.0],
     };
-    urdf.visual(
-        across,
-        &cylinder(0.35 * tube_radius_m, 1.4 * tube_radius_m),
-        "steel",
-    );
-    urdf.collision(face, &face_box);
+    let pin = cylinder(0.35 * tube_radius_m, 1.4 * tube_radius_m);
+    let parts = [
+        (shape.face(), "grip"),
+        (shape.heel(), "steel"),
+        (shape.rib(), "steel"),
+        (shape.tip(), "grip"),
+        ((across, pin), "steel"),
+    ];
+    urdf.open_link(name);
+    urdf.inertial(&jaw_inertial(forceps, side));
+    for ((place, geometry), material) in &parts {
+        urdf.visual(*place, geometry, material);
+    }
+    let (place, geometry) = shape.face();
+    urdf.collision(place, &geometry);
     urdf.close_link();
 }
 

@@ -91,7 +91,10 @@ fn principal_axes(inertia: &Matrix3<f64>) -> (Vector3<f64>, Rotation) {
     if off_diagonal.iter().all(|v| *v == 0.0) || inertia.iter().any(|v| !v.is_finite()) {
         return (inertia.diagonal(), Rotation::IDENTITY);
     }
-    let eigen = SymmetricEigen::new(*inertia);
+    // Absurd values could keep the iteration going for ever.
+    let Some(eigen) = SymmetricEigen::try_new(*inertia, f64::EPSILON, 1000) else {
+        return (Vector3::repeat(f64::NAN), Rotation::IDENTITY);
+    };
     let mut axes = eigen.eigenvectors;
     if axes.determinant() < 0.0 {
         axes.column_mut(2).neg_mut();

@@ -77,37 +77,13 @@ fn from_urdf(
     joint: &Joint,
     warnings: &mut Vec<String>,
 ) -> Result<JointModel, MechanismError> {
-    let (kind, moves) = match joint.joint_type {
-        JointType::Revolute | JointType::Continuous => (CoordinateKind::Angle, true),
-        JointType::Prismatic => (CoordinateKind::Length, true),
-        JointType::Fixed => (CoordinateKind::Angle, false),
-        JointType::Floating | JointType::Planar | JointType::Spherical => {
-            let problem = format!("type {:?} is not simulated", joint.joint_type);
-            let remedy = "build it from revolute and prismatic joints";
-            return Err(MechanismError::urdf(
-                file,
-                "joint",
-                &joint.name,
-                problem,
-                remedy,
-            ));
-        }
-    };
+    let (kind, moves) = kind_of(file, joint)?;
+    check_numbers(file, joint)?;
     let dynamics = joint.dynamics.clone().unwrap_or_default();
     if dynamics.friction != 0.0 {
         warnings.push(format!(
             "<dynamics friction> of joint \"{}\" is not read; use the effect bearing_friction",
             joint.name
-        ));
-    }
-    if !dynamics.damping.is_finite() || dynamics.damping < 0.0 {
-        let problem = format!("damping = {} must be >= 0", dynamics.damping);
-        return Err(MechanismError::urdf(
-            file,
-            "joint",
-            &joint.name,
-            problem,
-            "correct it",
         ));
     }
     Ok(JointModel {
@@ -128,6 +104,40 @@ fn from_urdf(
         upper_stop: None,
         mimic: None,
     })
+}
+
+/// What its position measures, and whether it moves.
+fn kind_of(file: &Path, joint: &Joint) -> Result<(CoordinateKind, bool), MechanismError> {
+    Ok(match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => (CoordinateKind::Angle, true),
+        JointType::Prismatic => (CoordinateKind::Length, true),
+        JointType::Fixed => (CoordinateKind::Angle, false),
+        JointType::Floating | JointType::Planar | JointType::Spherical => {
+            let problem = format!("type {:?} is not simulated", joint.joint_type);
+            let remedy = "build it from revolute and prismatic joints";
+            return Err(MechanismError::urdf(
+                file,
+                "joint",
+                &joint.name,
+                problem,
+                remedy,
+            ));
+        }
+    })
+}
+
+fn check_numbers(file: &Path, joint: &Joint) -> Result<(), MechanismError> {
+    let error =
+        |problem: String| MechanismError::urdf(file, "joint", &joint.name, problem, "correct it");
+    let origin = [joint.origin.xyz.0, joint.origin.rpy.0].concat();
+    if !origin.iter().all(|v| v.is_finite()) {
+        return Err(error(format!("origin = {origin:?} is not finite")));
+    }
+    let damping = joint.dynamics.as_ref().map_or(0.0, |d| d.damping);
+    if !damping.is_finite() || damping < 0.0 {
+        return Err(error(format!("damping = {damping} must be >= 0")));
+    }
+    Ok(())
 }
 
 fn unit_axis(file: &Path, joint: &Joint) -> Result<[f64; 3], MechanismError> {

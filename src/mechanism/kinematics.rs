@@ -1,6 +1,6 @@
 //! Mass matrix, weight and point Jacobians, from the engine's body Jacobians at the current pose.
 
-use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 
 use super::convert::{engine_vector, na_vector, rotation_matrix};
 use super::model::Mechanism;
@@ -37,18 +37,30 @@ impl Mechanism {
         let mut mass = std::mem::replace(&mut self.full_mass, DMatrix::zeros(0, 0));
         mass.resize_mut(n, n, 0.0);
         mass.fill(0.0);
-        if let Some(multibody) = self.multibody() {
-            for (index, body) in self.bodies.iter().enumerate().skip(1) {
-                let turn = rotation_matrix(&self.body_pose(index).rotation);
-                let mut inertia = Matrix6::zeros();
-                inertia.fill_diagonal(body.mass_kg);
-                let rotated = turn * body.inertia_kg_m2 * turn.transpose();
-                inertia.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotated);
-                let jacobian = multibody.body_jacobian(body.link_id);
-                mass.gemm_tr(1.0, jacobian, &(inertia * jacobian), 1.0);
+        for body in 1..self.bodies.len() {
+            self.add_body_mass(body, &mut mass);
+        }
+        mass.fill_upper_triangle_with_lower_triangle();
+        self.full_mass = mass;
+    }
+
+    /// Adds the lower triangle of Jᵀ diag(m, I) J, over the dofs that move the body at all.
+    fn add_body_mass(&self, index: usize, mass: &mut DMatrix<f64>) {
+        let Some(multibody) = self.multibody() else {
+            return;
+        };
+        let body = &self.bodies[index];
+        let turn = rotation_matrix(&self.body_pose(index).rotation);
+        let inertia = turn * body.inertia_kg_m2 * turn.transpose();
+        let jacobian = multibody.body_jacobian(body.link_id);
+        for (k, &column) in body.moved_by.iter().enumerate() {
+            let velocity = jacobian.fixed_view::<3, 1>(0, column) * body.mass_kg;
+            let turning = inertia * jacobian.fixed_view::<3, 1>(3, column);
+            for &row in &body.moved_by[k..] {
+                mass[(row, column)] += velocity.dot(&jacobian.fixed_view::<3, 1>(0, row))
+                    + turning.dot(&jacobian.fixed_view::<3, 1>(3, row));
             }
         }
-        self.full_mass = mass;
     }
 
     /// Adds Jᵀ f for a force (world frame) at a world point of a body.

@@ -16,7 +16,7 @@ use super::joints::{self, JointModel};
 use super::reduce::{Share, reduce};
 use super::spec::MechanismSpec;
 use super::tree::Tree;
-use super::world::{self, Body, Dof, leader_of};
+use super::world::{self, Body, Built, Dof, leader_of};
 use super::{free_bodies, shapes, urdf_file};
 
 /// A rapier multibody behind independent joint coordinates.
@@ -81,31 +81,47 @@ impl Mechanism {
         }
         let mut link_names: Vec<String> = robot.links.iter().map(|l| l.name.clone()).collect();
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
-        let leaders = (0..coordinates.len())
-            .filter_map(|c| leader_of(&built.dofs, c))
-            .collect();
         let mut mechanism = Self {
+            link_names,
+            free_bodies,
+            visuals,
+            placement: assembly.placement,
+            weights: assembly.weights,
+            warnings,
+            ..Self::new(built, joints, coordinates, shares)
+        };
+        mechanism.refresh_mass();
+        mechanism.check_mass(&file)?;
+        Ok(mechanism)
+    }
+
+    /// The moving parts, without names, drawings and weights.
+    fn new(
+        built: Built,
+        joints: Vec<JointModel>,
+        coordinates: Vec<Coordinate>,
+        shares: Vec<Option<Share>>,
+    ) -> Self {
+        let leader = |c| leader_of(&built.dofs, c);
+        Self {
+            leaders: (0..coordinates.len()).filter_map(leader).collect(),
             projection: projection(&built.dofs, coordinates.len()),
             full_mass: DMatrix::zeros(built.dofs.len(), built.dofs.len()),
             world: built.world,
             multibody: built.multibody,
             bodies: built.bodies,
             dofs: built.dofs,
-            leaders,
             coordinates,
             joints,
             shares,
-            link_names,
-            placement: assembly.placement,
-            free_bodies,
-            visuals,
-            weights: assembly.weights,
-            warnings,
+            link_names: Vec::new(),
+            placement: Vec::new(),
+            free_bodies: Vec::new(),
+            visuals: Vec::new(),
+            weights: Vec::new(),
+            warnings: Vec::new(),
             last_step_s: 0.0,
-        };
-        mechanism.refresh_mass();
-        mechanism.check_mass(&file)?;
-        Ok(mechanism)
+        }
     }
 
     /// What the URDF holds that has no effect, one line each.

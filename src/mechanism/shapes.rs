@@ -23,10 +23,10 @@ pub(super) fn visuals(
     for (link, model) in robot.links.iter().enumerate() {
         for visual in &model.visual {
             // A drawing that cannot be read does not stop a simulation; a wrong size does.
-            match shape(file, &model.name, &visual.geometry) {
-                Ok(shape) => found.push(Visual {
+            match placed_shape(file, &model.name, &visual.origin, &visual.geometry) {
+                Ok((pose, shape)) => found.push(Visual {
                     link,
-                    pose: plain_pose(&pose_from_urdf(visual.origin.xyz.0, visual.origin.rpy.0)),
+                    pose: plain_pose(&pose),
                     shape,
                     colour_rgba: colour(robot, visual.material.as_ref()),
                 }),
@@ -50,8 +50,28 @@ fn colour(robot: &Robot, material: Option<&urdf_rs::Material>) -> [f32; 4] {
     rgba.map_or(GREY, |c| c.rgba.0.map(|v| v as f32))
 }
 
-/// A plain shape, its sizes checked.
-pub(super) fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, MechanismError> {
+/// A plain shape and its frame in the link, all numbers checked.
+pub(super) fn placed_shape(
+    file: &Path,
+    link: &str,
+    origin: &urdf_rs::Pose,
+    geometry: &Geometry,
+) -> Result<(Pose, Shape), MechanismError> {
+    let pose = pose_from_urdf(origin.xyz.0, origin.rpy.0);
+    if !pose.is_finite() {
+        let problem = "the origin of a visual or collision is not finite";
+        return Err(MechanismError::urdf(
+            file,
+            "link",
+            link,
+            problem,
+            "correct it",
+        ));
+    }
+    Ok((pose, shape(file, link, geometry)?))
+}
+
+fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, MechanismError> {
     let positive = |what: &str, values: &[f64]| {
         if values.iter().all(|v| *v > 0.0 && v.is_finite()) {
             return Ok(());
@@ -99,7 +119,16 @@ fn mesh(file: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, MechanismErro
     let folder = file.parent().unwrap_or(Path::new(""));
     let path = mesh_path(folder, name);
     let bytes = std::fs::read(&path).map_err(|e| error(path.clone(), e.to_string()))?;
-    let found = stl::read(&bytes).map_err(|reason| error(path, reason))?;
+    let found = stl::read(&bytes).map_err(|reason| error(path.clone(), reason))?;
+    if !found
+        .vertices
+        .iter()
+        .chain([&scale])
+        .flatten()
+        .all(|v| v.is_finite())
+    {
+        return Err(error(path, "a vertex or the scale is not finite".into()));
+    }
     let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
     Ok(Shape::Mesh {
         vertices_m: found.vertices.iter().map(scaled).collect(),

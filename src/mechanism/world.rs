@@ -13,12 +13,12 @@ use rapier3d_f64::pipeline::PhysicsWorld;
 use urdf_rs::Robot;
 
 use super::assembly::{Assembly, BodyModel};
-use super::convert::{engine_vector, pose_from_urdf};
+use super::convert::engine_vector;
 use super::coordinate::CoordinateKind;
 use super::error::{MechanismError, known_names};
 use super::joints::JointModel;
 use super::reduce::Share;
-use super::shapes::{collider, engine_frame, shape};
+use super::shapes::{collider, engine_frame, placed_shape};
 use super::spec::ContactSpec;
 
 /// A rigid body of the mechanism as the engine holds it.
@@ -28,6 +28,8 @@ pub(super) struct Body {
     /// Its index in the multibody.
     pub link_id: usize,
     pub parent: usize,
+    /// The dofs between it and the root, ascending.
+    pub moved_by: Vec<usize>,
     pub mass_kg: f64,
     pub com_m: Vector3<f64>,
     pub inertia_kg_m2: Matrix3<f64>,
@@ -108,10 +110,19 @@ impl Built {
             body.recompute_mass_properties_from_colliders(&self.world.colliders);
         }
         let link = self.world.multibody_joints.rigid_body_link(handle);
+        let mut moved_by = self
+            .bodies
+            .get(model.parent)
+            .map_or(Vec::new(), |p| p.moved_by.clone());
+        if model.joint.is_some() {
+            // Every body but the root brings one dof.
+            moved_by.push(self.bodies.len() - 1);
+        }
         self.bodies.push(Body {
             handle,
             link_id: link.map_or(0, |l| l.id),
             parent: model.parent,
+            moved_by,
             mass_kg: model.inertial.mass_kg,
             com_m: model.inertial.com_m,
             inertia_kg_m2: model.inertial.inertia_kg_m2,
@@ -180,9 +191,9 @@ impl Built {
                 ));
             }
             for collision in &robot.links[link].collision {
-                let shape = shape(file, name, &collision.geometry)?;
+                let (own, shape) =
+                    placed_shape(file, name, &collision.origin, &collision.geometry)?;
                 let (body, link_pose) = assembly.placement[link];
-                let own = pose_from_urdf(collision.origin.xyz.0, collision.origin.rpy.0);
                 let Some(builder) = collider(&shape) else {
                     return Err(error("its mesh has no volume", "use a closed mesh".into()));
                 };
