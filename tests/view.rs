@@ -62,8 +62,8 @@ fn graph() -> SceneGraph {
         cables: vec!["left".into(), "right".into()],
         muscles: SIDES.map(muscle).to_vec(),
         loops: vec![(0, 6)],
-        camera_target_m: [0.02, 0.0, -0.02],
-        camera_position_m: [0.05, -0.36, 0.06],
+        camera_target_m: [0.01, 0.0, -0.025],
+        camera_position_m: [0.06, -0.33, 0.05],
         tip_link: Some(LINKS),
     }
 }
@@ -137,13 +137,13 @@ fn muscle(side: f64) -> MuscleGraph {
 fn frame(time_s: f64) -> Frame {
     let phase = TAU * time_s / 4.0;
     let grow = (time_s / 4.0).min(1.0);
-    let drive = SIDES.map(|side| (side * grow * phase.sin()).max(0.0));
+    let drive = SIDES.map(|side| -side * grow * phase.sin());
     let pressures_kpa = SIDES.map(|side| 850.0 * (side * grow * (phase - 0.15).sin()).max(0.0));
     let elongations_m = pressures_kpa.map(|pressure| 0.03 * pressure / 850.0);
     let angle_rad = 1.3 * FRAC_PI_2 * grow * (phase - 0.5).sin();
     let tensions_n = SIDES.map(|side| (8.5 * side * grow * (phase - 0.35).sin()).max(0.0));
     let link_poses = poses(angle_rad);
-    let contacts = if angle_rad > 1.6 {
+    let contacts = if angle_rad > 0.9 {
         vec![contact(&link_poses)]
     } else {
         Vec::new()

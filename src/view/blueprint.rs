@@ -1,11 +1,12 @@
 //! The arrangement of views for a scene: mechanism large on the left, plots along the chain on the right.
 
 use rerun::blueprint::components::{BackgroundKind, Corner2D, Eye3DKind, LinkAxis, PanelState};
-use rerun::blueprint::components::{PlayState, TimelineName};
+use rerun::blueprint::components::{PlayState, TextLogColumn, TimelineName};
+use rerun::blueprint::datatypes;
 use rerun::datatypes::{Range1D, Range2D};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimeAxis,
+    Background, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns, TimeAxis,
     TimePanelBlueprint, ViewportBlueprint, VisualBounds2D,
 };
 use rerun::{
@@ -68,7 +69,7 @@ fn log(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStr
 }
 
 fn page(graph: &SceneGraph, first: &Frame) -> Pane {
-    Pane::Row(vec![(0.58, picture(graph)), (0.42, plots(graph, first))])
+    Pane::Row(vec![(0.46, picture(graph)), (0.54, plots(graph, first))])
 }
 
 /// The mechanism; below it the loops, the angle and the colour scales.
@@ -121,8 +122,19 @@ fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
     if !first.energy_j.is_empty() {
         tabs.push(series("Energy (J)", path(["energy"])));
     }
-    let panes = plots.into_iter().chain([Pane::Tabs(tabs)]);
-    Pane::Column(panes.map(|pane| (1.0, pane)).collect())
+    plots.push(Pane::Tabs(tabs));
+    tiles(plots)
+}
+
+/// Two columns once one would make the panes too low for the ticks of their axes.
+fn tiles(mut panes: Vec<Pane>) -> Pane {
+    let width = if panes.len() > 3 { 2 } else { 1 };
+    let mut rows = Vec::new();
+    while !panes.is_empty() {
+        let row = panes.drain(..width.min(panes.len()));
+        rows.push((1.0, Pane::Row(row.map(|pane| (1.0, pane)).collect())));
+    }
+    Pane::Column(rows)
 }
 
 fn space(graph: &SceneGraph) -> Pane {
@@ -198,8 +210,16 @@ fn headline_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     ))
 }
 
+/// Path and level are the same for all events: only time and text are shown.
 fn events() -> Pane {
-    view(Kind::Log, "Events", path(["events"]), Vec::new())
+    let body = TextLogColumn(datatypes::TextLogColumn {
+        visible: true.into(),
+        kind: datatypes::TextLogColumnKind::Body,
+    });
+    let columns = TextLogColumns::new().with_text_log_columns([body]);
+    let properties: Vec<(&'static str, Box<dyn AsComponents>)> =
+        vec![("TextLogColumns", Box::new(columns))];
+    view(Kind::Log, "Events", path(["events"]), properties)
 }
 
 fn series(title: &str, origin: EntityPath) -> Pane {

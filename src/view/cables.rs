@@ -30,7 +30,7 @@ impl Cables {
 
 impl Layer for Cables {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
-        let thick = LineStrips3D::update_fields().with_radii([Radius::new_ui_points(2.5)]);
+        let thick = LineStrips3D::update_fields().with_radii([Radius::new_ui_points(1.75)]);
         for name in &self.names {
             out.log_static(path(["world", "cables", name]), &thick)?;
         }

@@ -162,7 +162,7 @@ fn labels([x, y]: &[Scale; 2], [x_title, y_title]: &[String; 2]) -> Points2D {
     let left = y
         .places
         .iter()
-        .map(|place| [-0.09, -place * FRAME[1] - 0.04]);
+        .map(|place| [-0.11, -place * FRAME[1] - 0.04]);
     let titles = [[0.5 * FRAME[0], 0.14], [0.0, -FRAME[1] - 0.14]];
     let places = below
         .chain(left)

@@ -1,7 +1,7 @@
 //! Shows a run in Rerun: to an `.rrd` file, to a viewer on this machine, or served on loopback.
 //!
-//! This folder is the only user of the crate `rerun`. A [`Viewer`] is an [`Observer`](crate::system::observe::Observer):
-//! it keeps the frames of a short stretch, then sends each quantity as one column, so that memory
+//! This folder is the only user of the crate `rerun`. A [`Viewer`] is an
+//! [`Observer`](crate::system::observe::Observer): it keeps the frames of a short stretch, then sends each quantity as one column, so that memory
 //! stays flat and ten thousand frames cost milliseconds.
 //!
 //! Entities: `world/links/<link>` (poses and shapes), `world/cables/<cable>`, `world/muscles/<muscle>`,

@@ -26,9 +26,8 @@ impl Muscles {
 
 impl Layer for Muscles {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
-        self.muscles
-            .iter()
-            .try_for_each(|muscle| log_coil(out, muscle))
+        let mut numbered = self.muscles.iter().enumerate();
+        numbered.try_for_each(|(number, muscle)| log_coil(out, muscle, number))
     }
 
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
@@ -44,18 +43,20 @@ impl Layer for Muscles {
     }
 }
 
-fn log_coil(out: &RecordingStream, muscle: &MuscleGraph) -> Result<(), ViewError> {
+fn log_coil(out: &RecordingStream, muscle: &MuscleGraph, number: usize) -> Result<(), ViewError> {
     let coil = coil(muscle);
     let strip = LineStrips3D::update_fields()
         .with_strips([LineStrip3D::from_iter(&coil.points_m)])
         .with_radii([Radius::new_scene_units(coil.wire_radius_m as f32)]);
     out.log_static(path(["world", "muscles", &muscle.name, "coil"]), &strip)?;
-    let anchor = Points3D::new([[0.0; 3]])
+    // Neighbours stand close together: names are staggered so that they do not cover each other.
+    let below_m = 0.14 * muscle.rest_length_m * (number % 2) as f64;
+    let name = Points3D::new([[0.0, 0.0, -below_m]])
         .with_colors([opaque(AXIS)])
-        .with_radii([Radius::new_ui_points(4.0)])
+        .with_radii([Radius::new_ui_points(0.0)])
         .with_labels([muscle.name.as_str()])
         .with_show_labels(true);
-    out.log_static(path(["world", "muscles", &muscle.name, "anchor"]), &anchor)?;
+    out.log_static(path(["world", "muscles", &muscle.name, "name"]), &name)?;
     Ok(())
 }
 

@@ -168,7 +168,7 @@ fn rows(chunks: &[Chunk], entity: &str) -> usize {
         .sum()
 }
 
-fn component<C: rerun::Component>(chunks: &[Chunk], entity: &str, name: &str) -> Vec<C> {
+fn component<C: rerun::Component>(chunks: &[Chunk], entity: &str, name: &'static str) -> Vec<C> {
     let name = ComponentIdentifier::from(name);
     let lists = of(chunks, entity).flat_map(|chunk| chunk.iter_component::<C>(name));
     lists.flat_map(|list| list.as_slice().to_vec()).collect()
