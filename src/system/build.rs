@@ -110,6 +110,7 @@ impl Builder<'_> {
             rest: vec![0.0; n],
             force: vec![0.0; n],
             stops: Vec::new(),
+            contact: None,
         };
         for (i, joint) in self.mechanism.iter().flat_map(|m| m.coordinates()).enumerate() {
             c.damping[i] = joint.damping;

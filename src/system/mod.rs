@@ -5,6 +5,7 @@
 mod axis;
 mod build;
 mod channels;
+mod contact;
 mod elastic;
 mod energy;
 mod error;
@@ -25,7 +26,7 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use inputs::InputSource;
-pub use plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant, PlantState};
+pub use plant::{CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant, PlantState};
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;

@@ -24,6 +24,31 @@ pub struct Coordinates<D> {
     /// Constant generalised force over the step: weights, loads, contact reactions.
     pub force: Vec<D>,
     pub stops: Vec<CoordinateStop>,
+    /// What the mechanism touched at the end of the last engine step.
+    pub contact: Option<ContactSpring>,
+}
+
+/// A contact as the plant foresees it over one engine step: a stiff spring where it was touched last.
+///
+/// The engine owns contacts; without this the plant would, for one step, drive a gripping jaw through what it holds
+/// and take its tension away. Reaction `n max(0, f + k (offset - n . y) - c n . y')`, `f` that of the last step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactSpring {
+    /// Direction of the reaction in the coordinates, of unit length.
+    pub direction: Vec<f64>,
+    pub preload: f64,
+    pub offset: f64,
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl ContactSpring {
+    /// Push along the direction, never negative.
+    pub(super) fn push<D: Scalar>(&self, y: &[D], w: &[D]) -> D {
+        let depth = -dot(&self.direction, y) + self.offset;
+        let push = depth * self.stiffness - dot(&self.direction, w) * self.damping + self.preload;
+        if push.value() > 0.0 { push } else { D::constant(0.0) }
+    }
 }
 
 /// A one-sided spring on a coordinate: a closed jaw, a closed notch, a coil on its turns.

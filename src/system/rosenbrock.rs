@@ -59,6 +59,7 @@ pub struct Stepper<D> {
     /// Which cables pull, and which stops are met, at the start of the step.
     taut: Vec<bool>,
     met: Vec<bool>,
+    touching: bool,
     rho: Vec<D>,
     matrix: Vec<D>,
     ldl: Ldl<D>,
@@ -95,6 +96,7 @@ impl<D: Scalar> Stepper<D> {
             tangents: vec![tangent; plant.muscles.len()],
             taut: vec![false; plant.cables.len()],
             met: vec![false; plant.coordinates.stops.len()],
+            touching: false,
             rho: vec![zero; plant.muscles.len()],
             matrix: vec![zero; n * n],
             ldl: Ldl::new(n),
@@ -126,6 +128,8 @@ impl<D: Scalar> Stepper<D> {
         for (flag, stop) in self.met.iter_mut().zip(&plant.coordinates.stops) {
             *flag = stop.force(state.y[stop.coordinate], state.w[stop.coordinate]).1.value() != 0.0;
         }
+        let contact = plant.coordinates.contact.as_ref();
+        self.touching = contact.is_some_and(|c| c.push(&state.y, &state.w).value() > 0.0);
         for (i, flag) in self.taut.iter_mut().enumerate() {
             *flag = plant.cable(i, state, inputs, 0.0).2.value() > 0.0;
         }
@@ -146,6 +150,9 @@ impl<D: Scalar> Stepper<D> {
         }
         for (stop, _) in c.stops.iter().zip(&self.met).filter(|(_, met)| **met) {
             self.matrix[stop.coordinate * (n + 1)] += D::constant(g * stop.damping + g * g * stop.stiffness);
+        }
+        if let (Some(contact), true) = (&c.contact, self.touching) {
+            add_outer(&mut self.matrix, &contact.direction, D::constant(g * contact.damping + g * g * contact.stiffness));
         }
         for (cable, _) in plant.cables.iter().zip(&self.taut).filter(|(_, taut)| **taut) {
             add_outer(&mut self.matrix, &cable.jacobian, cable.damping_n_s_m * g + cable.stiffness_n_m * (g * g));
@@ -169,6 +176,10 @@ impl<D: Scalar> Stepper<D> {
         }
         for (stop, _) in plant.coordinates.stops.iter().zip(&self.met).filter(|(_, met)| **met) {
             self.right[stop.coordinate] -= r.y[stop.coordinate] * (g * stop.stiffness);
+        }
+        if let (Some(contact), true) = (&plant.coordinates.contact, self.touching) {
+            let along = dot(&contact.direction, &r.y) * (contact.stiffness * g);
+            add_scaled(&mut self.right, &contact.direction, -along);
         }
         for (cable, _) in plant.cables.iter().zip(&self.taut).filter(|(_, taut)| **taut) {
             let along = dot(&cable.jacobian, &r.y) * cable.stiffness_n_m * g;
@@ -266,6 +277,9 @@ fn rates<D: Scalar>(plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan
     }
     for stop in &c.stops {
         out.w[stop.coordinate] += CoordinateStop::force(stop, state.y[stop.coordinate], state.w[stop.coordinate]).1;
+    }
+    if let Some(contact) = &c.contact {
+        add_scaled(&mut out.w, &contact.direction, contact.push(&state.y, &state.w));
     }
     for (i, cable) in plant.cables.iter().enumerate() {
         let (_, _, tension) = plant.cable(i, state, inputs, elapsed_s);

@@ -6,6 +6,7 @@ use crate::mechanism::Mechanism;
 use crate::scene::Scene;
 
 use super::build::{Built, Displacement, build};
+use super::contact::foreseen;
 use super::energy::EnergyBook;
 use super::plant::InputSpan;
 use super::rosenbrock::Stepper;
@@ -24,8 +25,12 @@ pub struct Simulation {
     pub(super) inputs: Vec<InputSource>,
     pub(super) spans: Vec<InputSpan>,
     pub(super) time_s: f64,
-    /// Reaction of contacts on the joint coordinates over the last step.
+    /// Reaction of contacts (and Coriolis forces) on the joint coordinates over the last step.
     known_force: Vec<f64>,
+    /// Whether a link touched something at the end of the last step.
+    touching: bool,
+    /// Impulse of the foreseen contact over the step so far, along its direction.
+    contact_impulse: f64,
     weight: Vec<f64>,
     loads: Vec<f64>,
     inertia: DMatrix<f64>,
@@ -55,6 +60,8 @@ impl Simulation {
             inputs,
             time_s: 0.0,
             known_force: vec![0.0; joints],
+            touching: false,
+            contact_impulse: 0.0,
             weight: vec![0.0; joints],
             loads: vec![0.0; joints],
             inertia: DMatrix::zeros(joints, joints),
@@ -163,8 +170,8 @@ impl Simulation {
         if h <= 0.0 {
             return;
         }
-        self.renew_coordinates();
         let joints = self.known_force.len();
+        self.renew_coordinates(h);
         self.positions.copy_from_slice(&self.built.state.y[..joints]);
         let substeps = self.scene.file.simulation.substeps;
         let fine = h / substeps as f64;
@@ -183,14 +190,17 @@ impl Simulation {
             book.before(plant, state, &self.spans);
         }
         self.stepper.step(plant, state, &self.spans, h);
+        if let Some(contact) = &plant.coordinates.contact {
+            self.contact_impulse += h * contact.push(&state.y, &state.w);
+        }
         if let Some(book) = &mut self.energy {
             book.after(plant, state, &self.spans, h);
         }
     }
 
     /// Takes inertia, weights and cable levers from the mechanism's present pose.
-    fn renew_coordinates(&mut self) {
-        let Some(mechanism) = &mut self.mechanism else { return };
+    fn renew_coordinates(&mut self, h: f64) {
+        let Some(mechanism) = &self.mechanism else { return };
         let joints = self.known_force.len();
         if joints == 0 {
             return;
@@ -203,8 +213,12 @@ impl Simulation {
             for j in 0..joints {
                 plant.coordinates.inertia[i * n + j] = self.inertia[(i, j)];
             }
-            plant.coordinates.force[i] = self.weight[i] + self.loads[i] + self.known_force[i];
+            let known = if self.touching { 0.0 } else { self.known_force[i] };
+            plant.coordinates.force[i] = self.weight[i] + self.loads[i] + known;
         }
+        let fine = h / self.scene.file.simulation.substeps as f64;
+        let touched = self.touching.then(|| foreseen(&self.known_force, &self.built.state.y, &self.inertia, n, fine));
+        plant.coordinates.contact = touched.flatten();
         for (i, route) in self.built.routes.iter().enumerate() {
             if !matches!(route, crate::mechanism::Route::Via(_)) {
                 continue;
@@ -242,10 +256,15 @@ impl Simulation {
         for i in 0..joints {
             self.target[i] = (state.y[i] - self.positions[i]) / h;
         }
+        if let Some(contact) = &plant.coordinates.contact {
+            let mean = std::mem::take(&mut self.contact_impulse) / h;
+            self.known_force.iter_mut().zip(&contact.direction).for_each(|(f, n)| *f = n * mean);
+        }
         mechanism.advance(h, &self.target, &mut self.known_force);
         if joints == 0 {
             return;
         }
+        self.touching = touches_a_link(mechanism, self.scene.file.mechanism.as_ref().map_or(0, |m| m.body.len()));
         mechanism.positions(&mut self.positions);
         for i in 0..joints {
             let moved = self.positions[i] - state.y[i];
@@ -273,4 +292,13 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// Whether any of the last step's contacts has a link on one side (and not two free bodies).
+fn touches_a_link(mechanism: &Mechanism, bodies: usize) -> bool {
+    if bodies == 0 {
+        return false;
+    }
+    let links = mechanism.link_names().len() - bodies;
+    mechanism.contacts().iter().any(|c| c.force_n > 0.0 && (c.link_a < links || c.link_b < links))
 }
