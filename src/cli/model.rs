@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
+use smam::mechanism::{Forceps, NotchGeometry, NotchedTube, notched_tube_urdf};
 
 use super::CliError;
 
@@ -16,20 +17,69 @@ pub struct ModelArguments {
 
 #[derive(Subcommand)]
 enum Kind {
-    /// A tube with cutouts on one side, each a hinge
-    NotchedTube(NotchedTube),
+    /// A tube with cutouts on one side, each a hinge, with forceps at its tip: the bending segment of the catheter
+    NotchedTube(TubeArguments),
 }
 
 #[derive(Args)]
-struct NotchedTube {
+struct TubeArguments {
+    /// Number of notches
+    #[arg(long, default_value_t = NotchedTube::STOCK.notches)]
+    notches: usize,
+    /// Outer diameter of the tube, m
+    #[arg(long, default_value_t = 2.0 * NotchedTube::STOCK.notch.outer_radius_m)]
+    outer_diameter_m: f64,
+    /// Wall thickness of the tube, m
+    #[arg(long, default_value_t = 0.3e-3)]
+    wall_m: f64,
+    /// Depth of the cuts, m
+    #[arg(long, default_value_t = NotchedTube::STOCK.notch.cut_depth_m)]
+    cut_depth_m: f64,
+    /// Opening of a notch along the tube, m
+    #[arg(long, default_value_t = NotchedTube::STOCK.notch.notch_height_m)]
+    notch_height_m: f64,
+    /// Uncut tube between two notches, m
+    #[arg(long, default_value_t = NotchedTube::STOCK.bridge_m)]
+    bridge_m: f64,
+    /// Density of the tube, kg/m³
+    #[arg(long, default_value_t = NotchedTube::STOCK.density_kg_m3)]
+    density_kg_m3: f64,
+    /// Young's modulus of the tube, Pa; only for the stiffness that is printed
+    #[arg(long, default_value_t = 0.5e9)]
+    youngs_modulus_pa: f64,
+    /// Leave the forceps away
+    #[arg(long)]
+    no_forceps: bool,
     /// Write the URDF here instead of on the standard output
     #[arg(long, value_name = "URDF")]
     output: Option<PathBuf>,
 }
 
-/// Generates the model.
+/// Generates the model; the numbers that the scene file needs go to stderr.
 pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
-    let Kind::NotchedTube(tube) = &arguments.kind;
-    let _ = tube.output.as_ref();
-    Err(CliError::Usage("the generator is not there yet".to_owned()))
+    let Kind::NotchedTube(a) = &arguments.kind;
+    let notch = NotchGeometry {
+        outer_radius_m: a.outer_diameter_m / 2.0,
+        inner_radius_m: a.outer_diameter_m / 2.0 - a.wall_m,
+        cut_depth_m: a.cut_depth_m,
+        notch_height_m: a.notch_height_m,
+    };
+    let tube = NotchedTube {
+        notch,
+        notches: a.notches,
+        bridge_m: a.bridge_m,
+        density_kg_m3: a.density_kg_m3,
+        forceps: (!a.no_forceps).then_some(Forceps::STOCK),
+        ..NotchedTube::STOCK
+    };
+    let text = notched_tube_urdf(&tube)?;
+    match &a.output {
+        Some(path) => std::fs::write(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
+        None => print!("{text}"),
+    }
+    eprintln!("for the scene file, per notch:");
+    eprintln!("  stiffness_n_m_rad = {:.6e}", notch.stiffness_n_m_rad(a.youngs_modulus_pa));
+    eprintln!("  lever_m = {:.6e}", notch.lever_m());
+    eprintln!("  closes at {:.4} rad", notch.closing_angle_rad());
+    Ok(ExitCode::SUCCESS)
 }

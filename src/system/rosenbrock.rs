@@ -9,6 +9,9 @@
 //! taken where they are cheap, only stability needs them near. One factorisation and two solves a step, no iteration,
 //! so a step costs the same wherever the state is, and derivatives pass through it exactly.
 //!
+//! The tangents are therefore kept as long as the same cables pull and the same stops, contacts and vapour are met,
+//! at most [`KEEP`] steps; this halves the work.
+//!
 //! The unknowns are eliminated down to the coordinates' accelerations: the line is tridiagonal ([`ChainSolver`]), the
 //! friction states are local, so what remains is a symmetric matrix of the size of the mechanism.
 
@@ -20,6 +23,9 @@ use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
 
 /// `1 - 1/sqrt(2)`: the smaller of the two values that make the method L-stable.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+
+/// Steps after which the tangents are taken anew even if nothing was switched.
+const KEEP: u32 = 16;
 
 /// A stage: the rates of everything in a [`PlantState`].
 #[derive(Clone, Debug)]
@@ -56,10 +62,14 @@ pub struct Stepper<D> {
     k2: Rates<D>,
     solvers: Vec<ChainSolver<D>>,
     tangents: Vec<MuscleTangent<D>>,
-    /// Which cables pull, and which stops are met, at the start of the step.
+    /// Which cables pull, and which stops are met, where the tangents were taken.
     taut: Vec<bool>,
     met: Vec<bool>,
     touching: bool,
+    /// Everything one-sided at that point, and how many steps ago and for which step that was.
+    switches: Switches,
+    age: u32,
+    tangent_step_s: f64,
     rho: Vec<D>,
     matrix: Vec<D>,
     ldl: Ldl<D>,
@@ -97,6 +107,9 @@ impl<D: Scalar> Stepper<D> {
             taut: vec![false; plant.cables.len()],
             met: vec![false; plant.coordinates.stops.len()],
             touching: false,
+            switches: Switches::default(),
+            age: KEEP,
+            tangent_step_s: 0.0,
             rho: vec![zero; plant.muscles.len()],
             matrix: vec![zero; n * n],
             ldl: Ldl::new(n),
@@ -104,11 +117,20 @@ impl<D: Scalar> Stepper<D> {
         }
     }
 
+    /// Forgets the tangents: inertia, levers or weights of the plant have changed.
+    pub fn plant_changed(&mut self) {
+        self.age = KEEP;
+    }
+
     /// Advances `state` by `h` seconds; `inputs` start at the step's beginning.
     pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
         let g = GAMMA * h;
-        self.linearise(plant, state, inputs, g);
-        rates(plant, state, inputs, 0.0, &mut self.r);
+        let switches = rates(plant, state, inputs, 0.0, &mut self.r);
+        if switches != self.switches || self.age >= KEEP || h != self.tangent_step_s {
+            self.linearise(plant, state, inputs, g);
+            (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
+        }
+        self.age += 1;
         self.solve(plant, state, g, Stage::First);
         move_to(&mut self.middle, state, &self.k1, h);
         rates(plant, &self.middle, inputs, h, &mut self.r);
@@ -269,24 +291,37 @@ fn tangent<D: Scalar>(
 }
 
 /// `F(u)`; for the rates of the coordinates the *force* is given, not the acceleration.
-fn rates<D: Scalar>(plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64, out: &mut Rates<D>) {
+fn rates<D: Scalar>(
+    plant: &Plant<D>,
+    state: &PlantState<D>,
+    inputs: &[InputSpan],
+    elapsed_s: f64,
+    out: &mut Rates<D>,
+) -> Switches {
+    let mut switches = Switches::default();
     let c = &plant.coordinates;
     out.y.copy_from_slice(&state.w);
     for i in 0..plant.dim() {
         out.w[i] = c.force[i] - c.damping[i] * state.w[i] - c.stiffness[i] * (state.y[i] - c.rest[i]);
     }
     for stop in &c.stops {
-        out.w[stop.coordinate] += CoordinateStop::force(stop, state.y[stop.coordinate], state.w[stop.coordinate]).1;
+        let force = CoordinateStop::force(stop, state.y[stop.coordinate], state.w[stop.coordinate]).1;
+        switches.note(force.value() != 0.0);
+        out.w[stop.coordinate] += force;
     }
     if let Some(contact) = &c.contact {
-        add_scaled(&mut out.w, &contact.direction, contact.push(&state.y, &state.w));
+        let push = contact.push(&state.y, &state.w);
+        switches.note(push.value() > 0.0);
+        add_scaled(&mut out.w, &contact.direction, push);
     }
     for (i, cable) in plant.cables.iter().enumerate() {
         let (_, _, tension) = plant.cable(i, state, inputs, elapsed_s);
+        switches.note(tension.value() > 0.0);
         add_scaled(&mut out.w, &cable.jacobian, -tension);
     }
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let forces = plant.muscle_forces(i, state, inputs, elapsed_s);
+        switches.note(forces.stop_n.value() > 0.0);
         add_scaled(&mut out.w, &muscle.jacobian, -forces.pull_n());
         if let Some(friction) = &muscle.friction {
             out.z[i] = friction.rate(state.z[i], forces.speed_m_s);
@@ -294,7 +329,19 @@ fn rates<D: Scalar>(plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan
         if let Drive::Hydraulic { chain, syringe_area_m2, plunger } = &muscle.drive {
             let inflow = D::constant(syringe_area_m2 * inputs[*plunger].slope);
             chain.rates(&state.chains[i], inflow, forces.port, &mut out.chains[i]);
+            state.chains[i].boiling.iter().for_each(|b| switches.note(*b));
         }
+    }
+    switches
+}
+
+/// Which of the plant's one-sided elements act, as one number (a collision only delays new tangents).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Switches(u64);
+
+impl Switches {
+    fn note(&mut self, acts: bool) {
+        self.0 = self.0.rotate_left(1) ^ u64::from(acts);
     }
 }
 

@@ -172,6 +172,7 @@ impl Simulation {
         }
         let joints = self.known_force.len();
         self.renew_coordinates(h);
+        self.stepper.plant_changed();
         self.positions.copy_from_slice(&self.built.state.y[..joints]);
         let substeps = self.scene.file.simulation.substeps;
         let fine = h / substeps as f64;
@@ -179,8 +180,10 @@ impl Simulation {
             let start = self.time_s + fine * i as f64;
             self.renew_spans(start, fine);
             self.fine_step(fine);
+            self.spans.iter_mut().for_each(|span| span.value += fine * span.slope);
         }
-        self.carry_engine(h, fine);
+        self.spans.iter_mut().zip(&self.inputs).for_each(|(span, input)| span.value = input.value(end_s));
+        self.carry_engine(h);
         self.time_s = end_s;
     }
 
@@ -234,7 +237,7 @@ impl Simulation {
 
     fn renew_spans(&mut self, start_s: f64, h: f64) {
         for (span, input) in self.spans.iter_mut().zip(&self.inputs) {
-            let value = input.value(start_s);
+            let value = span.value;
             *span = InputSpan { value, slope: (input.value(start_s + h) - value) / h };
         }
         let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement) else { return };
@@ -249,7 +252,7 @@ impl Simulation {
     }
 
     /// Lets the engine follow, and takes back what contacts changed.
-    fn carry_engine(&mut self, h: f64, last_fine: f64) {
+    fn carry_engine(&mut self, h: f64) {
         let Some(mechanism) = &mut self.mechanism else { return };
         let joints = self.known_force.len();
         let Built { plant, state, .. } = &mut self.built;
@@ -272,7 +275,7 @@ impl Simulation {
             state.w[i] += moved / h;
         }
         if let Some(book) = &mut self.energy {
-            book.engine_changed(plant, state, &self.spans, last_fine);
+            book.engine_changed(plant, state, &self.spans, 0.0);
         }
     }
 
