@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 use smam::recording::{Recording, read_csv, survey};
-use smam::scene::{Override, Scene};
+use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
 
 use super::interrupt::{interrupted, stop_flag};
@@ -62,7 +62,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         simulation.keep_energy_book();
     }
     let end_s = schedule.0.last().copied().unwrap_or(0.0);
-    let mut observers = observers(arguments, &name, end_s)?;
+    let view = simulation.scene().file.view.clone();
+    let mut observers = observers(arguments, &name, &view, end_s)?;
     let begun = Instant::now();
     let outcome = run_simulation(&mut simulation, &schedule, stop_flag(), &mut observers);
     let wall_s = begun.elapsed().as_secs_f64();
@@ -142,19 +143,19 @@ fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
     arguments.rrd.clone().or_else(default)
 }
 
-fn observers(arguments: &RunArguments, name: &str, end_s: f64) -> Result<Observers, CliError> {
+fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) -> Result<Observers, CliError> {
     let mut observers = Observers {
         csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
         recorder: arguments.check.then(Recorder::default),
         progress: Some(Progress::new(end_s)),
         ..Observers::default()
     };
-    add_viewers(arguments, name, &mut observers)?;
+    add_viewers(arguments, name, view, &mut observers)?;
     Ok(observers)
 }
 
 #[cfg(feature = "viz")]
-fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) -> Result<(), CliError> {
+fn add_viewers(arguments: &RunArguments, name: &str, view: &ViewSpec, observers: &mut Observers) -> Result<(), CliError> {
     use smam::view::{DEFAULT_PORT, ViewOptions, ViewSink, Viewer};
     let mut sinks = Vec::new();
     if let Some(path) = rrd_path(arguments, name) {
@@ -169,8 +170,13 @@ fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) 
     if arguments.serve {
         sinks.push(ViewSink::Serve { port: DEFAULT_PORT });
     }
+    let options = ViewOptions {
+        tension_scale_n: view.tension_scale_n,
+        pressure_scale_pa: view.pressure_scale_pa,
+        ..ViewOptions::default()
+    };
     for sink in sinks {
-        let viewer = Viewer::open(&sink, ViewOptions::default())?;
+        let viewer = Viewer::open(&sink, options.clone())?;
         eprintln!("{}", viewer.announcement());
         observers.viewers.push(viewer);
     }
@@ -178,7 +184,7 @@ fn add_viewers(arguments: &RunArguments, name: &str, observers: &mut Observers) 
 }
 
 #[cfg(not(feature = "viz"))]
-fn add_viewers(arguments: &RunArguments, name: &str, _: &mut Observers) -> Result<(), CliError> {
+fn add_viewers(arguments: &RunArguments, name: &str, _: &ViewSpec, _: &mut Observers) -> Result<(), CliError> {
     if arguments.view || arguments.serve || rrd_path(arguments, name).is_some() {
         return Err(CliError::Usage(
             "--rrd, --view and --serve need the viewer, which this build leaves out\n  remedy: build with the default features".to_owned(),

@@ -24,7 +24,7 @@ pub struct LmOptions {
 
 impl Default for LmOptions {
     fn default() -> Self {
-        Self { max_iterations: 30, relative_decrease: 1e-6, difference: 1e-5 }
+        Self { max_iterations: 30, relative_decrease: 1e-5, difference: 1e-5 }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Simulating what was recorded.
 
-use crate::recording::{Recording, RecordingError, RecordingSet, Role, Run, parse_column};
+use crate::recording::{Channel, Recording, RecordingError, RecordingSet, Role, Run, parse_column};
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
@@ -70,7 +70,22 @@ pub fn replay(scene: &str, overrides: &[Override], run: &RecordedRun, every: usi
         simulation.set_input(input, InputSource::Recorded(run.recording.piecewise_si(input)?));
     }
     let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
-    Ok(record(&mut simulation, &Schedule(times))?)
+    let recorded = record(&mut simulation, &Schedule(times))?;
+    Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording)?)
+}
+
+/// Shifts the outputs that count from the start of a recording to the recording's first sample.
+fn begin_where_recorded(scene: &Scene, simulated: &Recording, measured: &Recording) -> Result<Recording, RecordingError> {
+    let shifted = simulated.channels().iter().map(|channel| {
+        let spec = scene.file.output.iter().find(|o| o.channel == channel.column);
+        let first = |values: &[f64]| values.iter().copied().find(|v| v.is_finite());
+        let pair = spec.filter(|s| s.counts_from_start).and_then(|_| {
+            Some(first(&measured.find(&channel.column)?.values)? - first(&channel.values)?)
+        });
+        let shift = pair.unwrap_or(0.0);
+        Channel::new(channel.column.clone(), channel.values.iter().map(|v| v + shift).collect())
+    });
+    Recording::new(simulated.time_s().to_vec(), shifted.collect())
 }
 
 /// Checks that every declared output is a channel of the scene and every input of the scene was recorded.

@@ -275,6 +275,9 @@ pub struct OutputSpec {
     /// The muscle, cable, joint or body whose quantity it is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of: Vec<String>,
+    /// A recording's zero is its first sample: a comparison shifts the simulation to begin where the recording does.
+    #[serde(default)]
+    pub counts_from_start: bool,
 }
 
 /// What an output channel shows.
@@ -373,15 +376,32 @@ pub enum Measure {
 }
 
 /// Where to look.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ViewSpec {
+    /// Tension drawn in full colour, N.
+    pub tension_scale_n: f64,
+    /// Muscle pressure drawn in full colour, Pa.
+    pub pressure_scale_pa: f64,
     pub camera_target_m: [f64; 3],
     pub camera_position_m: [f64; 3],
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tip_link: Option<String>,
     /// Pairs of channels that draw hysteresis loops: horizontal, vertical.
     pub loops: Vec<(String, String)>,
+}
+
+impl Default for ViewSpec {
+    fn default() -> Self {
+        Self {
+            tension_scale_n: 1.0,
+            pressure_scale_pa: 2.0e6,
+            camera_target_m: [0.0; 3],
+            camera_position_m: [0.0; 3],
+            tip_link: None,
+            loops: Vec::new(),
+        }
+    }
 }
 
 fn one() -> f64 {
