@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Everything that must hold before a change goes in; CI runs the same. From anywhere: ./check.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+target=${CARGO_TARGET_DIR:-target}
+smam=$target/release/smam
+rerun_version=0.36.3 # that of Cargo.toml: the file format changes between minor releases
+
+say() { printf '\n== %s\n' "$*"; }
+
+say "format"
+cargo fmt --check
+
+say "lints"
+cargo clippy --no-default-features --all-targets -- -D warnings
+
+say "tests: library, contracts, documentation"
+cargo test --no-default-features
+
+say "release build, viewer included"
+cargo build --release
+
+say "stock scenes against their expectations"
+# Names as the program lists them: one per line, up to the empty line.
+scenes=$("$smam" scenes | awk 'NF == 0 { exit } { print $1 }')
+[ -n "$scenes" ] || { echo "no stock scenes listed" >&2; exit 1; }
+failed=()
+for scene in $scenes; do
+    if output=$("$smam" run "$scene" --check 2>&1); then
+        echo "ok    $scene: $(tail -n 1 <<<"$output" | sed "s/^$scene: //")"
+    else
+        printf 'FAIL  %s\n%s\n' "$scene" "$output"
+        failed+=("$scene")
+    fi
+done
+if [ "${#failed[@]}" -gt 0 ]; then
+    echo "scenes that failed: ${failed[*]}" >&2
+    exit 1
+fi
+
+say "the README's first command"
+rm -f out/bending_catheter.csv out/bending_catheter.rrd
+cargo run --release -- run scenes/bending_catheter.toml
+for file in out/bending_catheter.csv out/bending_catheter.rrd; do
+    [ -s "$file" ] || { echo "$file was not written" >&2; exit 1; }
+    echo "ok    $file"
+done
+
+say "what it wrote, read by the viewer's own program"
+venv=$target/rerun-$rerun_version
+if [ ! -x "$venv/bin/rerun" ]; then
+    { python3 -m venv "$venv" && "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "rerun-sdk==$rerun_version"; } ||
+        rm -rf "$venv"
+fi
+if [ -x "$venv/bin/rerun" ]; then
+    "$venv/bin/rerun" rrd verify out/bending_catheter.rrd
+    echo "ok    rerun $rerun_version reads it"
+else
+    echo "skipped: rerun-sdk $rerun_version could not be installed (no python3 venv, or no network)"
+fi
+
+say "documentation"
+RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --no-default-features
+
+say "all is well"

@@ -1,0 +1,209 @@
+//! Contract: imports point down, engine and viewer stay behind their folders, and the map shows every folder.
+//!
+//! The sources are read as text: no compiler, no crates. `cargo test --test architecture`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What each top-level folder (or file) of `src/` may import from the others. Whatever is not listed is upward.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("scalar", &[]),
+    ("recording", &[]),
+    ("mechanism", &[]),
+    ("hydraulics", &["scalar"]),
+    ("muscle", &["scalar"]),
+    ("hysteresis", &["scalar"]),
+    ("scene", &["hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar"]),
+    ("system", &["hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
+    ("identify", &["recording", "scalar", "scene", "system"]),
+    ("report", &["recording"]),
+    ("view", &["mechanism", "system"]),
+    ("cli", &["identify", "mechanism", "recording", "report", "scene", "system", "view"]),
+];
+
+/// Crates that belong to one folder: names as they stand in Rust paths, and the folder.
+const OWNED: &[(&str, &str)] = &[("rapier3d_f64", "mechanism"), ("urdf_rs", "mechanism"), ("rerun", "view")];
+
+/// Roots of the crate; they name every folder and stand outside the order.
+const ROOTS: [&str; 2] = ["lib", "main"];
+
+fn root() -> PathBuf {
+    PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR"))
+}
+
+/// A source file: path from `src/`, top-level folder, and text without comments.
+struct Source {
+    path: String,
+    module: String,
+    code: String,
+}
+
+fn sources() -> Vec<Source> {
+    let src = root().join("src");
+    let mut files = Vec::new();
+    collect(&src, &mut files);
+    files.sort();
+    files.iter().map(|file| read(&src, file)).collect()
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a readable folder") {
+        let path = entry.expect("a readable entry").path();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+fn read(src: &Path, file: &Path) -> Source {
+    let inside = file.strip_prefix(src).expect("below src");
+    let first = inside.iter().next().expect("a name").to_string_lossy();
+    let text = fs::read_to_string(file).expect("UTF-8");
+    Source {
+        path: inside.display().to_string(),
+        module: first.trim_end_matches(".rs").to_owned(),
+        code: text.lines().map(without_comment).collect::<Vec<_>>().join("\n"),
+    }
+}
+
+/// The line up to its `//`. One inside a text literal cuts too much: harmless here, imports hold no literals.
+fn without_comment(line: &str) -> &str {
+    line.split("//").next().unwrap_or("")
+}
+
+/// Top-level modules named after `crate::` or `smam::`, grouped imports (`crate::{a, b::c}`) included.
+fn imports(code: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for prefix in ["crate::", "smam::"] {
+        for (at, _) in code.match_indices(prefix) {
+            if is_word_before(code, at) {
+                continue;
+            }
+            let rest = &code[at + prefix.len()..];
+            match rest.strip_prefix('{') {
+                Some(group) => found.extend(group_heads(group)),
+                None => found.extend(Some(word(rest)).filter(|w| !w.is_empty())),
+            }
+        }
+    }
+    found
+}
+
+/// Whether the character before `at` continues a name or a path (`othercrate::`, `x::crate::`).
+fn is_word_before(code: &str, at: usize) -> bool {
+    code[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_')
+}
+
+fn word(text: &str) -> String {
+    text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+}
+
+/// First names of a brace group's entries, up to its closing brace.
+fn group_heads(group: &str) -> Vec<String> {
+    let mut heads = Vec::new();
+    let (mut depth, mut entry) = (0, String::new());
+    for c in group.chars() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => heads.push(word(std::mem::take(&mut entry).trim_start())),
+            _ if depth == 0 => entry.push(c),
+            _ => {}
+        }
+    }
+    heads.push(word(entry.trim_start()));
+    heads.retain(|h| !h.is_empty());
+    heads
+}
+
+/// Whether `name` stands in the code as a crate path (`name::`, `use name`) and not as part of another name.
+fn names_crate(code: &str, name: &str) -> bool {
+    code.match_indices(name).any(|(at, _)| {
+        let after = code[at + name.len()..].chars().next().unwrap_or(' ');
+        let is_path = after == ':' || code[..at].ends_with("use ") || code[..at].ends_with("extern crate ");
+        is_path && !is_word_before(code, at) && !after.is_alphanumeric() && after != '_'
+    })
+}
+
+#[test]
+fn imports_point_down() {
+    let sources = sources();
+    let modules: BTreeSet<&str> = sources.iter().map(|s| s.module.as_str()).collect();
+    let mut wrong = Vec::new();
+    for source in sources.iter().filter(|s| !ROOTS.contains(&s.module.as_str())) {
+        let Some((_, allowed)) = ALLOWED.iter().find(|(name, _)| *name == source.module) else {
+            wrong.push(format!(
+                "src/{}: the folder `{}` is not in the table of allowed imports",
+                source.path, source.module
+            ));
+            continue;
+        };
+        for import in imports(&source.code) {
+            let is_module = modules.contains(import.as_str()) && import != source.module;
+            if is_module && !allowed.contains(&import.as_str()) {
+                wrong.push(format!("src/{}: `{}` must not import `{import}`", source.path, source.module));
+            }
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "upward imports:\n  {}", wrong.join("\n  "));
+}
+
+/// The table itself has an order: every folder comes after all that it may import.
+#[test]
+fn allowed_imports_have_no_cycle() {
+    for (i, (name, allowed)) in ALLOWED.iter().enumerate() {
+        for import in *allowed {
+            let earlier = ALLOWED[..i].iter().any(|(other, _)| other == import);
+            assert!(earlier, "`{name}` may import `{import}`, which does not stand above it in the table");
+        }
+    }
+}
+
+#[test]
+fn engine_and_viewer_stay_in_their_folders() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        for (name, owner) in OWNED {
+            if source.module != *owner && names_crate(&source.code, name) {
+                wrong.push(format!("src/{}: only `{owner}` may use the crate `{name}`", source.path));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_map_shows_every_folder() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let modules: BTreeSet<String> = sources().into_iter().map(|s| s.module).collect();
+    let known = |m: &String| map.contains(&format!("`{m}/`")) || map.contains(&format!("`{m}.rs`"));
+    let missing: Vec<&String> = modules.iter().filter(|m| !known(m)).collect();
+    assert!(missing.is_empty(), "ARCHITECTURE.md does not show: {missing:?}");
+    let lines = map.lines().count();
+    assert!(lines <= 150, "ARCHITECTURE.md has {lines} lines; 150 are enough");
+}
+
+#[test]
+fn the_map_shows_no_folder_that_is_gone() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let rows = map.lines().filter_map(|line| line.strip_prefix("| `"));
+    for name in rows.filter_map(|row| row.split('`').next()) {
+        let path = root().join("src").join(name.trim_end_matches('/'));
+        assert!(path.exists(), "ARCHITECTURE.md shows `{name}`, which is not in src/");
+    }
+}
+
+#[test]
+fn the_reader_of_imports_sees_what_it_should() {
+    let code =
+        "use crate::scene::{A, B};\nlet x = crate::muscle::Wall;\nuse crate::{view::V, report};\nuse othercrate::cli;";
+    let expected: BTreeSet<String> = ["scene", "muscle", "view", "report"].map(str::to_owned).into();
+    assert_eq!(imports(code), expected);
+    assert!(names_crate("use rerun::Vec3D;", "rerun") && names_crate("let a = rerun::X;", "rerun"));
+    assert!(!names_crate("let rerun_path = 1; prerun::x()", "rerun"));
+}
