@@ -39,7 +39,11 @@ fn scenes(criterion: &mut Criterion) {
     for (name, step_s, substeps) in CASES {
         for (part, substeps) in [("whole", substeps), ("one fine step per engine step", 1)] {
             group.bench_function(format!("{name}/{part}"), |b| {
-                b.iter_batched(|| simulation(name, step_s, substeps), |s| black_box(one_second(s)), BatchSize::PerIteration);
+                b.iter_batched(
+                    || simulation(name, step_s, substeps),
+                    |s| black_box(one_second(s)),
+                    BatchSize::PerIteration,
+                );
             });
         }
     }

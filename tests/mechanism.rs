@@ -33,9 +33,7 @@ struct Outer {
 
 impl Outer {
     fn new(mechanism: &Mechanism) -> Self {
-        Self {
-            known: vec![0.0; mechanism.coordinates().len()],
-        }
+        Self { known: vec![0.0; mechanism.coordinates().len()] }
     }
 
     fn step(&mut self, mechanism: &mut Mechanism, h: f64, force: &[f64]) -> Vec<f64> {
@@ -116,10 +114,7 @@ fn val_hinge_under_a_constant_moment() {
         outer.step(&mut m, 1e-3, &[4e-3]);
     }
     let error = relative(positions(&m)[0], 0.1 + 0.4);
-    println!(
-        "hinge: error {error:.1e}, known force {:.1e}",
-        outer.known[0]
-    );
+    println!("hinge: error {error:.1e}, known force {:.1e}", outer.known[0]);
     assert!(error.abs() < 1e-6);
 }
 
@@ -138,14 +133,8 @@ lower_stop = { position_rad = 0.0, stiffness_n_m_rad = 0.025 }
 ";
 
 fn lever_route(joints: std::ops::RangeInclusive<usize>, lever: f64) -> RouteSpec {
-    let lever = |i| LeverSpec {
-        joint: format!("notch_{i}"),
-        lever_m: lever,
-    };
-    RouteSpec {
-        lever: joints.map(lever).collect(),
-        ..RouteSpec::default()
-    }
+    let lever = |i| LeverSpec { joint: format!("notch_{i}"), lever_m: lever };
+    RouteSpec { lever: joints.map(lever).collect(), ..RouteSpec::default() }
 }
 
 #[test]
@@ -162,42 +151,23 @@ fn val_eight_hinges_under_cable_tension() {
     }
     let bend: f64 = positions(&m)[..8].iter().sum();
     let want = tension * 2.62e-3 / 1.05e-3;
-    let (error, drawn) = (
-        relative(bend, want),
-        length - m.path_length(&route, &mut slope),
-    );
-    println!(
-        "8 hinges: bend {:.3} deg, error {error:.1e}",
-        bend.to_degrees()
-    );
+    let (error, drawn) = (relative(bend, want), length - m.path_length(&route, &mut slope));
+    println!("8 hinges: bend {:.3} deg, error {error:.1e}", bend.to_degrees());
     assert!(error.abs() < 1e-5);
     assert!(relative(drawn, 2.62e-3 * want).abs() < 1e-5);
     // The tip has turned towards +z, the side of the cutouts, by that angle.
-    let tip = m
-        .link_names()
-        .iter()
-        .position(|n| n == "segment_8")
-        .unwrap();
+    let tip = m.link_names().iter().position(|n| n == "segment_8").unwrap();
     let [_, y, _, w] = m.link_poses()[tip].rotation_xyzw;
     assert!((2.0 * (-y).atan2(w) - bend).abs() < 1e-9);
 }
 
 #[test]
 fn val_cable_over_a_pulley() {
-    let mut m = load_model(
-        "urdf = \"antagonistic_pulley.urdf\"\n[[joint]]\njoints = [\"pulley\"]\ndamping_n_m_s_rad = 2e-5",
-    );
-    let levers = |lever_m| RouteSpec {
-        lever: vec![LeverSpec {
-            joint: "pulley".into(),
-            lever_m,
-        }],
-        ..RouteSpec::default()
-    };
-    let (one, two) = (
-        m.route(&levers(8e-3)).unwrap(),
-        m.route(&levers(-8e-3)).unwrap(),
-    );
+    let mut m =
+        load_model("urdf = \"antagonistic_pulley.urdf\"\n[[joint]]\njoints = [\"pulley\"]\ndamping_n_m_s_rad = 2e-5");
+    let levers =
+        |lever_m| RouteSpec { lever: vec![LeverSpec { joint: "pulley".into(), lever_m }], ..RouteSpec::default() };
+    let (one, two) = (m.route(&levers(8e-3)).unwrap(), m.route(&levers(-8e-3)).unwrap());
     let (stiffness, pull, mut outer) = (300.0, 1e-3, Outer::new(&m));
     let mut slope = [0.0];
     for _ in 0..20_000 {
@@ -217,19 +187,14 @@ fn val_jaws_stay_symmetrical() {
     let mut outer = Outer::new(&m);
     let names = m.link_names();
     let jaw = |name: &str| names.iter().position(|n| n == name).unwrap();
-    let (left, right, tip) = (
-        jaw("jaw_left_link"),
-        jaw("jaw_right_link"),
-        jaw("segment_8"),
-    );
+    let (left, right, tip) = (jaw("jaw_left_link"), jaw("jaw_right_link"), jaw("segment_8"));
     let mut force = vec![0.0; 9];
     force[8] = -1.5e-3 * 0.3;
     let mut worst: f64 = 0.0;
     for _ in 0..1500 {
         outer.step(&mut m, 2e-4, &force);
         let poses = m.link_poses();
-        let turn =
-            |link: usize| 2.0 * poses[link].rotation_xyzw[1].atan2(poses[link].rotation_xyzw[3]);
+        let turn = |link: usize| 2.0 * poses[link].rotation_xyzw[1].atan2(poses[link].rotation_xyzw[3]);
         worst = worst.max((turn(left) + turn(right) - 2.0 * turn(tip)).abs());
     }
     let closed = positions(&m)[8];
@@ -241,9 +206,8 @@ fn val_jaws_stay_symmetrical() {
 #[test]
 fn val_mass_matrix_of_two_links() {
     for (a, b) in [(0.0, 0.0), (0.4, -1.1), (-2.0, 2.5)] {
-        let text = format!(
-            "[[joint]]\njoints = [\"j1\"]\ninitial_rad = {a}\n[[joint]]\njoints = [\"j2\"]\ninitial_rad = {b}"
-        );
+        let text =
+            format!("[[joint]]\njoints = [\"j1\"]\ninitial_rad = {a}\n[[joint]]\njoints = [\"j2\"]\ninitial_rad = {b}");
         let m = load_urdf(&two_links(), &text).unwrap();
         let mut mass = DMatrix::zeros(0, 0);
         m.mass_matrix(&mut mass);
@@ -252,11 +216,7 @@ fn val_mass_matrix_of_two_links() {
         let m22 = i2 + m2 * c2 * c2;
         let m12 = m22 + cross;
         let m11 = i1 + m1 * c1 * c1 + m2 * l * l + m12 + cross;
-        for (have, want) in [
-            (mass[(0, 0)], m11),
-            (mass[(0, 1)], m12),
-            (mass[(1, 1)], m22),
-        ] {
+        for (have, want) in [(mass[(0, 0)], m11), (mass[(0, 1)], m12), (mass[(1, 1)], m22)] {
             assert!(relative(have, want).abs() < 1e-12, "{have:e} {want:e}");
         }
     }
@@ -272,53 +232,32 @@ fn val_weight_of_two_links_and_a_hung_mass() {
     let (g, cos) = (9.81, 0.3f64.cos());
     let lower = -g * cos * (1e-3 + 0.05) * 4e-3;
     let upper = -g * cos * (2e-3 * 5e-3 + 0.051 * 16e-3);
-    assert!(
-        relative(weight[1], lower).abs() < 1e-12,
-        "{weight:?} {lower:e}"
-    );
-    assert!(
-        relative(weight[0], upper).abs() < 1e-12,
-        "{weight:?} {upper:e}"
-    );
+    assert!(relative(weight[1], lower).abs() < 1e-12, "{weight:?} {lower:e}");
+    assert!(relative(weight[0], upper).abs() < 1e-12, "{weight:?} {upper:e}");
 }
 
 #[test]
 fn val_via_route_slope_is_the_difference_quotient() {
     let at = |a: f64, b: f64| {
-        let text = format!(
-            "[[joint]]\njoints = [\"j1\"]\ninitial_rad = {a}\n[[joint]]\njoints = [\"j2\"]\ninitial_rad = {b}"
-        );
+        let text =
+            format!("[[joint]]\njoints = [\"j1\"]\ninitial_rad = {a}\n[[joint]]\njoints = [\"j2\"]\ninitial_rad = {b}");
         let m = load_urdf(&two_links(), &text).unwrap();
-        let point = |link: &str, point_m| PointSpec {
-            link: link.into(),
-            point_m,
-        };
+        let point = |link: &str, point_m| PointSpec { link: link.into(), point_m };
         let via = vec![
             point("base", [-5e-3, 2e-3, 1e-3]),
             point("upper", [4e-3, 2e-3, 0.0]),
             point("upper", [8e-3, 2e-3, 0.0]),
             point("lower", [3e-3, 1e-3, -1e-3]),
         ];
-        let route = m
-            .route(&RouteSpec {
-                via,
-                ..RouteSpec::default()
-            })
-            .unwrap();
+        let route = m.route(&RouteSpec { via, ..RouteSpec::default() }).unwrap();
         let mut slope = [0.0; 2];
         (m.path_length(&route, &mut slope), slope)
     };
     let (a, b, d) = (0.3, -0.7, 1e-6);
     let slope = at(a, b).1;
-    let wanted = [
-        (at(a + d, b).0 - at(a - d, b).0) / (2.0 * d),
-        (at(a, b + d).0 - at(a, b - d).0) / (2.0 * d),
-    ];
+    let wanted = [(at(a + d, b).0 - at(a - d, b).0) / (2.0 * d), (at(a, b + d).0 - at(a, b - d).0) / (2.0 * d)];
     for i in 0..2 {
-        assert!(
-            relative(slope[i], wanted[i]).abs() < 1e-7,
-            "{slope:?} {wanted:?}"
-        );
+        assert!(relative(slope[i], wanted[i]).abs() < 1e-7, "{slope:?} {wanted:?}");
     }
 }
 
@@ -336,10 +275,7 @@ fn val_the_engine_arrives_where_it_is_told() {
         let mut v = vec![0.0; 9];
         m.velocities(&mut v);
         let size = target.iter().fold(1e-3f64, |s, v| s.max(v.abs()));
-        worst = v
-            .iter()
-            .zip(&target)
-            .fold(worst, |w, (v, t)| w.max((v - t).abs() / size));
+        worst = v.iter().zip(&target).fold(worst, |w, (v, t)| w.max((v - t).abs() / size));
     }
     println!("arrival: worst relative velocity error {worst:.1e}");
     assert!(worst < 1e-3);
@@ -407,16 +343,8 @@ fn val_a_held_ball_answers_with_the_known_force() {
     let total: f64 = forces.iter().sum();
     // The jaws push the ball back a little until their faces are parallel; then it stays, normal forces at its middle.
     let pin = 0.0318;
-    assert!(
-        relative(total * (ball[0] - pin), reaction).abs() < 1e-3,
-        "{total}"
-    );
-    assert!(
-        ball.iter()
-            .zip([0.0363, 0.0, 0.0])
-            .all(|(a, b)| (a - b).abs() < 3e-4),
-        "{ball:?}"
-    );
+    assert!(relative(total * (ball[0] - pin), reaction).abs() < 1e-3, "{total}");
+    assert!(ball.iter().zip([0.0363, 0.0, 0.0]).all(|(a, b)| (a - b).abs() < 3e-4), "{ball:?}");
 }
 
 #[test]
@@ -434,10 +362,7 @@ fn val_a_slide_pressed_on_a_wall_answers_with_the_known_force() {
         outer.step(&mut m, 1e-4, &[2.0]);
     }
     let (x, known) = (positions(&m)[0], outer.known[0]);
-    println!(
-        "wall: x {x:.6}, known force {known:.6}, contacts {:?}",
-        m.contacts()
-    );
+    println!("wall: x {x:.6}, known force {known:.6}, contacts {:?}", m.contacts());
     assert!((x - 1e-3).abs() < 1e-5);
     assert!(relative(known, -2.0).abs() < 1e-3);
     assert!(relative(m.contacts()[0].force_n, 2.0).abs() < 1e-2);
@@ -448,11 +373,7 @@ fn regress_two_runs_are_bit_identical() {
     let run = || {
         let mut m = load_model(GRIP);
         let outer = grip(&mut m, 400);
-        (
-            positions(&m)[0].to_bits(),
-            outer.known[0].to_bits(),
-            m.link_poses(),
-        )
+        (positions(&m)[0].to_bits(), outer.known[0].to_bits(), m.link_poses())
     };
     assert_eq!(run(), run());
 }
@@ -464,9 +385,7 @@ fn regress_a_snapshot_goes_on_bit_for_bit() {
     let saved = serde_json::to_string(&m.snapshot()).unwrap();
     let mut again = load_model(GRIP);
     again.restore(&serde_json::from_str::<Snapshot>(&saved).unwrap());
-    let mut other = Outer {
-        known: outer.known.clone(),
-    };
+    let mut other = Outer { known: outer.known.clone() };
     for _ in 0..200 {
         outer.step(&mut m, 1e-4, &[-3e-3]);
         other.step(&mut again, 1e-4, &[-3e-3]);
@@ -480,11 +399,7 @@ fn stock_catheter_inertias() {
     let m = load_model(CATHETER);
     let mut mass = DMatrix::zeros(0, 0);
     m.mass_matrix(&mut mass);
-    println!(
-        "bending inertia {:.3e}, jaws {:.3e}",
-        mass[(0, 0)],
-        mass[(8, 8)]
-    );
+    println!("bending inertia {:.3e}, jaws {:.3e}", mass[(0, 0)], mass[(8, 8)]);
     assert!((1.5e-8..2.5e-8).contains(&mass[(0, 0)]));
     assert!(relative(mass[(8, 8)], 2e-9).abs() < 1e-6);
     assert_eq!(m.coordinates().len(), 9);
@@ -507,13 +422,7 @@ fn followers_are_summed_into_their_leader() {
         rod("a", 1e-3, 1e-3, 1e-8),
         rod("b", 1e-3, 1e-3, 1e-8),
         joint("lead", "revolute", ["base", "a"], 0.0, ""),
-        joint(
-            "follow",
-            "revolute",
-            ["base", "b"],
-            0.0,
-            "<mimic joint=\"lead\" multiplier=\"-2\" offset=\"0.5\"/>"
-        ),
+        joint("follow", "revolute", ["base", "b"], 0.0, "<mimic joint=\"lead\" multiplier=\"-2\" offset=\"0.5\"/>"),
     );
     let text = "[[joint]]\njoints = [\"lead\"]\nstiffness_n_m_rad = 1.0\n\
                 [[joint]]\njoints = [\"follow\"]\nstiffness_n_m_rad = 0.5\ndamping_n_m_s_rad = 0.025\nrest_rad = 0.1\n\
@@ -524,13 +433,7 @@ fn followers_are_summed_into_their_leader() {
     assert!(relative(c.rest, -2.0 * 0.5 * (0.1 - 0.5) / 3.0).abs() < 1e-12);
     let stop = c.upper_stop.unwrap();
     assert_eq!((stop.position, stop.stiffness), (0.5, 12.0));
-    let route = RouteSpec {
-        lever: vec![LeverSpec {
-            joint: "follow".into(),
-            lever_m: 1e-3,
-        }],
-        ..RouteSpec::default()
-    };
+    let route = RouteSpec { lever: vec![LeverSpec { joint: "follow".into(), lever_m: 1e-3 }], ..RouteSpec::default() };
     let route = m.route(&route).unwrap();
     let mut slope = [0.0];
     assert!(relative(m.path_length(&route, &mut slope), -0.5e-3).abs() < 1e-12);
@@ -546,17 +449,9 @@ fn followers_are_summed_into_their_leader() {
 
 #[test]
 fn a_locked_slide_is_no_coordinate_but_keeps_its_cable() {
-    let m = load_model(
-        "urdf = \"muscle_bench.urdf\"\n[[joint]]\njoints = [\"slide\"]\nlocked_m = 0.02",
-    );
+    let m = load_model("urdf = \"muscle_bench.urdf\"\n[[joint]]\njoints = [\"slide\"]\nlocked_m = 0.02");
     assert!(m.coordinates().is_empty());
-    let route = RouteSpec {
-        lever: vec![LeverSpec {
-            joint: "slide".into(),
-            lever_m: -1.0,
-        }],
-        ..RouteSpec::default()
-    };
+    let route = RouteSpec { lever: vec![LeverSpec { joint: "slide".into(), lever_m: -1.0 }], ..RouteSpec::default() };
     assert_eq!(m.path_length(&m.route(&route).unwrap(), &mut []), 0.02);
     assert!((m.link_poses()[1].translation_m[0] - 0.07).abs() < 1e-12);
 }
@@ -587,98 +482,31 @@ fn what_cannot_be_simulated_is_refused_by_name() {
         (String::from("no xml"), "", "not a valid URDF"),
         (robot(""), "", "has 0 root links"),
         (robot(&format!("{base}{arm}")), "", "has 2 root links"),
-        (
-            robot(&format!("{base}{base}{arm}{hinge}")),
-            "",
-            "link \"base\": this name is used twice",
-        ),
-        (
-            robot(&format!("{base}{arm}{hinge}{hinge}")),
-            "",
-            "joint \"j\": this name is used twice",
-        ),
-        (
-            good.replace("parent link=\"base\"", "parent link=\"x\""),
-            "",
-            "there is no link \"x\"",
-        ),
-        (
-            good.replace("revolute", "floating"),
-            "",
-            "type Floating is not simulated",
-        ),
-        (
-            good.replace("revolute", "planar"),
-            "",
-            "type Planar is not simulated",
-        ),
+        (robot(&format!("{base}{base}{arm}{hinge}")), "", "link \"base\": this name is used twice"),
+        (robot(&format!("{base}{arm}{hinge}{hinge}")), "", "joint \"j\": this name is used twice"),
+        (good.replace("parent link=\"base\"", "parent link=\"x\""), "", "there is no link \"x\""),
+        (good.replace("revolute", "floating"), "", "type Floating is not simulated"),
+        (good.replace("revolute", "planar"), "", "type Planar is not simulated"),
         (good.replace("0 0 1", "0 0 0"), "", "has no direction"),
         (good.replace("0 0 1", "0 0 nan"), "", "has no direction"),
-        (
-            good.replace("mass value=\"0.001\"", "mass value=\"-1\""),
-            "",
-            "mass = -1 must be > 0",
-        ),
-        (
-            good.replace("mass value=\"0.001\"", "mass value=\"0\""),
-            "",
-            "mass = 0 must be > 0",
-        ),
-        (
-            robot(&format!("{base}<link name=\"arm\"/>{hinge}")),
-            "",
-            "has no <inertial>",
-        ),
-        (
-            good.clone(),
-            "[[joint]]\njoints = [\"k\"]",
-            "no such joint; known: \"j\"",
-        ),
-        (
-            good.clone(),
-            "[[joint]]\njoints = [\"j\"]\nstiffness_n_m = 1.0",
-            "use stiffness_n_m_rad",
-        ),
-        (
-            good.clone(),
-            "[[joint]]\njoints = [\"j\", \"j\"]",
-            "appears twice",
-        ),
-        (
-            good.clone(),
-            "[[joint]]\njoints = [\"j\"]\ndamping_n_m_s_rad = -1.0",
-            "damping = -1 must be >= 0",
-        ),
-        (
-            good.clone(),
-            "[[link_mass]]\nlink = \"no\"\nmass_kg = 1.0",
-            "no such link",
-        ),
-        (
-            good.clone(),
-            "[contact]\nlinks = [\"arm\"]",
-            "has no <collision>",
-        ),
-        (
-            good.replace("</joint>", "<mimic joint=\"j\"/></joint>"),
-            "",
-            "mimics itself",
-        ),
-        (
-            good.replace("</joint>", "<mimic joint=\"k\"/></joint>"),
-            "",
-            "which does not exist",
-        ),
+        (good.replace("mass value=\"0.001\"", "mass value=\"-1\""), "", "mass = -1 must be > 0"),
+        (good.replace("mass value=\"0.001\"", "mass value=\"0\""), "", "mass = 0 must be > 0"),
+        (robot(&format!("{base}<link name=\"arm\"/>{hinge}")), "", "has no <inertial>"),
+        (good.clone(), "[[joint]]\njoints = [\"k\"]", "no such joint; known: \"j\""),
+        (good.clone(), "[[joint]]\njoints = [\"j\"]\nstiffness_n_m = 1.0", "use stiffness_n_m_rad"),
+        (good.clone(), "[[joint]]\njoints = [\"j\", \"j\"]", "appears twice"),
+        (good.clone(), "[[joint]]\njoints = [\"j\"]\ndamping_n_m_s_rad = -1.0", "damping = -1 must be >= 0"),
+        (good.clone(), "[[link_mass]]\nlink = \"no\"\nmass_kg = 1.0", "no such link"),
+        (good.clone(), "[contact]\nlinks = [\"arm\"]", "has no <collision>"),
+        (good.replace("</joint>", "<mimic joint=\"j\"/></joint>"), "", "mimics itself"),
+        (good.replace("</joint>", "<mimic joint=\"k\"/></joint>"), "", "which does not exist"),
     ];
     for (urdf, text, expected) in cases {
         let message = match load_urdf(urdf, text) {
             Ok(_) => panic!("accepted, expected: {expected}"),
             Err(error) => error.to_string(),
         };
-        assert!(
-            message.contains(expected),
-            "{message}\nexpected: {expected}"
-        );
+        assert!(message.contains(expected), "{message}\nexpected: {expected}");
     }
 }
 
@@ -706,13 +534,7 @@ fn dropped_elements_become_warnings() {
 fn mixed_up_routes_are_refused() {
     let m = load_model("urdf = \"muscle_bench.urdf\"");
     assert!(m.route(&RouteSpec::default()).is_err());
-    let unknown = RouteSpec {
-        lever: vec![LeverSpec {
-            joint: "x".into(),
-            lever_m: 1.0,
-        }],
-        ..RouteSpec::default()
-    };
+    let unknown = RouteSpec { lever: vec![LeverSpec { joint: "x".into(), lever_m: 1.0 }], ..RouteSpec::default() };
     let message = m.route(&unknown).unwrap_err().to_string();
     assert!(message.contains("known: \"slide\""), "{message}");
 }
@@ -720,40 +542,14 @@ fn mixed_up_routes_are_refused() {
 /// Every attribute of every model in turn becomes nonsense, and the text is cut at many places.
 #[test]
 fn no_urdf_makes_it_panic() {
-    for file in [
-        "muscle_bench.urdf",
-        "antagonistic_pulley.urdf",
-        "bending_catheter.urdf",
-    ] {
+    for file in ["muscle_bench.urdf", "antagonistic_pulley.urdf", "bending_catheter.urdf"] {
         let text = std::fs::read_to_string(models().join(file)).unwrap();
         let quotes: Vec<usize> = text.match_indices('"').map(|(i, _)| i).collect();
-        let mut texts: Vec<String> = (0..text.len())
-            .step_by(397)
-            .map(|i| text[..i].to_owned())
-            .collect();
+        let mut texts: Vec<String> = (0..text.len()).step_by(397).map(|i| text[..i].to_owned()).collect();
         for (k, pair) in quotes.chunks_exact(2).enumerate() {
-            let values = [
-                "",
-                "nan",
-                "inf nan 0",
-                "-1",
-                "1e308",
-                "1e308 0 -1e308",
-                "0 0 0",
-                "jaw_left",
-            ];
-            texts.push(format!(
-                "{}{}{}",
-                &text[..=pair[0]],
-                values[k % values.len()],
-                &text[pair[1]..]
-            ));
-            texts.push(format!(
-                "{}{}{}",
-                &text[..=pair[0]],
-                values[(k / 3) % values.len()],
-                &text[pair[1]..]
-            ));
+            let values = ["", "nan", "inf nan 0", "-1", "1e308", "1e308 0 -1e308", "0 0 0", "jaw_left"];
+            texts.push(format!("{}{}{}", &text[..=pair[0]], values[k % values.len()], &text[pair[1]..]));
+            texts.push(format!("{}{}{}", &text[..=pair[0]], values[(k / 3) % values.len()], &text[pair[1]..]));
         }
         for text in texts {
             let Ok(mut m) = load_urdf(&text, "") else {

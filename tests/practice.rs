@@ -20,7 +20,8 @@ fn holdout_meets_noise(case: &str) {
         return;
     }
     let truth: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).expect("truth")).expect("truth is JSON");
+        serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).expect("truth"))
+            .expect("truth is JSON");
     let calibration = truth[case]["calibration"].as_object().expect("calibration");
     let overrides: Vec<Override> =
         calibration.iter().map(|(key, value)| Override::number(key, value.as_f64().expect("number"))).collect();

@@ -102,7 +102,8 @@ fn val_force_against_elongation_is_straight() {
     let geometry = WallGeometry { inner_radius_m: 0.255e-3, outer_radius_m: 0.525e-3, rest_length_m: 0.05 };
     let wall = Wall::new(geometry, Material::Yeoh { c1_pa: 0.255e6, c2_pa: 0.0155e6, c3_pa: 0.0 }).expect("stock");
     let coil = Coil { stiffness_n_m: 28.3, preload_n: 0.0 };
-    let points: Vec<(f64, f64)> = (0..=125).map(|mm| f64::from(mm) * 1e-3).map(|e: f64| (e, wall.pull_n(e) + coil.pull_n(e))).collect();
+    let points: Vec<(f64, f64)> =
+        (0..=125).map(|mm| f64::from(mm) * 1e-3).map(|e: f64| (e, wall.pull_n(e) + coil.pull_n(e))).collect();
     let n = points.len() as f64;
     let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
     let xy: f64 = points.iter().map(|(x, y)| (x - mx) * (y - my)).sum();

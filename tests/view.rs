@@ -20,10 +20,8 @@ const MUSCLE_REST_M: f64 = 0.1;
 
 #[test]
 fn a_bending_catheter_becomes_a_complete_file() {
-    let file = std::env::var_os("SMAM_VIEW_RRD").map_or_else(
-        || PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view.rrd"),
-        PathBuf::from,
-    );
+    let file = std::env::var_os("SMAM_VIEW_RRD")
+        .map_or_else(|| PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view.rrd"), PathBuf::from);
     let mut viewer = Viewer::open(&ViewSink::File(file.clone()), ViewOptions::default()).unwrap();
     assert!(viewer.announcement().contains("`rerun "));
     viewer.begin(&graph()).unwrap();
@@ -34,11 +32,7 @@ fn a_bending_catheter_becomes_a_complete_file() {
 
     let bytes = std::fs::read(&file).unwrap();
     assert!(bytes.starts_with(b"RRF2"), "an .rrd file's head");
-    assert!(
-        bytes.len() < 4_000_000,
-        "{} bytes for 1001 frames",
-        bytes.len()
-    );
+    assert!(bytes.len() < 4_000_000, "{} bytes for 1001 frames", bytes.len());
 }
 
 fn graph() -> SceneGraph {
@@ -69,62 +63,34 @@ fn graph() -> SceneGraph {
 }
 
 fn link_name(number: usize) -> String {
-    if number == 0 {
-        "base".into()
-    } else {
-        format!("segment {number}")
-    }
+    if number == 0 { "base".into() } else { format!("segment {number}") }
 }
 
 fn visuals() -> Vec<Visual> {
     let plate = Visual {
         link: 0,
-        pose: Pose {
-            translation_m: [0.0, 0.0, -0.004],
-            ..Pose::IDENTITY
-        },
-        shape: Shape::Box {
-            size_m: [0.07, 0.03, 0.006],
-        },
+        pose: Pose { translation_m: [0.0, 0.0, -0.004], ..Pose::IDENTITY },
+        shape: Shape::Box { size_m: [0.07, 0.03, 0.006] },
         colour_rgba: [0.45, 0.47, 0.5, 1.0],
     };
     let segment = |link: usize| Visual {
         link,
-        pose: Pose {
-            translation_m: [0.0, 0.0, 0.5 * LINK_M],
-            ..Pose::IDENTITY
-        },
-        shape: Shape::Cylinder {
-            radius_m: RADIUS_M,
-            length_m: 0.8 * LINK_M,
-        },
+        pose: Pose { translation_m: [0.0, 0.0, 0.5 * LINK_M], ..Pose::IDENTITY },
+        shape: Shape::Cylinder { radius_m: RADIUS_M, length_m: 0.8 * LINK_M },
         colour_rgba: [0.85, 0.87, 0.9, 1.0],
     };
     let tip = Visual {
         link: LINKS,
-        pose: Pose {
-            translation_m: [0.0, 0.0, LINK_M],
-            ..Pose::IDENTITY
-        },
-        shape: Shape::Sphere {
-            radius_m: 0.6 * RADIUS_M,
-        },
+        pose: Pose { translation_m: [0.0, 0.0, LINK_M], ..Pose::IDENTITY },
+        shape: Shape::Sphere { radius_m: 0.6 * RADIUS_M },
         colour_rgba: [0.3, 0.8, 0.5, 1.0],
     };
-    [plate]
-        .into_iter()
-        .chain((1..=LINKS).map(segment))
-        .chain([tip])
-        .collect()
+    [plate].into_iter().chain((1..=LINKS).map(segment)).chain([tip]).collect()
 }
 
 fn muscle(side: f64) -> MuscleGraph {
     MuscleGraph {
-        name: if side < 0.0 {
-            "muscle 1".into()
-        } else {
-            "muscle 2".into()
-        },
+        name: if side < 0.0 { "muscle 1".into() } else { "muscle 2".into() },
         outer_diameter_m: 0.004,
         coil_turns: 120.0,
         rest_length_m: MUSCLE_REST_M,
@@ -143,16 +109,8 @@ fn frame(time_s: f64) -> Frame {
     let angle_rad = 1.3 * FRAC_PI_2 * grow * (phase - 0.5).sin();
     let tensions_n = SIDES.map(|side| (8.5 * side * grow * (phase - 0.35).sin()).max(0.0));
     let link_poses = poses(angle_rad);
-    let contacts = if angle_rad > 0.9 {
-        vec![contact(&link_poses)]
-    } else {
-        Vec::new()
-    };
-    let events = if (time_s - 6.5).abs() < 1e-9 {
-        vec!["muscle 1: cavitation begins".into()]
-    } else {
-        Vec::new()
-    };
+    let contacts = if angle_rad > 0.9 { vec![contact(&link_poses)] } else { Vec::new() };
+    let events = if (time_s - 6.5).abs() < 1e-9 { vec!["muscle 1: cavitation begins".into()] } else { Vec::new() };
     Frame {
         time_s,
         channels: vec![
@@ -166,9 +124,7 @@ fn frame(time_s: f64) -> Frame {
             tensions_n[0],
             tensions_n[1],
         ],
-        cables: (0..2)
-            .map(|n| cable(&link_poses, SIDES[n], elongations_m[n], tensions_n[n]))
-            .collect(),
+        cables: (0..2).map(|n| cable(&link_poses, SIDES[n], elongations_m[n], tensions_n[n])).collect(),
         muscles: (0..2)
             .map(|n| MuscleFrame {
                 elongation_m: elongations_m[n],
@@ -179,10 +135,7 @@ fn frame(time_s: f64) -> Frame {
         contacts,
         joint_positions: vec![angle_rad / LINKS as f64; LINKS],
         events,
-        energy_j: vec![
-            ("stored".into(), 0.1 * angle_rad * angle_rad),
-            ("dissipated".into(), 0.02 * time_s),
-        ],
+        energy_j: vec![("stored".into(), 0.1 * angle_rad * angle_rad), ("dissipated".into(), 0.02 * time_s)],
         link_poses,
     }
 }
@@ -194,10 +147,7 @@ fn poses(angle_rad: f64) -> Vec<Pose> {
     for link in 1..=LINKS {
         let turn = angle_rad * link as f64 / LINKS as f64;
         let (sin, cos) = (0.5 * turn).sin_cos();
-        poses.push(Pose {
-            translation_m,
-            rotation_xyzw: [0.0, sin, 0.0, cos],
-        });
+        poses.push(Pose { translation_m, rotation_xyzw: [0.0, sin, 0.0, cos] });
         translation_m[0] += LINK_M * turn.sin();
         translation_m[2] += LINK_M * turn.cos();
     }
@@ -206,19 +156,12 @@ fn poses(angle_rad: f64) -> Vec<Pose> {
 
 /// From the muscle's moving end through every segment to the tip.
 fn cable(poses: &[Pose], side: f64, elongation_m: f64, tension_n: f64) -> CableFrame {
-    let end = [
-        side * 0.022,
-        0.0,
-        MUSCLE_FOOT_M + MUSCLE_REST_M + elongation_m,
-    ];
+    let end = [side * 0.022, 0.0, MUSCLE_FOOT_M + MUSCLE_REST_M + elongation_m];
     let guide = [side * 1.2 * RADIUS_M, 0.0, 0.0];
-    let along = poses[1..].iter().flat_map(|pose| {
-        [0.1, 0.9].map(|share| outward(pose, side * 1.15 * RADIUS_M, share * LINK_M))
-    });
-    CableFrame {
-        points_m: [end, guide].into_iter().chain(along).collect(),
-        tension_n,
-    }
+    let along = poses[1..]
+        .iter()
+        .flat_map(|pose| [0.1, 0.9].map(|share| outward(pose, side * 1.15 * RADIUS_M, share * LINK_M)));
+    CableFrame { points_m: [end, guide].into_iter().chain(along).collect(), tension_n }
 }
 
 fn outward(pose: &Pose, x: f64, z: f64) -> [f64; 3] {

@@ -109,9 +109,16 @@ fn say_fit(report: &FitReport) {
     }
 }
 
-fn figure(set: &RecordingSet, runs: &[RecordedRun], simulated: &[Recording], fits: &[Vec<ChannelFit>]) -> Vec<ComparedRun> {
+fn figure(
+    set: &RecordingSet,
+    runs: &[RecordedRun],
+    simulated: &[Recording],
+    fits: &[Vec<ChannelFit>],
+) -> Vec<ComparedRun> {
     let compared = runs.iter().zip(simulated).zip(fits).map(|((run, is), fits)| ComparedRun {
-        name: Path::new(&run.run.file).file_name().map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned()),
+        name: Path::new(&run.run.file)
+            .file_name()
+            .map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned()),
         time_s: run.recording.time_s().to_vec(),
         channels: set
             .of_role(Role::Output)
@@ -157,8 +164,15 @@ fn by_channel(fits: &[ChannelFit]) -> Value {
     fits.iter().map(|f| (f.column.clone(), channel_json(f))).collect::<serde_json::Map<_, _>>().into()
 }
 
-fn to_json(scene: &Scene, runs: &[RecordedRun], fits: &[Vec<ChannelFit>], pooled: &[ChannelFit], report: &FitReport) -> Value {
-    let per_run: serde_json::Map<_, _> = runs.iter().zip(fits).map(|(r, f)| (r.run.file.clone(), by_channel(f))).collect();
+fn to_json(
+    scene: &Scene,
+    runs: &[RecordedRun],
+    fits: &[Vec<ChannelFit>],
+    pooled: &[ChannelFit],
+    report: &FitReport,
+) -> Value {
+    let per_run: serde_json::Map<_, _> =
+        runs.iter().zip(fits).map(|(r, f)| (r.run.file.clone(), by_channel(f))).collect();
     let fitted: serde_json::Map<_, _> = report.parameters.iter().map(|p| (p.key.clone(), json!(p.value))).collect();
     json!({ "format": 1, "scene": scene.file.name, "channels": by_channel(pooled), "runs": per_run, "fitted": fitted })
 }
@@ -171,7 +185,9 @@ fn print_table(runs: &[RecordedRun], fits: &[Vec<ChannelFit>], pooled: &[Channel
     };
     println!("{:<28} {:<18} {:>12} {:>12} {:>10} {:>12}", "run", "channel", "rmse", "noise sd", "rmse/noise", "range");
     for (run, fits) in runs.iter().zip(fits) {
-        let name = Path::new(&run.run.file).file_name().map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned());
+        let name = Path::new(&run.run.file)
+            .file_name()
+            .map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned());
         fits.iter().for_each(|f| row(&name, f));
     }
     if runs.len() > 1 {

@@ -38,7 +38,9 @@ impl CliError {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::System(SystemError::Diverged { .. })
-            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. })) | Self::Write { .. } | Self::Failed(_) => ExitCode::from(1),
+            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. }))
+            | Self::Write { .. }
+            | Self::Failed(_) => ExitCode::from(1),
             #[cfg(feature = "viz")]
             Self::View(_) => ExitCode::from(1),
             _ => ExitCode::from(2),

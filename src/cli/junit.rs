@@ -17,7 +17,8 @@ pub fn report(scene: &str, verdicts: &[Verdict]) -> String {
         } else {
             format!("<failure message=\"{}\"/>", escape(&message))
         };
-        text += &format!("  <testcase classname=\"{}\" name=\"{}\">{body}</testcase>\n", escape(scene), escape(&v.name));
+        text +=
+            &format!("  <testcase classname=\"{}\" name=\"{}\">{body}</testcase>\n", escape(scene), escape(&v.name));
     }
     text + "</testsuite>\n"
 }

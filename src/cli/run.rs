@@ -94,7 +94,9 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     let spec = simulation.scene().file.simulation;
     let limit = arguments.duration;
     if let Some(d) = limit.filter(|d| !(*d > 0.0 && d.is_finite())) {
-        return Err(CliError::Usage(format!("--duration {d}: must be > 0\n  remedy: give the length of the run in seconds")));
+        return Err(CliError::Usage(format!(
+            "--duration {d}: must be > 0\n  remedy: give the length of the run in seconds"
+        )));
     }
     let Some(path) = &arguments.input else {
         return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
@@ -139,7 +141,8 @@ fn csv_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
 }
 
 fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
-    let default = || (cfg!(feature = "viz") && writes_defaults(arguments)).then(|| Path::new("out").join(format!("{name}.rrd")));
+    let default =
+        || (cfg!(feature = "viz") && writes_defaults(arguments)).then(|| Path::new("out").join(format!("{name}.rrd")));
     arguments.rrd.clone().or_else(default)
 }
 
@@ -155,7 +158,12 @@ fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) 
 }
 
 #[cfg(feature = "viz")]
-fn add_viewers(arguments: &RunArguments, name: &str, view: &ViewSpec, observers: &mut Observers) -> Result<(), CliError> {
+fn add_viewers(
+    arguments: &RunArguments,
+    name: &str,
+    view: &ViewSpec,
+    observers: &mut Observers,
+) -> Result<(), CliError> {
     use smam::view::{DEFAULT_PORT, ViewOptions, ViewSink, Viewer};
     let mut sinks = Vec::new();
     if let Some(path) = rrd_path(arguments, name) {

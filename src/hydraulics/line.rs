@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn stock_line_matches_hand_calculation() {
-        let line = Line { length_m: 1.0, bore_m: 0.8e-3, segments: 1, compliance_m3_pa: 0.0, momentum_factor: 4.0 / 3.0 };
+        let line =
+            Line { length_m: 1.0, bore_m: 0.8e-3, segments: 1, compliance_m3_pa: 0.0, momentum_factor: 4.0 / 3.0 };
         let fluid = Fluid::default();
         assert!((line.volume_m3() - 0.503e-6).abs() < 1e-9, "0.50 mL");
         assert!((line.resistance_pa_s_m3(&fluid) / 9.967e10 - 1.0).abs() < 1e-3);

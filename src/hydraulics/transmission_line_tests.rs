@@ -156,7 +156,10 @@ fn cavitation_keeps_the_volume_and_the_vapour_pressure() {
     assert!(history.iter().any(|s| s.boiling[0]), "it does cavitate");
     let stored: Vec<f64> = history
         .iter()
-        .map(|s| chain.compliance_m3_pa.iter().zip(&s.pressure_pa).map(|(c, p)| c * p).sum::<f64>() - s.vapour_m3.iter().sum::<f64>())
+        .map(|s| {
+            chain.compliance_m3_pa.iter().zip(&s.pressure_pa).map(|(c, p)| c * p).sum::<f64>()
+                - s.vapour_m3.iter().sum::<f64>()
+        })
         .collect();
     for (i, volume) in stored.iter().enumerate() {
         let t = i as f64 * h;

@@ -30,34 +30,15 @@ pub struct AsymmetricBoucWen<D> {
 
 impl<D: Scalar> AsymmetricBoucWen<D> {
     /// Parameters in the order of [`AsymmetricBoucWen::to_array`].
-    pub const PARAMETERS: [&'static str; 10] = [
-        "alpha_x", "alpha_z", "a", "n", "b1", "b2", "b3", "b4", "b5", "b6",
-    ];
+    pub const PARAMETERS: [&'static str; 10] = ["alpha_x", "alpha_z", "a", "n", "b1", "b2", "b3", "b4", "b5", "b6"];
 
     pub fn from_array([alpha_x, alpha_z, a, n, b1, b2, b3, b4, b5, b6]: [D; 10]) -> Self {
-        Self {
-            alpha_x,
-            alpha_z,
-            a,
-            n,
-            shape: [b1, b2, b3, b4, b5, b6],
-        }
+        Self { alpha_x, alpha_z, a, n, shape: [b1, b2, b3, b4, b5, b6] }
     }
 
     pub fn to_array(&self) -> [D; 10] {
         let [b1, b2, b3, b4, b5, b6] = self.shape;
-        [
-            self.alpha_x,
-            self.alpha_z,
-            self.a,
-            self.n,
-            b1,
-            b2,
-            b3,
-            b4,
-            b5,
-            b6,
-        ]
+        [self.alpha_x, self.alpha_z, self.a, self.n, b1, b2, b3, b4, b5, b6]
     }
 
     /// Whether the state stays bounded.
@@ -90,11 +71,7 @@ impl<D: Scalar> AsymmetricBoucWen<D> {
     fn advance_on_one_side(&self, z: D, from_mm: D, to_mm: D) -> D {
         let length = to_mm - from_mm;
         let way = if length.value() < 0.0 { -1.0 } else { 1.0 };
-        let side = if (from_mm + to_mm).value() < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let side = if (from_mm + to_mm).value() < 0.0 { -1.0 } else { 1.0 };
         let branch = Branch {
             drive: self.a * way,
             decay_above: self.pull_back(side, way, 1.0),
@@ -107,10 +84,6 @@ impl<D: Scalar> AsymmetricBoucWen<D> {
     /// `psi sgn(v z)`: the decay for given signs of `x`, `v` and `z`.
     fn pull_back(&self, side: f64, way: f64, sign: f64) -> D {
         let [b1, b2, b3, b4, b5, b6] = self.shape;
-        b1 + b2 * (side * sign)
-            + b3 * (side * way)
-            + b4 * sign
-            + b5 * way
-            + b6 * (side * way * sign)
+        b1 + b2 * (side * sign) + b3 * (side * way) + b4 * sign + b5 * way + b6 * (side * way * sign)
     }
 }

@@ -11,38 +11,13 @@ const STAGES: [&[f64]; 6] = [
     &[1.0 / 5.0],
     &[3.0 / 40.0, 9.0 / 40.0],
     &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
-    &[
-        19372.0 / 6561.0,
-        -25360.0 / 2187.0,
-        64448.0 / 6561.0,
-        -212.0 / 729.0,
-    ],
-    &[
-        9017.0 / 3168.0,
-        -355.0 / 33.0,
-        46732.0 / 5247.0,
-        49.0 / 176.0,
-        -5103.0 / 18656.0,
-    ],
-    &[
-        35.0 / 384.0,
-        0.0,
-        500.0 / 1113.0,
-        125.0 / 192.0,
-        -2187.0 / 6784.0,
-        11.0 / 84.0,
-    ],
+    &[19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0],
+    &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
+    &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 /// Fifth- minus fourth-order solution.
-const ERROR: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
+const ERROR: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 
 /// The state's law while the input moves one way: `c` drives, `r` (by the sign of `z`) pulls back.
 #[derive(Clone, Copy, Debug)]
@@ -70,11 +45,7 @@ impl<D: Scalar> Branch<D> {
     pub fn closed_form(&self, z: D, length: D) -> D {
         let (above, below) = (self.decay_above, self.decay_below);
         let is_above = z.value() > 0.0 || (z.value() == 0.0 && self.drive.value() > 0.0);
-        let (here, beyond) = if is_above {
-            (above, below)
-        } else {
-            (below, above)
-        };
+        let (here, beyond) = if is_above { (above, below) } else { (below, above) };
         let slope = self.drive - here * z;
         if z.value() * self.drive.value() < 0.0 && z.value() * slope.value() < 0.0 {
             let to_zero = unfaded(-(z / slope), here);
@@ -120,11 +91,7 @@ impl<D: Scalar> Branch<D> {
     }
 
     fn slope(&self, z: D) -> D {
-        let decay = if z.value() < 0.0 {
-            self.decay_below
-        } else {
-            self.decay_above
-        };
+        let decay = if z.value() < 0.0 { self.decay_below } else { self.decay_above };
         self.drive - decay * signed_power(z, self.exponent)
     }
 }

@@ -5,9 +5,7 @@ use std::f64::consts::TAU;
 
 /// `1.5 - 1.5 cos(2 pi i/n)`, `periods` times, mm.
 pub(super) fn plunger(periods: usize, n: usize) -> Vec<f64> {
-    (0..=periods * n)
-        .map(|i| 1.5 - 1.5 * (TAU * i as f64 / n as f64).cos())
-        .collect()
+    (0..=periods * n).map(|i| 1.5 - 1.5 * (TAU * i as f64 / n as f64).cos()).collect()
 }
 
 /// The last period's outputs.
@@ -38,16 +36,9 @@ fn val_printed_parameters_give_the_printed_speeds() {
 
 #[test]
 fn val_the_digit_four_does_not() {
-    let quartic = PaperModel {
-        power: 4.0,
-        ..PaperModel::printed()
-    };
+    let quartic = PaperModel { power: 4.0, ..PaperModel::printed() };
     let outputs = steady(&DisplacementModel::Paper(quartic), 4000);
-    println!(
-        "p = 4: {:.4} mm/s, by range {:.4}",
-        travel(&outputs) * 0.1,
-        range(&outputs) * 0.2
-    );
+    println!("p = 4: {:.4} mm/s, by range {:.4}", travel(&outputs) * 0.1, range(&outputs) * 0.2);
     assert!((travel(&outputs) * 0.1 - 5.34).abs() > 0.5);
 }
 
@@ -58,12 +49,8 @@ fn val_printed_loop() {
     let (outputs, path) = (steady(&model, n), plunger(1, n));
     // The plunger is even about half a period: sample n - i of the way back is at the place of sample i.
     let widths: Vec<f64> = (0..=n / 2).map(|i| outputs[n - i] - outputs[i]).collect();
-    let widest = (0..=n / 2)
-        .max_by(|&i, &j| widths[i].total_cmp(&widths[j]))
-        .unwrap();
-    let area: f64 = (0..n / 2)
-        .map(|i| 0.5 * (widths[i] + widths[i + 1]) * (path[i + 1] - path[i]))
-        .sum();
+    let widest = (0..=n / 2).max_by(|&i, &j| widths[i].total_cmp(&widths[j])).unwrap();
+    let area: f64 = (0..n / 2).map(|i| 0.5 * (widths[i] + widths[i + 1]) * (path[i + 1] - path[i])).sum();
     println!(
         "range {:.4} mm, width {:.4} mm at x = {:.4} mm, area {area:.4} mm2",
         range(&outputs),
@@ -74,18 +61,12 @@ fn val_printed_loop() {
     assert!((widths[widest] - 4.24).abs() < 0.006);
     assert!((path[widest] - 1.78).abs() < 0.006);
     assert!((area - 8.37).abs() < 0.006);
-    assert!(
-        widths.iter().all(|w| *w > -1e-9),
-        "unloading lies above loading"
-    );
+    assert!(widths.iter().all(|w| *w > -1e-9), "unloading lies above loading");
 }
 
 #[test]
 fn the_gate_closes_the_loop_at_zero() {
-    let ungated = PaperModel {
-        gate: Gate::None,
-        ..PaperModel::printed()
-    };
+    let ungated = PaperModel { gate: Gate::None, ..PaperModel::printed() };
     assert!(ungated.output(0.0, 0.8).abs() > 1.0);
     assert_eq!(PaperModel::printed().output(0.0, 0.8), 0.0);
     assert_eq!(PaperModel::printed().output(-0.1, 0.8), 0.0);
@@ -104,13 +85,7 @@ fn asymmetric_model_contains_the_symmetric_one() {
     let (lambda, delta) = (1.1, 0.4);
     let symmetric = SymmetricBoucWen::from_array([1.0, -0.2, 2.0, lambda, delta, 1.0]);
     let shape = [lambda + delta, -delta, delta, 0.0, 0.0, 0.0];
-    let wide = AsymmetricBoucWen {
-        alpha_x: 1.0,
-        alpha_z: -0.2,
-        a: 2.0,
-        n: 1.0,
-        shape,
-    };
+    let wide = AsymmetricBoucWen { alpha_x: 1.0, alpha_z: -0.2, a: 2.0, n: 1.0, shape };
     let (mut z, mut w) = (0.0f64, 0.0f64);
     let mut x = 0.0;
     // From rest outwards and back and forth: no phase with sgn x = sgn v != sgn z occurs.
@@ -125,18 +100,9 @@ fn asymmetric_model_contains_the_symmetric_one() {
 #[test]
 fn asymmetric_loops_are_asymmetric() {
     let shape = [1.0, 0.1, -0.1, 0.2, 0.15, 0.05];
-    let model = AsymmetricBoucWen {
-        alpha_x: 1.0,
-        alpha_z: 1.0,
-        a: 2.0,
-        n: 1.0,
-        shape,
-    };
+    let model = AsymmetricBoucWen { alpha_x: 1.0, alpha_z: 1.0, a: 2.0, n: 1.0, shape };
     assert!(model.check().is_ok());
-    let (up, down): (f64, f64) = (
-        model.advance(0.0, 0.0, 50.0),
-        model.advance(0.0, 0.0, -50.0),
-    );
+    let (up, down): (f64, f64) = (model.advance(0.0, 0.0, 50.0), model.advance(0.0, 0.0, -50.0));
     // A/(b1 + ... + b6) and A/(b1 + b2 + b3 - b4 - b5 - b6).
     assert!((up - 2.0 / 1.4).abs() < 1e-12);
     assert!((down + 2.0 / 0.6).abs() < 1e-10);
@@ -144,14 +110,8 @@ fn asymmetric_loops_are_asymmetric() {
 
 #[test]
 fn inadmissible_parameters_are_named() {
-    let runaway = DisplacementModel::Paper(PaperModel {
-        rho: 3.2,
-        ..PaperModel::printed()
-    });
-    assert_eq!(
-        runaway.check().unwrap_err().to_string(),
-        "asymmetric model: a - rho = -0.2190000000000003 must be > 0"
-    );
+    let runaway = DisplacementModel::Paper(PaperModel { rho: 3.2, ..PaperModel::printed() });
+    assert_eq!(runaway.check().unwrap_err().to_string(), "asymmetric model: a - rho = -0.2190000000000003 must be > 0");
     let model = DisplacementModel::Paper(PaperModel::printed());
     assert!(model.check().is_ok());
     assert!(model.with_parameters(&[1.0; 6]).is_err());
@@ -163,22 +123,13 @@ fn inadmissible_parameters_are_named() {
 fn parameter_sets_are_readable_text() {
     let model = DisplacementModel::Paper(PaperModel::printed());
     let text = serde_json::to_string(&model).unwrap();
-    assert_eq!(
-        serde_json::from_str::<DisplacementModel<f64>>(&text).unwrap(),
-        model
-    );
+    assert_eq!(serde_json::from_str::<DisplacementModel<f64>>(&text).unwrap(), model);
 }
 
 #[test]
 fn val_play_loop_area() {
     // A play of half width r over a stroke s > 2r: the loop's area is 2r (s - 2r).
-    let model = PrandtlIshlinskii {
-        gain: 0.0,
-        elements: vec![PlayElement {
-            weight: 1.0,
-            half_width: 0.2,
-        }],
-    };
+    let model = PrandtlIshlinskii { gain: 0.0, elements: vec![PlayElement { weight: 1.0, half_width: 0.2 }] };
     let path = plunger(3, 20_000);
     let mut state = model.rest(0.0);
     let mut area = 0.0;
@@ -197,13 +148,7 @@ fn val_play_loop_area() {
 #[test]
 fn a_spring_with_slider_is_the_rest_of_a_play() {
     let play = Play { half_width: 0.3 };
-    let slip = MaxwellSlip {
-        gain: 0.0,
-        elements: vec![SlipElement {
-            stiffness: 2.0,
-            limit: 0.6,
-        }],
-    };
+    let slip = MaxwellSlip { gain: 0.0, elements: vec![SlipElement { stiffness: 2.0, limit: 0.6 }] };
     let (mut w, mut x, mut state) = (0.0f64, 0.0f64, slip.rest());
     for target in [1.0, 0.6, -0.4, 0.1, 2.0, 1.9] {
         w = play.advance(w, target);

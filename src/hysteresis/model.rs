@@ -69,22 +69,17 @@ impl<D: Scalar> DisplacementModel<D> {
     }
 
     /// The same form with other parameters, perhaps of another number type.
-    pub fn with_parameters<E: Scalar>(
-        &self,
-        values: &[E],
-    ) -> Result<DisplacementModel<E>, HysteresisError> {
+    pub fn with_parameters<E: Scalar>(&self, values: &[E]) -> Result<DisplacementModel<E>, HysteresisError> {
         Ok(match self {
-            Self::Symmetric(_) => DisplacementModel::Symmetric(SymmetricBoucWen::from_array(
-                sized("symmetric Bouc-Wen", values)?,
-            )),
-            Self::Asymmetric(_) => DisplacementModel::Asymmetric(AsymmetricBoucWen::from_array(
-                sized("asymmetric Bouc-Wen", values)?,
-            )),
-            Self::Paper(model) => DisplacementModel::Paper(paper_like(
-                model.power,
-                model.gate,
-                sized("asymmetric model", values)?,
-            )),
+            Self::Symmetric(_) => {
+                DisplacementModel::Symmetric(SymmetricBoucWen::from_array(sized("symmetric Bouc-Wen", values)?))
+            }
+            Self::Asymmetric(_) => {
+                DisplacementModel::Asymmetric(AsymmetricBoucWen::from_array(sized("asymmetric Bouc-Wen", values)?))
+            }
+            Self::Paper(model) => {
+                DisplacementModel::Paper(paper_like(model.power, model.gate, sized("asymmetric model", values)?))
+            }
         })
     }
 
@@ -99,20 +94,9 @@ impl<D: Scalar> DisplacementModel<D> {
 }
 
 fn paper_like<E: Scalar>(power: f64, gate: Gate, values: [E; 7]) -> PaperModel<E> {
-    PaperModel {
-        power,
-        gate,
-        ..PaperModel::from_array(values)
-    }
+    PaperModel { power, gate, ..PaperModel::from_array(values) }
 }
 
-fn sized<E: Copy, const N: usize>(
-    model: &'static str,
-    values: &[E],
-) -> Result<[E; N], HysteresisError> {
-    values.try_into().map_err(|_| HysteresisError::Count {
-        model,
-        given: values.len(),
-        expected: N,
-    })
+fn sized<E: Copy, const N: usize>(model: &'static str, values: &[E]) -> Result<[E; N], HysteresisError> {
+    values.try_into().map_err(|_| HysteresisError::Count { model, given: values.len(), expected: N })
 }

@@ -57,34 +57,15 @@ impl PaperModel<f64> {
 
 impl<D: Scalar> PaperModel<D> {
     /// Parameters in the order of [`PaperModel::to_array`].
-    pub const PARAMETERS: [&'static str; 7] =
-        ["alpha_x1", "alpha_x2", "alpha_z", "a", "n", "nu", "rho"];
+    pub const PARAMETERS: [&'static str; 7] = ["alpha_x1", "alpha_x2", "alpha_z", "a", "n", "nu", "rho"];
 
     /// The model with `p = 2` and the tanh gate.
     pub fn from_array([alpha_x1, alpha_x2, alpha_z, a, n, nu, rho]: [D; 7]) -> Self {
-        Self {
-            alpha_x1,
-            alpha_x2,
-            alpha_z,
-            a,
-            n,
-            nu,
-            rho,
-            power: square(),
-            gate: Gate::Tanh,
-        }
+        Self { alpha_x1, alpha_x2, alpha_z, a, n, nu, rho, power: square(), gate: Gate::Tanh }
     }
 
     pub fn to_array(&self) -> [D; 7] {
-        [
-            self.alpha_x1,
-            self.alpha_x2,
-            self.alpha_z,
-            self.a,
-            self.n,
-            self.nu,
-            self.rho,
-        ]
+        [self.alpha_x1, self.alpha_x2, self.alpha_z, self.a, self.n, self.nu, self.rho]
     }
 
     /// Whether the state stays bounded and follows the motion.
@@ -113,12 +94,8 @@ impl<D: Scalar> PaperModel<D> {
     pub fn advance(&self, z: D, from_mm: D, to_mm: D) -> D {
         let way = to_mm - from_mm;
         let sign = if way.value() < 0.0 { -1.0 } else { 1.0 };
-        let branch = Branch {
-            drive: self.a * sign + self.rho,
-            decay_above: self.nu,
-            decay_below: self.nu,
-            exponent: self.n,
-        };
+        let branch =
+            Branch { drive: self.a * sign + self.rho, decay_above: self.nu, decay_below: self.nu, exponent: self.n };
         branch.travel(z, way * sign)
     }
 

@@ -9,21 +9,10 @@ use proptest::prelude::*;
 fn models() -> [DisplacementModel<f64>; 4] {
     let shape = [1.0, 0.1, -0.1, 0.2, 0.15, 0.05];
     [
-        DisplacementModel::Symmetric(SymmetricBoucWen::from_array([
-            8.0, -1.0, 2.0, 1.4, 0.5, 1.3,
-        ])),
-        DisplacementModel::Asymmetric(AsymmetricBoucWen {
-            alpha_x: 9.0,
-            alpha_z: -1.2,
-            a: 2.0,
-            n: 1.1,
-            shape,
-        }),
+        DisplacementModel::Symmetric(SymmetricBoucWen::from_array([8.0, -1.0, 2.0, 1.4, 0.5, 1.3])),
+        DisplacementModel::Asymmetric(AsymmetricBoucWen { alpha_x: 9.0, alpha_z: -1.2, a: 2.0, n: 1.1, shape }),
         DisplacementModel::Paper(PaperModel::printed()),
-        DisplacementModel::Paper(PaperModel {
-            n: 1.0,
-            ..PaperModel::printed()
-        }),
+        DisplacementModel::Paper(PaperModel { n: 1.0, ..PaperModel::printed() }),
     ]
 }
 
@@ -68,10 +57,7 @@ fn parameter_derivatives_meet_differences() {
             let mut dual: Vec<Dual64> = values.iter().map(|&v| Dual64::from(v)).collect();
             dual[i] = dual[i].derivative();
             let path = TURNS.map(Dual64::from);
-            let (outputs, _) = model
-                .with_parameters(&dual)
-                .unwrap()
-                .follow(Dual64::from(0.0), &path);
+            let (outputs, _) = model.with_parameters(&dual).unwrap().follow(Dual64::from(0.0), &path);
             let h = 1e-5;
             let (mut low, mut high) = (values.clone(), values.clone());
             low[i] -= h;

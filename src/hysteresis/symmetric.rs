@@ -27,25 +27,11 @@ impl<D: Scalar> SymmetricBoucWen<D> {
     pub const PARAMETERS: [&'static str; 6] = ["gamma_x", "gamma_z", "k", "lambda", "delta", "n"];
 
     pub fn from_array([gamma_x, gamma_z, k, lambda, delta, n]: [D; 6]) -> Self {
-        Self {
-            gamma_x,
-            gamma_z,
-            k,
-            lambda,
-            delta,
-            n,
-        }
+        Self { gamma_x, gamma_z, k, lambda, delta, n }
     }
 
     pub fn to_array(&self) -> [D; 6] {
-        [
-            self.gamma_x,
-            self.gamma_z,
-            self.k,
-            self.lambda,
-            self.delta,
-            self.n,
-        ]
+        [self.gamma_x, self.gamma_z, self.k, self.lambda, self.delta, self.n]
     }
 
     /// Whether the state stays bounded.

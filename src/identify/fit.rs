@@ -61,11 +61,12 @@ pub fn fit_rig_parameters(
         let all: Vec<Override> = overrides.iter().cloned().chain(changed).collect();
         residuals(set, scene, &all, runs, &weights)
     };
-    let result = minimise(&residuals, &start, &bounds, LmOptions::default()).ok_or_else(|| IdentifyError::Mismatch {
-        file: base.path.display().to_string(),
-        message: "the scene cannot be simulated with its starting values".to_owned(),
-        remedy: "run it alone with `smam run` to see why".to_owned(),
-    })?;
+    let result =
+        minimise(&residuals, &start, &bounds, LmOptions::default()).ok_or_else(|| IdentifyError::Mismatch {
+            file: base.path.display().to_string(),
+            message: "the scene cannot be simulated with its starting values".to_owned(),
+            remedy: "run it alone with `smam run` to see why".to_owned(),
+        })?;
     let parameters = free.iter().zip(&result.parameters).map(|(c, &value)| FittedParameter {
         key: c.key.clone(),
         value,

@@ -145,7 +145,8 @@ mod tests {
     #[test]
     fn a_minimum_outside_ends_on_the_bound() {
         let residuals = |x: &[f64]| Some(DVector::from_vec(vec![x[0] - 5.0]));
-        let result = minimise(&residuals, &[0.5], &[Bounds { min: 0.0, max: 1.0 }], LmOptions::default()).expect("valid");
+        let result =
+            minimise(&residuals, &[0.5], &[Bounds { min: 0.0, max: 1.0 }], LmOptions::default()).expect("valid");
         assert_eq!(result.parameters, [1.0]);
     }
 }

@@ -25,7 +25,11 @@ pub struct RecordedRun {
 }
 
 /// Loads the runs of a set; the notes go to `note`.
-pub fn load_runs(set: &RecordingSet, runs: &[Run], note: &mut dyn FnMut(String)) -> Result<Vec<RecordedRun>, IdentifyError> {
+pub fn load_runs(
+    set: &RecordingSet,
+    runs: &[Run],
+    note: &mut dyn FnMut(String),
+) -> Result<Vec<RecordedRun>, IdentifyError> {
     let mut loaded = Vec::new();
     for run in runs {
         let data = set.load_run(run)?;
@@ -45,7 +49,10 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
             return Err(IdentifyError::Mismatch {
                 file: run.file.clone(),
                 message: format!("the condition `{name}` is unknown to the scene {}", scene.file.name),
-                remedy: format!("the scene knows: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") }),
+                remedy: format!(
+                    "the scene knows: {}",
+                    if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+                ),
             });
         };
         let si = parse_column(name)?.unit.to_si(*value);
@@ -57,7 +64,12 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
 /// Simulates a run at its sample times with its recorded inputs and known conditions.
 ///
 /// `every` > 1 takes only each so-many-th sample (for fits); the times of the result are those taken.
-pub fn replay(scene: &str, overrides: &[Override], run: &RecordedRun, every: usize) -> Result<Recording, IdentifyError> {
+pub fn replay(
+    scene: &str,
+    overrides: &[Override],
+    run: &RecordedRun,
+    every: usize,
+) -> Result<Recording, IdentifyError> {
     let plain = Scene::load(scene, overrides)?;
     let conditions = condition_overrides(&plain, &run.run)?;
     let scene = match conditions.is_empty() {
@@ -75,13 +87,17 @@ pub fn replay(scene: &str, overrides: &[Override], run: &RecordedRun, every: usi
 }
 
 /// Shifts the outputs that count from the start of a recording to the recording's first sample.
-fn begin_where_recorded(scene: &Scene, simulated: &Recording, measured: &Recording) -> Result<Recording, RecordingError> {
+fn begin_where_recorded(
+    scene: &Scene,
+    simulated: &Recording,
+    measured: &Recording,
+) -> Result<Recording, RecordingError> {
     let shifted = simulated.channels().iter().map(|channel| {
         let spec = scene.file.output.iter().find(|o| o.channel == channel.column);
         let first = |values: &[f64]| values.iter().copied().find(|v| v.is_finite());
-        let pair = spec.filter(|s| s.counts_from_start).and_then(|_| {
-            Some(first(&measured.find(&channel.column)?.values)? - first(&channel.values)?)
-        });
+        let pair = spec
+            .filter(|s| s.counts_from_start)
+            .and_then(|_| Some(first(&measured.find(&channel.column)?.values)? - first(&channel.values)?));
         let shift = pair.unwrap_or(0.0);
         Channel::new(channel.column.clone(), channel.values.iter().map(|v| v + shift).collect())
     });
@@ -91,7 +107,11 @@ fn begin_where_recorded(scene: &Scene, simulated: &Recording, measured: &Recordi
 /// Checks that every declared output is a channel of the scene and every input of the scene was recorded.
 pub(super) fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
     let outputs: Vec<&str> = scene.file.output.iter().map(|o| o.channel.as_str()).collect();
-    let refuse = |message: String, remedy: String| IdentifyError::Mismatch { file: "recordings.toml".to_owned(), message, remedy };
+    let refuse = |message: String, remedy: String| IdentifyError::Mismatch {
+        file: "recordings.toml".to_owned(),
+        message,
+        remedy,
+    };
     if let Some(odd) = set.of_role(Role::Output).find(|c| !outputs.contains(&c.column.as_str())) {
         return Err(refuse(
             format!("the output `{}` is no channel of the scene {}", odd.column, scene.file.name),

@@ -23,12 +23,8 @@ impl Mechanism {
     ///
     /// `dt_s` may change from call to call; one that is not > 0 does nothing. Slices are in coordinate order.
     pub fn advance(&mut self, dt_s: f64, target_velocity: &[f64], known_force: &mut [f64]) {
-        let fits = target_velocity.len() == self.coordinates.len()
-            && known_force.len() == target_velocity.len();
-        debug_assert!(
-            fits,
-            "one target velocity and one known force per coordinate"
-        );
+        let fits = target_velocity.len() == self.coordinates.len() && known_force.len() == target_velocity.len();
+        debug_assert!(fits, "one target velocity and one known force per coordinate");
         if !(fits && dt_s > 0.0 && dt_s.is_finite()) {
             return;
         }
@@ -122,11 +118,7 @@ impl Mechanism {
     /// A dof's axis in the world: x of its joint's frame in the child.
     fn world_axis(&self, dof: usize) -> Vector {
         let body = self.dofs[dof].body;
-        let link = self
-            .multibody()
-            .and_then(|m| m.link(self.bodies[body].link_id));
-        link.map_or(Vector::X, |l| {
-            l.local_to_world().rotation * l.joint().data.local_frame2.rotation * Vector::X
-        })
+        let link = self.multibody().and_then(|m| m.link(self.bodies[body].link_id));
+        link.map_or(Vector::X, |l| l.local_to_world().rotation * l.joint().data.local_frame2.rotation * Vector::X)
     }
 }

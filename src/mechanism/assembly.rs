@@ -56,10 +56,7 @@ pub(super) struct Source<'a> {
 impl Source<'_> {
     /// Merges links into bodies and checks their masses.
     pub fn assemble(&self, warnings: &mut Vec<String>) -> Result<Assembly, MechanismError> {
-        let mut made = Assembly {
-            placement: vec![(0, Pose::IDENTITY); self.robot.links.len()],
-            ..Assembly::default()
-        };
+        let mut made = Assembly { placement: vec![(0, Pose::IDENTITY); self.robot.links.len()], ..Assembly::default() };
         for &link in &self.tree.order {
             self.place(link, &mut made);
             self.load(link, warnings, &mut made)?;
@@ -75,12 +72,8 @@ impl Source<'_> {
     }
 
     fn place(&self, link: usize, made: &mut Assembly) {
-        let empty = |parent, joint, frame| BodyModel {
-            parent,
-            joint,
-            frame,
-            inertial: Inertial::point(0.0, Vector3::zeros()),
-        };
+        let empty =
+            |parent, joint, frame| BodyModel { parent, joint, frame, inertial: Inertial::point(0.0, Vector3::zeros()) };
         let Some(joint) = self.tree.carrier[link] else {
             made.bodies.push(empty(0, None, Pose::IDENTITY));
             return;
@@ -97,31 +90,19 @@ impl Source<'_> {
     }
 
     /// Adds a link's own mass to its body.
-    fn load(
-        &self,
-        link: usize,
-        warnings: &mut Vec<String>,
-        made: &mut Assembly,
-    ) -> Result<(), MechanismError> {
+    fn load(&self, link: usize, warnings: &mut Vec<String>, made: &mut Assembly) -> Result<(), MechanismError> {
         let link_model = &self.robot.links[link];
         if !self.scan.links_with_inertial.contains(&link_model.name) {
             return Ok(());
         }
         let own = self.checked_inertial(link_model)?;
         if let Some(fault) = own.fault() {
-            warnings.push(format!(
-                "link \"{}\": {fault}; no real body has that",
-                link_model.name
-            ));
+            warnings.push(format!("link \"{}\": {fault}; no real body has that", link_model.name));
         }
         let (body, pose) = made.placement[link];
         let own = own.seen_from(&pose);
         if self.spec.links_have_weight {
-            made.weights.push(Weight {
-                body,
-                point_m: own.com_m,
-                mass_kg: own.mass_kg,
-            });
+            made.weights.push(Weight { body, point_m: own.com_m, mass_kg: own.mass_kg });
         }
         made.bodies[body].inertial = made.bodies[body].inertial.merged(&own);
         Ok(())
@@ -129,21 +110,11 @@ impl Source<'_> {
 
     fn checked_inertial(&self, link: &Link) -> Result<Inertial, MechanismError> {
         let inertial = inertial_from_urdf(link);
-        let error = |problem: String, remedy: &str| {
-            Err(MechanismError::urdf(
-                self.file, "link", &link.name, problem, remedy,
-            ))
-        };
-        let finite = inertial
-            .inertia_kg_m2
-            .iter()
-            .chain(inertial.com_m.iter())
-            .all(|v| v.is_finite());
+        let error =
+            |problem: String, remedy: &str| Err(MechanismError::urdf(self.file, "link", &link.name, problem, remedy));
+        let finite = inertial.inertia_kg_m2.iter().chain(inertial.com_m.iter()).all(|v| v.is_finite());
         if !finite {
-            return error(
-                "<inertial> holds a value that is not finite".into(),
-                "correct it",
-            );
+            return error("<inertial> holds a value that is not finite".into(), "correct it");
         }
         if !(inertial.mass_kg > 0.0 && inertial.mass_kg.is_finite()) {
             let remedy = "give the real mass, or leave <inertial> out of a massless frame";
@@ -154,49 +125,32 @@ impl Source<'_> {
 
     fn hang(&self, name: &str, mass_kg: f64, made: &mut Assembly) -> Result<(), MechanismError> {
         let links = &self.robot.links;
-        let error = |problem: String, remedy: String| {
-            Err(MechanismError::spec("link_mass", name, problem, remedy))
-        };
+        let error = |problem: String, remedy: String| Err(MechanismError::spec("link_mass", name, problem, remedy));
         let Some(link) = links.iter().position(|l| l.name == name) else {
             let known = known_names(links.iter().map(|l| l.name.as_str()));
             return error("the URDF has no such link".into(), known);
         };
         if !(mass_kg > 0.0 && mass_kg.is_finite()) {
-            return error(
-                format!("mass_kg = {mass_kg} must be > 0"),
-                "correct it".into(),
-            );
+            return error(format!("mass_kg = {mass_kg} must be > 0"), "correct it".into());
         }
         let (body, pose) = made.placement[link];
         // A link without <inertial> has its default, the origin.
         let point = pose * pose_from_urdf(links[link].inertial.origin.xyz.0, [0.0; 3]);
         let hung = Inertial::point(mass_kg, na_vector(point.translation));
-        made.weights.push(Weight {
-            body,
-            point_m: hung.com_m,
-            mass_kg,
-        });
+        made.weights.push(Weight { body, point_m: hung.com_m, mass_kg });
         made.bodies[body].inertial = made.bodies[body].inertial.merged(&hung);
         Ok(())
     }
 
     fn check_moving_masses(&self, made: &Assembly) -> Result<(), MechanismError> {
-        let massless = made
-            .bodies
-            .iter()
-            .find(|b| b.inertial.mass_kg <= 0.0 && b.joint.is_some());
+        let massless = made.bodies.iter().find(|b| b.inertial.mass_kg <= 0.0 && b.joint.is_some());
         let Some(joint) = massless.and_then(|body| body.joint) else {
             return Ok(());
         };
-        let problem = format!(
-            "moves with joint \"{}\" but has no <inertial>",
-            self.joints[joint].name
-        );
+        let problem = format!("moves with joint \"{}\" but has no <inertial>", self.joints[joint].name);
         let remedy = "give it mass and inertia (or fix it to a link that has them)";
         let link = &self.robot.joints[joint].child.link;
-        Err(MechanismError::urdf(
-            self.file, "link", link, problem, remedy,
-        ))
+        Err(MechanismError::urdf(self.file, "link", link, problem, remedy))
     }
 }
 
@@ -204,9 +158,7 @@ impl Source<'_> {
 fn displacement(joint: &JointModel) -> Pose {
     let axis = Vector::from_array(joint.axis);
     match joint.kind {
-        CoordinateKind::Angle => {
-            Pose::from_rotation(Rotation::from_axis_angle(axis, joint.position))
-        }
+        CoordinateKind::Angle => Pose::from_rotation(Rotation::from_axis_angle(axis, joint.position)),
         CoordinateKind::Length => Pose::from_translation(axis * joint.position),
     }
 }
@@ -216,9 +168,7 @@ fn inertial_from_urdf(link: &Link) -> Inertial {
     let about_com = Inertial {
         mass_kg: link.inertial.mass.value,
         com_m: Vector3::zeros(),
-        inertia_kg_m2: Matrix3::new(
-            i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz,
-        ),
+        inertia_kg_m2: Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz),
     };
     let origin = &link.inertial.origin;
     about_com.seen_from(&pose_from_urdf(origin.xyz.0, origin.rpy.0))

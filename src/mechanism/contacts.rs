@@ -16,8 +16,7 @@ impl Mechanism {
     }
 
     fn add_pair(&self, pair: &ContactPair, found: &mut Vec<Contact>) {
-        let (Some(a), Some(b)) = (self.collider(pair.collider1), self.collider(pair.collider2))
-        else {
+        let (Some(a), Some(b)) = (self.collider(pair.collider1), self.collider(pair.collider2)) else {
             return;
         };
         for manifold in pair.manifolds() {
@@ -36,11 +35,7 @@ impl Mechanism {
                     point_m: (*a.position() * local).to_array(),
                     normal: manifold.data.normal.to_array(),
                     penetration_m: -point.dist,
-                    force_n: if self.last_step_s > 0.0 {
-                        impulse / self.last_step_s
-                    } else {
-                        0.0
-                    },
+                    force_n: if self.last_step_s > 0.0 { impulse / self.last_step_s } else { 0.0 },
                 });
             }
         }

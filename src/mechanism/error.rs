@@ -7,11 +7,7 @@ use std::path::{Path, PathBuf};
 pub enum MechanismError {
     /// A file named by the scene or the URDF cannot be read.
     #[error("{}: cannot be read: {reason}; {remedy}", file.display())]
-    Read {
-        file: PathBuf,
-        reason: String,
-        remedy: String,
-    },
+    Read { file: PathBuf, reason: String, remedy: String },
     /// The file is not a URDF.
     #[error("{}: not a valid URDF: {reason}", file.display())]
     Parse { file: PathBuf, reason: String },
@@ -53,18 +49,8 @@ impl MechanismError {
         }
     }
 
-    pub(super) fn spec(
-        table: &'static str,
-        name: &str,
-        problem: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
-        Self::Spec {
-            table,
-            name: name.to_owned(),
-            problem: problem.into(),
-            remedy: remedy.into(),
-        }
+    pub(super) fn spec(table: &'static str, name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Spec { table, name: name.to_owned(), problem: problem.into(), remedy: remedy.into() }
     }
 }
 

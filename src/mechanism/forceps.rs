@@ -42,9 +42,7 @@ impl Forceps {
     /// # Errors
     /// Sizes that make no jaw, or an inertia about the pin below that of the mass alone.
     pub fn check(&self) -> Result<(), MechanismError> {
-        let error = |key: &str, problem: String| {
-            Err(MechanismError::spec("forceps", key, problem, "correct it"))
-        };
+        let error = |key: &str, problem: String| Err(MechanismError::spec("forceps", key, problem, "correct it"));
         let values = [
             ("jaw_length_m", self.jaw_length_m),
             ("jaw_width_m", self.jaw_width_m),
@@ -70,13 +68,7 @@ impl Forceps {
 }
 
 /// Appends clevis, jaws and joints after a tip link whose tube ends at `end`.
-pub(super) fn append(
-    forceps: &Forceps,
-    tip: &str,
-    end: Place,
-    tube_radius_m: f64,
-    urdf: &mut UrdfText,
-) {
+pub(super) fn append(forceps: &Forceps, tip: &str, end: Place, tube_radius_m: f64, urdf: &mut UrdfText) {
     let [x, _, z] = end.xyz;
     let pin = Place::at(x + 0.6e-3, 0.0, z);
     jaw(forceps, "jaw_left_link", 1.0, tube_radius_m, urdf);
@@ -143,27 +135,18 @@ impl JawShape {
     fn rib(&self) -> (Place, String) {
         let z = self.half_ball + 1.2 * self.thickness;
         let place = self.place(self.start + self.length / 2.0, z, 0.0);
-        (
-            place,
-            cuboid([0.9 * self.length, 0.5 * self.width, 0.6 * self.thickness]),
-        )
+        (place, cuboid([0.9 * self.length, 0.5 * self.width, 0.6 * self.thickness]))
     }
 
     fn tip(&self) -> (Place, String) {
         let z = self.half_ball + self.thickness / 2.0;
-        (
-            self.place(self.start + self.length, z, 0.0),
-            sphere(0.6 * self.thickness),
-        )
+        (self.place(self.start + self.length, z, 0.0), sphere(0.6 * self.thickness))
     }
 }
 
 fn jaw(forceps: &Forceps, name: &str, side: f64, tube_radius_m: f64, urdf: &mut UrdfText) {
     let shape = JawShape::new(forceps, side);
-    let across = Place {
-        xyz: [0.0; 3],
-        rpy: [std::f64::consts::FRAC_PI_2, 0.0, 0.0],
-    };
+    let across = Place { xyz: [0.0; 3], rpy: [std::f64::consts::FRAC_PI_2, 0.0, 0.0] };
     let pin = cylinder(0.35 * tube_radius_m, 1.4 * tube_radius_m);
     let parts = [
         (shape.face(), "grip"),
@@ -187,9 +170,5 @@ fn jaw_inertial(forceps: &Forceps, side: f64) -> Inertial {
     let mut com_m = forceps.centre();
     let central = forceps.jaw_inertia_kg_m2 - forceps.jaw_mass_kg * com_m.norm_squared();
     com_m.z *= side;
-    Inertial {
-        mass_kg: forceps.jaw_mass_kg,
-        com_m,
-        inertia_kg_m2: Matrix3::from_diagonal_element(central),
-    }
+    Inertial { mass_kg: forceps.jaw_mass_kg, com_m, inertia_kg_m2: Matrix3::from_diagonal_element(central) }
 }

@@ -16,11 +16,7 @@ pub(super) fn insert(
     visuals: &mut Vec<Visual>,
     built: &mut Built,
 ) -> Result<Vec<RigidBodyHandle>, MechanismError> {
-    let default_friction = spec
-        .contact
-        .clone()
-        .unwrap_or_default()
-        .friction_coefficient;
+    let default_friction = spec.contact.clone().unwrap_or_default().friction_coefficient;
     let mut handles = Vec::with_capacity(spec.body.len());
     for body in &spec.body {
         check(body, link_names)?;
@@ -34,12 +30,7 @@ pub(super) fn insert(
             let builder = builder.user_data(index as u128).mass(body.mass_kg);
             built.world.insert_collider(builder, Some(handle));
         }
-        visuals.push(Visual {
-            link: index,
-            pose: Pose::IDENTITY,
-            shape,
-            colour_rgba: body.colour_rgba,
-        });
+        visuals.push(Visual { link: index, pose: Pose::IDENTITY, shape, colour_rgba: body.colour_rgba });
         handles.push(handle);
     }
     Ok(handles)
@@ -65,9 +56,7 @@ fn plain_shape(shape: &BodyShapeSpec) -> Shape {
 }
 
 fn check(body: &FreeBodySpec, taken: &[String]) -> Result<(), MechanismError> {
-    let error = |problem: String, remedy: &str| {
-        Err(MechanismError::spec("body", &body.name, problem, remedy))
-    };
+    let error = |problem: String, remedy: &str| Err(MechanismError::spec("body", &body.name, problem, remedy));
     if taken.contains(&body.name) {
         return error("a link or body has this name already".into(), "rename it");
     }
@@ -79,18 +68,10 @@ fn check(body: &FreeBodySpec, taken: &[String]) -> Result<(), MechanismError> {
     if !sizes.iter().all(|s| *s > 0.0 && s.is_finite()) {
         return error(format!("shape sizes {sizes:?} must be > 0"), "correct them");
     }
-    if !body
-        .position_m
-        .iter()
-        .chain(&body.rpy_rad)
-        .all(|v| v.is_finite())
-    {
+    if !body.position_m.iter().chain(&body.rpy_rad).all(|v| v.is_finite()) {
         return error("its position or rpy_rad is not finite".into(), "correct it");
     }
-    if body
-        .friction_coefficient
-        .is_some_and(|f| !(f >= 0.0 && f.is_finite()))
-    {
+    if body.friction_coefficient.is_some_and(|f| !(f >= 0.0 && f.is_finite())) {
         return error("friction_coefficient must be >= 0".into(), "correct it");
     }
     match body.motion {
@@ -98,10 +79,9 @@ fn check(body: &FreeBodySpec, taken: &[String]) -> Result<(), MechanismError> {
             let remedy = "give it a mass, or motion = \"fixed\"";
             error(format!("mass_kg = {} must be > 0", body.mass_kg), remedy)
         }
-        BodyMotion::Fixed if body.mass_kg != 0.0 => error(
-            "a fixed body has no use for mass_kg".into(),
-            "leave mass_kg out",
-        ),
+        BodyMotion::Fixed if body.mass_kg != 0.0 => {
+            error("a fixed body has no use for mass_kg".into(), "leave mass_kg out")
+        }
         _ => Ok(()),
     }
 }

@@ -13,10 +13,7 @@ pub struct Pose {
 
 impl Pose {
     /// The world frame itself.
-    pub const IDENTITY: Pose = Pose {
-        translation_m: [0.0; 3],
-        rotation_xyzw: [0.0, 0.0, 0.0, 1.0],
-    };
+    pub const IDENTITY: Pose = Pose { translation_m: [0.0; 3], rotation_xyzw: [0.0, 0.0, 0.0, 1.0] };
 
     /// A point of the world in this frame, m.
     pub fn to_local(&self, point_m: [f64; 3]) -> [f64; 3] {

@@ -16,11 +16,7 @@ pub(super) struct Inertial {
 
 impl Inertial {
     pub fn point(mass_kg: f64, com_m: Vector3<f64>) -> Self {
-        Self {
-            mass_kg,
-            com_m,
-            inertia_kg_m2: Matrix3::zeros(),
-        }
+        Self { mass_kg, com_m, inertia_kg_m2: Matrix3::zeros() }
     }
 
     /// The same mass seen from a frame in which this one's frame has `pose`.
@@ -40,17 +36,12 @@ impl Inertial {
             return *self;
         }
         let com_m = (self.com_m * self.mass_kg + other.com_m * other.mass_kg) / mass_kg;
-        Self {
-            mass_kg,
-            com_m,
-            inertia_kg_m2: self.inertia_about(&com_m) + other.inertia_about(&com_m),
-        }
+        Self { mass_kg, com_m, inertia_kg_m2: self.inertia_about(&com_m) + other.inertia_about(&com_m) }
     }
 
     fn inertia_about(&self, point: &Vector3<f64>) -> Matrix3<f64> {
         let d = self.com_m - point;
-        self.inertia_kg_m2
-            + (Matrix3::identity() * d.norm_squared() - d * d.transpose()) * self.mass_kg
+        self.inertia_kg_m2 + (Matrix3::identity() * d.norm_squared() - d * d.transpose()) * self.mass_kg
     }
 
     /// Principal moments (kg m²) and the rotation of their axes.
@@ -67,10 +58,7 @@ impl Inertial {
     pub fn with_floor(&self) -> Self {
         let (moments, axes) = self.principal();
         let axes = rotation_matrix(&axes);
-        Self {
-            inertia_kg_m2: axes * Matrix3::from_diagonal(&moments) * axes.transpose(),
-            ..*self
-        }
+        Self { inertia_kg_m2: axes * Matrix3::from_diagonal(&moments) * axes.transpose(), ..*self }
     }
 
     /// Why no real body has this inertia, if so.

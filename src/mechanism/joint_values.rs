@@ -12,26 +12,15 @@ type Pair = [(&'static str, Option<f64>); 2];
 pub(super) fn apply(spec: &JointSpec, joint: &mut JointModel) -> Result<(), MechanismError> {
     if !joint.moves {
         let remedy = "leave it out, or make it revolute or prismatic in the URDF";
-        return Err(error(
-            &joint.name,
-            "the URDF makes this joint fixed".into(),
-            remedy,
-        ));
+        return Err(error(&joint.name, "the URDF makes this joint fixed".into(), remedy));
     }
     let pick = |pair| pick(&joint.name, joint.kind, pair);
     let stiffness = pick(stiffness_pair(spec.stiffness_n_m_rad, spec.stiffness_n_m))?;
     let damping = pick(damping_pair(spec.damping_n_m_s_rad, spec.damping_n_s_m))?;
     let rest = pick([("rest_rad", spec.rest_rad), ("rest_m", spec.rest_m)])?;
-    let initial = pick([
-        ("initial_rad", spec.initial_rad),
-        ("initial_m", spec.initial_m),
-    ])?;
+    let initial = pick([("initial_rad", spec.initial_rad), ("initial_m", spec.initial_m)])?;
     let locked = pick([("locked_rad", spec.locked_rad), ("locked_m", spec.locked_m)])?;
-    let stop = |stop: &Option<StopSpec>| {
-        stop.as_ref()
-            .map(|s| resolve_stop(&joint.name, joint.kind, s))
-            .transpose()
-    };
+    let stop = |stop: &Option<StopSpec>| stop.as_ref().map(|s| resolve_stop(&joint.name, joint.kind, s)).transpose();
     let (lower_stop, upper_stop) = (stop(&spec.lower_stop)?, stop(&spec.upper_stop)?);
     if initial.is_some() && locked.is_some() {
         let problem = "has both an initial and a locked position".into();
@@ -50,10 +39,7 @@ pub(super) fn apply(spec: &JointSpec, joint: &mut JointModel) -> Result<(), Mech
 
 fn resolve_stop(name: &str, kind: CoordinateKind, stop: &StopSpec) -> Result<Stop, MechanismError> {
     let pick = |pair| pick(name, kind, pair);
-    let position = pick([
-        ("position_rad", stop.position_rad),
-        ("position_m", stop.position_m),
-    ])?;
+    let position = pick([("position_rad", stop.position_rad), ("position_m", stop.position_m)])?;
     let stiffness = pick(stiffness_pair(stop.stiffness_n_m_rad, stop.stiffness_n_m))?;
     let damping = pick(damping_pair(stop.damping_n_m_s_rad, stop.damping_n_s_m))?;
     let (Some(position), Some(stiffness)) = (position, stiffness) else {
@@ -86,11 +72,7 @@ fn pick(name: &str, kind: CoordinateKind, pair: Pair) -> Result<Option<f64>, Mec
         return Err(error(name, problem, &format!("use {}", right.0)));
     }
     match right.1 {
-        Some(v) if !v.is_finite() => Err(error(
-            name,
-            format!("{} = {v} is not finite", right.0),
-            "give a number",
-        )),
+        Some(v) if !v.is_finite() => Err(error(name, format!("{} = {v} is not finite", right.0), "give a number")),
         value => Ok(value),
     }
 }
@@ -99,11 +81,7 @@ fn not_negative(name: &str, what: &str, value: f64) -> Result<f64, MechanismErro
     if value >= 0.0 {
         return Ok(value);
     }
-    Err(error(
-        name,
-        format!("{what} = {value} must be >= 0"),
-        "correct it",
-    ))
+    Err(error(name, format!("{what} = {value} must be >= 0"), "correct it"))
 }
 
 fn error(name: &str, problem: String, remedy: &str) -> MechanismError {

@@ -45,11 +45,8 @@ pub(super) fn resolve(
     specs: &[JointSpec],
     warnings: &mut Vec<String>,
 ) -> Result<Vec<JointModel>, MechanismError> {
-    let mut joints = robot
-        .joints
-        .iter()
-        .map(|joint| from_urdf(file, joint, warnings))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut joints =
+        robot.joints.iter().map(|joint| from_urdf(file, joint, warnings)).collect::<Result<Vec<_>, _>>()?;
     let mut mentioned = vec![false; joints.len()];
     for spec in specs {
         for name in &spec.joints {
@@ -72,11 +69,7 @@ fn find(joints: &[JointModel], name: &str) -> Result<usize, MechanismError> {
     })
 }
 
-fn from_urdf(
-    file: &Path,
-    joint: &Joint,
-    warnings: &mut Vec<String>,
-) -> Result<JointModel, MechanismError> {
+fn from_urdf(file: &Path, joint: &Joint, warnings: &mut Vec<String>) -> Result<JointModel, MechanismError> {
     let (kind, moves) = kind_of(file, joint)?;
     check_numbers(file, joint)?;
     let dynamics = joint.dynamics.clone().unwrap_or_default();
@@ -90,11 +83,7 @@ fn from_urdf(
         name: joint.name.clone(),
         kind,
         moves,
-        axis: if moves {
-            unit_axis(file, joint)?
-        } else {
-            [1.0, 0.0, 0.0]
-        },
+        axis: if moves { unit_axis(file, joint)? } else { [1.0, 0.0, 0.0] },
         position: 0.0,
         position_given: false,
         stiffness: 0.0,
@@ -115,20 +104,13 @@ fn kind_of(file: &Path, joint: &Joint) -> Result<(CoordinateKind, bool), Mechani
         JointType::Floating | JointType::Planar | JointType::Spherical => {
             let problem = format!("type {:?} is not simulated", joint.joint_type);
             let remedy = "build it from revolute and prismatic joints";
-            return Err(MechanismError::urdf(
-                file,
-                "joint",
-                &joint.name,
-                problem,
-                remedy,
-            ));
+            return Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy));
         }
     })
 }
 
 fn check_numbers(file: &Path, joint: &Joint) -> Result<(), MechanismError> {
-    let error =
-        |problem: String| MechanismError::urdf(file, "joint", &joint.name, problem, "correct it");
+    let error = |problem: String| MechanismError::urdf(file, "joint", &joint.name, problem, "correct it");
     let origin = [joint.origin.xyz.0, joint.origin.rpy.0].concat();
     if !origin.iter().all(|v| v.is_finite()) {
         return Err(error(format!("origin = {origin:?} is not finite")));
@@ -148,24 +130,13 @@ fn unit_axis(file: &Path, joint: &Joint) -> Result<[f64; 3], MechanismError> {
     }
     let problem = format!("axis = {xyz:?} has no direction");
     let remedy = "give a vector such as \"0 0 1\"";
-    Err(MechanismError::urdf(
-        file,
-        "joint",
-        &joint.name,
-        problem,
-        remedy,
-    ))
+    Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy))
 }
 
 /// Makes every follower point at its final leader, and takes over that one's position.
-fn attach_mimics(
-    file: &Path,
-    robot: &Robot,
-    joints: &mut [JointModel],
-) -> Result<(), MechanismError> {
+fn attach_mimics(file: &Path, robot: &Robot, joints: &mut [JointModel]) -> Result<(), MechanismError> {
     for index in 0..joints.len() {
-        if robot.joints[index].mimic.is_none() || robot.joints[index].joint_type == JointType::Fixed
-        {
+        if robot.joints[index].mimic.is_none() || robot.joints[index].joint_type == JointType::Fixed {
             continue;
         }
         let mimic = final_leader(file, robot, index)?;
@@ -177,13 +148,8 @@ fn attach_mimics(
 
 fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, MechanismError> {
     let name = &robot.joints[follower].name;
-    let error =
-        |problem: String, remedy: &str| MechanismError::urdf(file, "joint", name, problem, remedy);
-    let mut whole = Mimic {
-        leader: follower,
-        multiplier: 1.0,
-        offset: 0.0,
-    };
+    let error = |problem: String, remedy: &str| MechanismError::urdf(file, "joint", name, problem, remedy);
+    let mut whole = Mimic { leader: follower, multiplier: 1.0, offset: 0.0 };
     for _ in 0..=robot.joints.len() {
         let Some(mimic) = &robot.joints[whole.leader].mimic else {
             return Ok(whole);
@@ -192,10 +158,7 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
         let offset = mimic.offset.unwrap_or(0.0);
         if !multiplier.is_finite() || multiplier == 0.0 || !offset.is_finite() {
             let problem = format!("mimic multiplier = {multiplier}, offset = {offset}");
-            return Err(error(
-                problem,
-                "give finite values, the multiplier not zero",
-            ));
+            return Err(error(problem, "give finite values, the multiplier not zero"));
         }
         let leader = robot.joints.iter().position(|j| j.name == mimic.joint);
         let Some(leader) = leader else {
@@ -208,36 +171,16 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
             multiplier: whole.multiplier * multiplier,
         };
     }
-    Err(error(
-        "mimics itself through others".into(),
-        "cut the circle",
-    ))
+    Err(error("mimics itself through others".into(), "cut the circle"))
 }
 
-fn follow(
-    leader: &JointModel,
-    mimic: Mimic,
-    follower: &mut JointModel,
-) -> Result<(), MechanismError> {
-    let error = |problem: String, remedy: String| {
-        Err(MechanismError::spec(
-            "joint",
-            &follower.name,
-            problem,
-            remedy,
-        ))
-    };
+fn follow(leader: &JointModel, mimic: Mimic, follower: &mut JointModel) -> Result<(), MechanismError> {
+    let error = |problem: String, remedy: String| Err(MechanismError::spec("joint", &follower.name, problem, remedy));
     let position = mimic.multiplier * leader.position + mimic.offset;
     let off = (follower.position - position).abs() > 1e-9 * (1.0 + position.abs());
     if follower.position_given && off {
-        let problem = format!(
-            "stands at {}, but follows \"{}\"",
-            follower.position, leader.name
-        );
-        return error(
-            problem,
-            format!("leave its position out or make it {position}"),
-        );
+        let problem = format!("stands at {}, but follows \"{}\"", follower.position, leader.name);
+        return error(problem, format!("leave its position out or make it {position}"));
     }
     if !follower.moves && leader.moves {
         let problem = format!("is locked, but follows the free joint \"{}\"", leader.name);

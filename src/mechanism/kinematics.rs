@@ -10,9 +10,7 @@ impl Mechanism {
     ///
     /// M = Pᵀ (Σ Jᵢᵀ diag(mᵢ, Iᵢ) Jᵢ) P, P the projection of followers on their leaders.
     pub fn mass_matrix(&self, out: &mut DMatrix<f64>) {
-        *out = self
-            .projection
-            .tr_mul(&(&self.full_mass * &self.projection));
+        *out = self.projection.tr_mul(&(&self.full_mass * &self.projection));
     }
 
     /// Generalised force of gravity on what has weight, N m or N: Σ Jᵀ m g.
@@ -21,12 +19,7 @@ impl Mechanism {
         let mut full = DVector::zeros(self.dofs.len());
         for weight in &self.weights {
             let point = self.body_pose(weight.body) * engine_vector(&weight.point_m);
-            self.add_point_force(
-                weight.body,
-                &na_vector(point),
-                &(gravity * weight.mass_kg),
-                &mut full,
-            );
+            self.add_point_force(weight.body, &na_vector(point), &(gravity * weight.mass_kg), &mut full);
         }
         self.write_reduced(&full, out);
     }

@@ -42,6 +42,6 @@ pub use notched_tube::{NotchedTube, notched_tube_urdf};
 pub use route::{Arm, LinkPoint, Route};
 pub use snapshot::Snapshot;
 pub use spec::{
-    BodyMotion, BodyShapeSpec, ContactSpec, FreeBodySpec, JointSpec, LeverSpec, LinkMassSpec,
-    MechanismSpec, PointSpec, RouteSpec, StopSpec,
+    BodyMotion, BodyShapeSpec, ContactSpec, FreeBodySpec, JointSpec, LeverSpec, LinkMassSpec, MechanismSpec, PointSpec,
+    RouteSpec, StopSpec,
 };

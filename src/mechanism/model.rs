@@ -65,14 +65,7 @@ impl Mechanism {
         let tree = Tree::new(&file, &robot)?;
         let joints = joints::resolve(&file, &robot, &spec.joint, &mut warnings)?;
         let (coordinates, shares) = reduce(&joints)?;
-        let source = Source {
-            file: &file,
-            robot: &robot,
-            scan: &scan,
-            tree: &tree,
-            joints: &joints,
-            spec,
-        };
+        let source = Source { file: &file, robot: &robot, scan: &scan, tree: &tree, joints: &joints, spec };
         let assembly = source.assemble(&mut warnings)?;
         let mut visuals = shapes::visuals(&file, &robot, &mut warnings)?;
         let mut built = world::build(&assembly, &joints, &shares, spec.gravity_m_s2);
@@ -96,12 +89,7 @@ impl Mechanism {
     }
 
     /// The moving parts, without names, drawings and weights.
-    fn new(
-        built: Built,
-        joints: Vec<JointModel>,
-        coordinates: Vec<Coordinate>,
-        shares: Vec<Option<Share>>,
-    ) -> Self {
+    fn new(built: Built, joints: Vec<JointModel>, coordinates: Vec<Coordinate>, shares: Vec<Option<Share>>) -> Self {
         let leader = |c| leader_of(&built.dofs, c);
         Self {
             leaders: (0..coordinates.len()).filter_map(leader).collect(),
@@ -144,9 +132,7 @@ impl Mechanism {
     /// The engine's velocity of each coordinate, rad/s or m/s.
     pub fn velocities(&self, out: &mut [f64]) {
         for (value, &dof) in out.iter_mut().zip(&self.leaders) {
-            *value = self
-                .multibody()
-                .map_or(0.0, |m| m.generalized_velocity()[dof]);
+            *value = self.multibody().map_or(0.0, |m| m.generalized_velocity()[dof]);
         }
     }
 
@@ -159,11 +145,7 @@ impl Mechanism {
     pub fn link_poses(&self) -> Vec<geometry::Pose> {
         let links = (0..self.placement.len()).map(|link| plain_pose(&self.link_pose(link)));
         let free = self.free_bodies.iter().map(|h| {
-            let pose = self
-                .world
-                .bodies
-                .get(*h)
-                .map_or(Pose::IDENTITY, |b| *b.position());
+            let pose = self.world.bodies.get(*h).map_or(Pose::IDENTITY, |b| *b.position());
             plain_pose(&pose)
         });
         links.chain(free).collect()
@@ -185,24 +167,18 @@ impl Mechanism {
     }
 
     pub(super) fn body_pose(&self, body: usize) -> Pose {
-        let link = self
-            .multibody()
-            .and_then(|m| m.link(self.bodies[body].link_id));
+        let link = self.multibody().and_then(|m| m.link(self.bodies[body].link_id));
         link.map_or(Pose::IDENTITY, |l| *l.local_to_world())
     }
 
     pub(super) fn dof_position(&self, dof: usize) -> f64 {
         let dof = &self.dofs[dof];
-        let link = self
-            .multibody()
-            .and_then(|m| m.link(self.bodies[dof.body].link_id));
+        let link = self.multibody().and_then(|m| m.link(self.bodies[dof.body].link_id));
         link.map_or(0.0, |l| l.joint().coords()[dof.axis()])
     }
 
     fn check_mass(&self, file: &Path) -> Result<(), MechanismError> {
-        let mass = self
-            .projection
-            .tr_mul(&(&self.full_mass * &self.projection));
+        let mass = self.projection.tr_mul(&(&self.full_mass * &self.projection));
         for (coordinate, moved) in self.coordinates.iter().zip(mass.diagonal().iter()) {
             if !(*moved > 0.0 && moved.is_finite()) {
                 let problem = format!("moves no inertia (M = {moved:e})");
@@ -218,23 +194,14 @@ impl Mechanism {
 fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {
     DMatrix::from_fn(dofs.len(), coordinates, |row, column| {
         let share = dofs[row].share;
-        if share.coordinate == column {
-            share.multiplier
-        } else {
-            0.0
-        }
+        if share.coordinate == column { share.multiplier } else { 0.0 }
     })
 }
 
 fn check_spec(spec: &MechanismSpec) -> Result<(), MechanismError> {
     if !spec.gravity_m_s2.iter().all(|g| g.is_finite()) {
         let problem = format!("gravity_m_s2 = {:?} is not finite", spec.gravity_m_s2);
-        return Err(MechanismError::spec(
-            "gravity",
-            "gravity_m_s2",
-            problem,
-            "correct it",
-        ));
+        return Err(MechanismError::spec("gravity", "gravity_m_s2", problem, "correct it"));
     }
     let Some(contact) = &spec.contact else {
         return Ok(());
@@ -250,12 +217,7 @@ fn check_spec(spec: &MechanismSpec) -> Result<(), MechanismError> {
     match positive.copied().or(friction) {
         Some((key, value)) => {
             let problem = format!("{value} is out of range");
-            Err(MechanismError::spec(
-                "contact",
-                key,
-                problem,
-                "give a positive number",
-            ))
+            Err(MechanismError::spec("contact", key, problem, "give a positive number"))
         }
         None => Ok(()),
     }

@@ -44,37 +44,13 @@ impl NotchGeometry {
     /// # Errors
     /// Sizes that make no tube or leave no wall.
     pub fn check(&self) -> Result<(), MechanismError> {
-        let NotchGeometry {
-            outer_radius_m: outer,
-            inner_radius_m: inner,
-            cut_depth_m: depth,
-            notch_height_m: height,
-        } = *self;
+        let NotchGeometry { outer_radius_m: outer, inner_radius_m: inner, cut_depth_m: depth, notch_height_m: height } =
+            *self;
         let rules = [
-            (
-                "outer_radius_m",
-                outer,
-                outer > 0.0 && outer.is_finite(),
-                "> 0",
-            ),
-            (
-                "inner_radius_m",
-                inner,
-                inner >= 0.0 && inner < outer,
-                ">= 0 and below the outer one",
-            ),
-            (
-                "cut_depth_m",
-                depth,
-                depth > 0.0 && depth < 2.0 * outer,
-                "between 0 and the outer diameter",
-            ),
-            (
-                "notch_height_m",
-                height,
-                height > 0.0 && height.is_finite(),
-                "> 0",
-            ),
+            ("outer_radius_m", outer, outer > 0.0 && outer.is_finite(), "> 0"),
+            ("inner_radius_m", inner, inner >= 0.0 && inner < outer, ">= 0 and below the outer one"),
+            ("cut_depth_m", depth, depth > 0.0 && depth < 2.0 * outer, "between 0 and the outer diameter"),
+            ("notch_height_m", height, height > 0.0 && height.is_finite(), "> 0"),
         ];
         match rules.iter().find(|(_, _, ok, _)| !ok) {
             Some((key, value, _, rule)) => {
@@ -173,19 +149,13 @@ mod tests {
         let lever = STOCK.lever_m() / 2.6174e-3 - 1.0;
         let total = STOCK.stiffness_n_m_rad(0.5e9) / 8.0 / 1.0482e-3 - 1.0;
         println!("lever error {lever:.1e}, stiffness error {total:.1e}");
-        assert!(
-            lever.abs() < 1e-4 && total.abs() < 1e-4,
-            "{lever:e} {total:e}"
-        );
+        assert!(lever.abs() < 1e-4 && total.abs() < 1e-4, "{lever:e} {total:e}");
     }
 
     #[test]
     fn moments_match_a_numerical_quadrature() {
         for depth in [0.3e-3, 1.0e-3, 1.615e-3, 2.0e-3, 2.584e-3, 3.1e-3] {
-            let notch = NotchGeometry {
-                cut_depth_m: depth,
-                ..STOCK
-            };
+            let notch = NotchGeometry { cut_depth_m: depth, ..STOCK };
             let [area, first, along_y, along_x] = quadrature(&notch);
             let mean = first / area;
             let pairs = [
@@ -195,10 +165,7 @@ mod tests {
                 (notch.sideways_second_moment_m4(), along_x),
             ];
             for (have, want) in pairs {
-                assert!(
-                    (have / want - 1.0).abs() < 1e-5,
-                    "g = {depth}: {have:e} {want:e}"
-                );
+                assert!((have / want - 1.0).abs() < 1e-5, "g = {depth}: {have:e} {want:e}");
             }
         }
     }
@@ -233,10 +200,7 @@ mod tests {
 
     #[test]
     fn impossible_notches_are_refused() {
-        let deep = NotchGeometry {
-            cut_depth_m: 4e-3,
-            ..STOCK
-        };
+        let deep = NotchGeometry { cut_depth_m: 4e-3, ..STOCK };
         let message = deep.check().unwrap_err().to_string();
         assert!(message.contains("cut_depth_m = 0.004"), "{message}");
     }

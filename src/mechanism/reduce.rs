@@ -15,9 +15,7 @@ pub(super) struct Share {
 }
 
 /// The coordinates, and each joint's share (`None` where the joint does not move).
-pub(super) fn reduce(
-    joints: &[JointModel],
-) -> Result<(Vec<Coordinate>, Vec<Option<Share>>), MechanismError> {
+pub(super) fn reduce(joints: &[JointModel]) -> Result<(Vec<Coordinate>, Vec<Option<Share>>), MechanismError> {
     let shares = shares(joints);
     let leaders = joints.iter().filter(|j| j.moves && j.mimic.is_none());
     let mut coordinates: Vec<Coordinate> = leaders.map(empty_coordinate).collect();
@@ -46,14 +44,12 @@ fn shares(joints: &[JointModel]) -> Vec<Option<Share>> {
             Some(m) => (m.leader, m.multiplier, m.offset),
             None => (index, 1.0, 0.0),
         };
-        number[leader]
-            .filter(|_| joint.moves)
-            .map(|coordinate| Share {
-                coordinate,
-                multiplier,
-                offset,
-                leads: joint.mimic.is_none(),
-            })
+        number[leader].filter(|_| joint.moves).map(|coordinate| Share {
+            coordinate,
+            multiplier,
+            offset,
+            leads: joint.mimic.is_none(),
+        })
     };
     joints.iter().enumerate().map(share).collect()
 }
@@ -71,11 +67,7 @@ fn empty_coordinate(leader: &JointModel) -> Coordinate {
     }
 }
 
-fn add(
-    joint: &JointModel,
-    share: &Share,
-    coordinate: &mut Coordinate,
-) -> Result<(), MechanismError> {
+fn add(joint: &JointModel, share: &Share, coordinate: &mut Coordinate) -> Result<(), MechanismError> {
     let m = share.multiplier;
     coordinate.stiffness += m * m * joint.stiffness;
     coordinate.damping += m * m * joint.damping;

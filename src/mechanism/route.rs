@@ -50,21 +50,14 @@ impl Mechanism {
     pub fn route(&self, spec: &RouteSpec) -> Result<Route, MechanismError> {
         match (spec.lever.is_empty(), spec.via.is_empty()) {
             (false, true) => self.lever_route(&spec.lever, self.points(&spec.draw)?),
-            (true, false) if spec.via.len() >= 2 && spec.draw.is_empty() => {
-                Ok(Route::Via(self.points(&spec.via)?))
-            }
+            (true, false) if spec.via.len() >= 2 && spec.draw.is_empty() => Ok(Route::Via(self.points(&spec.via)?)),
             (true, false) => {
                 let problem = "needs two points or more, and no `draw`";
                 Err(MechanismError::spec("route", "via", problem, "complete it"))
             }
             _ => {
                 let problem = "needs exactly one of them";
-                Err(MechanismError::spec(
-                    "route",
-                    "lever, via",
-                    problem,
-                    "give lever or via",
-                ))
+                Err(MechanismError::spec("route", "lever, via", problem, "give lever or via"))
             }
         }
     }
@@ -74,9 +67,7 @@ impl Mechanism {
     /// A cable under tension T puts the generalised force −T ∂L/∂q on the coordinates.
     pub fn path_length(&self, route: &Route, jacobian: &mut [f64]) -> f64 {
         match route {
-            Route::Levers {
-                arms, constant_m, ..
-            } => self.lever_length(arms, *constant_m, jacobian),
+            Route::Levers { arms, constant_m, .. } => self.lever_length(arms, *constant_m, jacobian),
             Route::Via(points) => self.via_length(points, jacobian),
         }
     }
@@ -84,10 +75,7 @@ impl Mechanism {
     /// The points to draw the cable through, in the world, m. Empty for a lever route without `draw`.
     pub fn cable_points(&self, route: &Route) -> Vec<[f64; 3]> {
         let (Route::Levers { draw: points, .. } | Route::Via(points)) = route;
-        points
-            .iter()
-            .map(|p| self.world_point(p).to_array())
-            .collect()
+        points.iter().map(|p| self.world_point(p).to_array()).collect()
     }
 
     fn lever_length(&self, arms: &[Arm], constant_m: f64, jacobian: &mut [f64]) -> f64 {
@@ -103,20 +91,14 @@ impl Mechanism {
     }
 
     fn via_length(&self, points: &[LinkPoint], jacobian: &mut [f64]) -> f64 {
-        let world: Vec<Vector3<f64>> = points
-            .iter()
-            .map(|p| na_vector(self.world_point(p)))
-            .collect();
+        let world: Vec<Vector3<f64>> = points.iter().map(|p| na_vector(self.world_point(p))).collect();
         let mut length = 0.0;
         let mut slope = DVector::zeros(self.dofs.len());
         for (ends, world) in points.windows(2).zip(world.windows(2)) {
             let segment = world[1] - world[0];
             let distance = segment.norm();
             length += distance;
-            let bodies = [
-                self.placement[ends[0].link].0,
-                self.placement[ends[1].link].0,
-            ];
+            let bodies = [self.placement[ends[0].link].0, self.placement[ends[1].link].0];
             // Within one rigid body nothing changes; nor has a segment without length a direction.
             if distance > 0.0 && bodies[0] != bodies[1] {
                 let unit = segment / distance;
@@ -132,55 +114,34 @@ impl Mechanism {
         self.link_pose(point.link) * Vector::from_array(point.point_m)
     }
 
-    fn lever_route(
-        &self,
-        levers: &[LeverSpec],
-        draw: Vec<LinkPoint>,
-    ) -> Result<Route, MechanismError> {
+    fn lever_route(&self, levers: &[LeverSpec], draw: Vec<LinkPoint>) -> Result<Route, MechanismError> {
         let mut arms: Vec<Arm> = Vec::new();
         let mut constant_m = 0.0;
         for lever in levers {
-            let error = |problem: String, remedy: String| {
-                MechanismError::spec("route.lever", &lever.joint, problem, remedy)
-            };
-            let joint = self
-                .joints
-                .iter()
-                .position(|j| j.name == lever.joint)
-                .ok_or_else(|| {
-                    let known = known_names(self.joints.iter().map(|j| j.name.as_str()));
-                    error("the URDF has no such joint".into(), known)
-                })?;
+            let error =
+                |problem: String, remedy: String| MechanismError::spec("route.lever", &lever.joint, problem, remedy);
+            let joint = self.joints.iter().position(|j| j.name == lever.joint).ok_or_else(|| {
+                let known = known_names(self.joints.iter().map(|j| j.name.as_str()));
+                error("the URDF has no such joint".into(), known)
+            })?;
             if !lever.lever_m.is_finite() {
-                return Err(error(
-                    format!("lever_m = {}", lever.lever_m),
-                    "correct it".into(),
-                ));
+                return Err(error(format!("lever_m = {}", lever.lever_m), "correct it".into()));
             }
             match self.shares[joint] {
                 Some(share) => {
                     constant_m -= lever.lever_m * share.offset;
-                    arms.push(Arm {
-                        coordinate: share.coordinate,
-                        lever_m: lever.lever_m * share.multiplier,
-                    });
+                    arms.push(Arm { coordinate: share.coordinate, lever_m: lever.lever_m * share.multiplier });
                 }
                 None => constant_m -= lever.lever_m * self.joints[joint].position,
             }
         }
-        Ok(Route::Levers {
-            arms,
-            constant_m,
-            draw,
-        })
+        Ok(Route::Levers { arms, constant_m, draw })
     }
 
     fn points(&self, specs: &[PointSpec]) -> Result<Vec<LinkPoint>, MechanismError> {
         let links = &self.link_names[..self.placement.len()];
         let resolve = |spec: &PointSpec| {
-            let error = |problem: &str, remedy: String| {
-                MechanismError::spec("route", &spec.link, problem, remedy)
-            };
+            let error = |problem: &str, remedy: String| MechanismError::spec("route", &spec.link, problem, remedy);
             if !spec.point_m.iter().all(|v| v.is_finite()) {
                 return Err(error("point_m is not finite", "correct it".into()));
             }
@@ -188,10 +149,7 @@ impl Mechanism {
                 let known = known_names(links.iter().map(String::as_str));
                 error("the URDF has no such link", known)
             })?;
-            Ok(LinkPoint {
-                link,
-                point_m: spec.point_m,
-            })
+            Ok(LinkPoint { link, point_m: spec.point_m })
         };
         specs.iter().map(resolve).collect()
     }

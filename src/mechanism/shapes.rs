@@ -14,11 +14,7 @@ use super::stl;
 const GREY: [f32; 4] = [0.7, 0.7, 0.72, 1.0];
 
 /// Everything the links look like; link indices are the URDF's.
-pub(super) fn visuals(
-    file: &Path,
-    robot: &Robot,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<Visual>, MechanismError> {
+pub(super) fn visuals(file: &Path, robot: &Robot, warnings: &mut Vec<String>) -> Result<Vec<Visual>, MechanismError> {
     let mut found = Vec::new();
     for (link, model) in robot.links.iter().enumerate() {
         for visual in &model.visual {
@@ -60,13 +56,7 @@ pub(super) fn placed_shape(
     let pose = pose_from_urdf(origin.xyz.0, origin.rpy.0);
     if !pose.is_finite() {
         let problem = "the origin of a visual or collision is not finite";
-        return Err(MechanismError::urdf(
-            file,
-            "link",
-            link,
-            problem,
-            "correct it",
-        ));
+        return Err(MechanismError::urdf(file, "link", link, problem, "correct it"));
     }
     Ok((pose, shape(file, link, geometry)?))
 }
@@ -77,13 +67,7 @@ fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, Mechanis
             return Ok(());
         }
         let problem = format!("{what} = {values:?} must be > 0");
-        Err(MechanismError::urdf(
-            file,
-            "link",
-            link,
-            problem,
-            "correct the geometry",
-        ))
+        Err(MechanismError::urdf(file, "link", link, problem, "correct the geometry"))
     };
     match geometry {
         Geometry::Box { size } => {
@@ -92,10 +76,7 @@ fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, Mechanis
         }
         &Geometry::Cylinder { radius, length } => {
             positive("cylinder radius, length", &[radius, length])?;
-            Ok(Shape::Cylinder {
-                radius_m: radius,
-                length_m: length,
-            })
+            Ok(Shape::Cylinder { radius_m: radius, length_m: length })
         }
         &Geometry::Sphere { radius } => {
             positive("sphere radius", &[radius])?;
@@ -120,20 +101,11 @@ fn mesh(file: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, MechanismErro
     let path = mesh_path(folder, name);
     let bytes = std::fs::read(&path).map_err(|e| error(path.clone(), e.to_string()))?;
     let found = stl::read(&bytes).map_err(|reason| error(path.clone(), reason))?;
-    if !found
-        .vertices
-        .iter()
-        .chain([&scale])
-        .flatten()
-        .all(|v| v.is_finite())
-    {
+    if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
         return Err(error(path, "a vertex or the scale is not finite".into()));
     }
     let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
-    Ok(Shape::Mesh {
-        vertices_m: found.vertices.iter().map(scaled).collect(),
-        triangles: found.triangles,
-    })
+    Ok(Shape::Mesh { vertices_m: found.vertices.iter().map(scaled).collect(), triangles: found.triangles })
 }
 
 /// `package://name/path` is looked for below the URDF's folder, with and without the package's name.
@@ -152,12 +124,8 @@ fn mesh_path(folder: &Path, name: &str) -> PathBuf {
 /// The engine's collider of a shape; `None` for a mesh without volume.
 pub(super) fn collider(shape: &Shape) -> Option<ColliderBuilder> {
     Some(match shape {
-        Shape::Box { size_m } => {
-            ColliderBuilder::cuboid(size_m[0] / 2.0, size_m[1] / 2.0, size_m[2] / 2.0)
-        }
-        Shape::Cylinder { radius_m, length_m } => {
-            ColliderBuilder::cylinder(length_m / 2.0, *radius_m)
-        }
+        Shape::Box { size_m } => ColliderBuilder::cuboid(size_m[0] / 2.0, size_m[1] / 2.0, size_m[2] / 2.0),
+        Shape::Cylinder { radius_m, length_m } => ColliderBuilder::cylinder(length_m / 2.0, *radius_m),
         Shape::Sphere { radius_m } => ColliderBuilder::ball(*radius_m),
         Shape::Mesh { vertices_m, .. } => {
             let points: Vec<Vector> = vertices_m.iter().map(|v| Vector::from_array(*v)).collect();
@@ -169,9 +137,7 @@ pub(super) fn collider(shape: &Shape) -> Option<ColliderBuilder> {
 /// Pose of the engine's own shape frame in ours: its cylinders lie along y.
 pub(super) fn engine_frame(shape: &Shape) -> Pose {
     match shape {
-        Shape::Cylinder { .. } => {
-            Pose::from_rotation(Rotation::from_rotation_x(std::f64::consts::FRAC_PI_2))
-        }
+        Shape::Cylinder { .. } => Pose::from_rotation(Rotation::from_rotation_x(std::f64::consts::FRAC_PI_2)),
         _ => Pose::IDENTITY,
     }
 }

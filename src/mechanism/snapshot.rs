@@ -15,10 +15,7 @@ pub struct Snapshot {
 impl Mechanism {
     /// The present state.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            world: copy(&self.world),
-            last_step_s: self.last_step_s,
-        }
+        Snapshot { world: copy(&self.world), last_step_s: self.last_step_s }
     }
 
     /// Returns to a state saved from a mechanism of the same spec.
@@ -31,10 +28,7 @@ impl Mechanism {
 
 impl Clone for Snapshot {
     fn clone(&self) -> Self {
-        Self {
-            world: copy(&self.world),
-            last_step_s: self.last_step_s,
-        }
+        Self { world: copy(&self.world), last_step_s: self.last_step_s }
     }
 }
 

@@ -46,16 +46,11 @@ fn text(bytes: &[u8]) -> Result<Triangles, String> {
             continue;
         }
         let numbers: Vec<f64> = words.filter_map(|w| w.parse().ok()).collect();
-        let corner: [f64; 3] = numbers
-            .try_into()
-            .map_err(|_| format!("`{}` is no vertex", line.trim()))?;
+        let corner: [f64; 3] = numbers.try_into().map_err(|_| format!("`{}` is no vertex", line.trim()))?;
         corners.push(corner);
     }
     if corners.is_empty() || corners.len() % 3 != 0 {
-        return Err(format!(
-            "{} vertices make no whole triangles",
-            corners.len()
-        ));
+        return Err(format!("{} vertices make no whole triangles", corners.len()));
     }
     let mut mesh = Triangles::default();
     for facet in corners.chunks_exact(3) {

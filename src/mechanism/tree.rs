@@ -34,21 +34,11 @@ impl Tree {
                     joint.child.link, robot.joints[other].name
                 );
                 let remedy = "a URDF is a tree: cut the loop";
-                return Err(MechanismError::urdf(
-                    file,
-                    "joint",
-                    &joint.name,
-                    problem,
-                    remedy,
-                ));
+                return Err(MechanismError::urdf(file, "joint", &joint.name, problem, remedy));
             }
         }
         let order = order_from_root(file, robot, &carrier, &parent)?;
-        Ok(Self {
-            order,
-            carrier,
-            parent,
-        })
+        Ok(Self { order, carrier, parent })
     }
 }
 
@@ -61,24 +51,13 @@ fn index_names<'a>(
     for (i, name) in names.enumerate() {
         if index.insert(name, i).is_some() {
             let problem = "this name is used twice";
-            return Err(MechanismError::urdf(
-                file,
-                element,
-                name,
-                problem,
-                "rename one",
-            ));
+            return Err(MechanismError::urdf(file, element, name, problem, "rename one"));
         }
     }
     Ok(index)
 }
 
-fn find(
-    file: &Path,
-    links: &BTreeMap<&str, usize>,
-    joint: &str,
-    link: &str,
-) -> Result<usize, MechanismError> {
+fn find(file: &Path, links: &BTreeMap<&str, usize>, joint: &str, link: &str) -> Result<usize, MechanismError> {
     links.get(link).copied().ok_or_else(|| {
         let problem = format!("there is no link \"{link}\"");
         let remedy = known_names(links.keys().copied());
@@ -92,20 +71,12 @@ fn order_from_root(
     carrier: &[Option<usize>],
     parent: &[usize],
 ) -> Result<Vec<usize>, MechanismError> {
-    let roots: Vec<usize> = (0..carrier.len())
-        .filter(|&l| carrier[l].is_none())
-        .collect();
+    let roots: Vec<usize> = (0..carrier.len()).filter(|&l| carrier[l].is_none()).collect();
     let [root] = roots[..] else {
         let names = known_names(roots.iter().map(|&l| robot.links[l].name.as_str()));
         let problem = format!("has {} root links ({names})", roots.len());
         let remedy = "exactly one link must be carried by no joint";
-        return Err(MechanismError::urdf(
-            file,
-            "robot",
-            &robot.name,
-            problem,
-            remedy,
-        ));
+        return Err(MechanismError::urdf(file, "robot", &robot.name, problem, remedy));
     };
     let mut order = vec![root];
     let mut next = 0;

@@ -14,9 +14,7 @@ pub(super) fn read(file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
         reason: error.to_string(),
         remedy: "check `urdf` in the scene; it is relative to the scene file".into(),
     })?;
-    let robot = urdf_rs::read_from_string(&text).map_err(|error| MechanismError::Parse {
-        file: file.to_path_buf(),
-        reason: error.to_string(),
-    })?;
+    let robot = urdf_rs::read_from_string(&text)
+        .map_err(|error| MechanismError::Parse { file: file.to_path_buf(), reason: error.to_string() })?;
     Ok((robot, scan(&text)))
 }

@@ -13,10 +13,7 @@ pub(super) struct Place {
 
 impl Place {
     pub fn at(x: f64, y: f64, z: f64) -> Self {
-        Self {
-            xyz: [x, y, z],
-            rpy: [0.0; 3],
-        }
+        Self { xyz: [x, y, z], rpy: [0.0; 3] }
     }
 }
 
@@ -27,11 +24,7 @@ pub(super) struct UrdfText {
 
 impl UrdfText {
     pub fn new(robot: &str, comment: &str) -> Self {
-        Self {
-            text: format!(
-                "<?xml version=\"1.0\"?>\n<!-- {comment} -->\n<robot name=\"{robot}\">\n"
-            ),
-        }
+        Self { text: format!("<?xml version=\"1.0\"?>\n<!-- {comment} -->\n<robot name=\"{robot}\">\n") }
     }
 
     pub fn line(&mut self, line: &str) {
@@ -41,9 +34,7 @@ impl UrdfText {
     }
 
     pub fn material(&mut self, name: &str, rgba: &str) {
-        self.line(&format!(
-            "<material name=\"{name}\"><color rgba=\"{rgba}\"/></material>"
-        ));
+        self.line(&format!("<material name=\"{name}\"><color rgba=\"{rgba}\"/></material>"));
     }
 
     pub fn open_link(&mut self, name: &str) {
@@ -81,9 +72,7 @@ impl UrdfText {
 
     pub fn collision(&mut self, place: Place, geometry: &str) {
         let origin = origin(place);
-        self.line(&format!(
-            "  <collision>{origin}<geometry>{geometry}</geometry></collision>"
-        ));
+        self.line(&format!("  <collision>{origin}<geometry>{geometry}</geometry></collision>"));
     }
 
     /// A revolute joint; `extra` goes inside, after the limits.
@@ -108,11 +97,7 @@ impl UrdfText {
 }
 
 pub(super) fn cylinder(radius_m: f64, length_m: f64) -> String {
-    format!(
-        "<cylinder radius=\"{}\" length=\"{}\"/>",
-        number(radius_m),
-        number(length_m)
-    )
+    format!("<cylinder radius=\"{}\" length=\"{}\"/>", number(radius_m), number(length_m))
 }
 
 pub(super) fn cuboid(size_m: [f64; 3]) -> String {

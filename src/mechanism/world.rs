@@ -4,8 +4,8 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
 use rapier3d_f64::dynamics::{
-    GenericJoint, GenericJointBuilder, JointAxesMask, MassProperties, MultibodyDofCoupling,
-    MultibodyIndex, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
+    GenericJoint, GenericJointBuilder, JointAxesMask, MassProperties, MultibodyDofCoupling, MultibodyIndex,
+    RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
 };
 use rapier3d_f64::geometry::ColliderBuilder;
 use rapier3d_f64::math::{Pose, Rotation, Vector};
@@ -72,20 +72,13 @@ pub(super) fn build(
     shares: &[Option<Share>],
     gravity_m_s2: [f64; 3],
 ) -> Built {
-    let mut world = PhysicsWorld {
-        gravity: Vector::from_array(gravity_m_s2),
-        ..PhysicsWorld::default()
-    };
+    let mut world = PhysicsWorld { gravity: Vector::from_array(gravity_m_s2), ..PhysicsWorld::default() };
     // The engine freezes forces over its own sub-steps, so there is only one of them.
     world.integration_parameters.num_solver_iterations = 1;
     world.integration_parameters.max_ccd_substeps = 0;
     world.integration_parameters.normalized_max_linear_velocity = f64::MAX;
-    let mut built = Built {
-        world,
-        multibody: None,
-        bodies: Vec::with_capacity(assembly.bodies.len()),
-        dofs: Vec::new(),
-    };
+    let mut built =
+        Built { world, multibody: None, bodies: Vec::with_capacity(assembly.bodies.len()), dofs: Vec::new() };
     for model in &assembly.bodies {
         built.add_body(model, joints);
     }
@@ -102,18 +95,13 @@ impl Built {
         if let (Some(joint), Some(parent)) = (model.joint, self.bodies.get(model.parent)) {
             let joint = engine_joint(&joints[joint], &model.frame);
             let parent = parent.handle;
-            self.world
-                .multibody_joints
-                .insert(parent, handle, joint, true);
+            self.world.multibody_joints.insert(parent, handle, joint, true);
         }
         if let Some(body) = self.world.bodies.get_mut(handle) {
             body.recompute_mass_properties_from_colliders(&self.world.colliders);
         }
         let link = self.world.multibody_joints.rigid_body_link(handle);
-        let mut moved_by = self
-            .bodies
-            .get(model.parent)
-            .map_or(Vec::new(), |p| p.moved_by.clone());
+        let mut moved_by = self.bodies.get(model.parent).map_or(Vec::new(), |p| p.moved_by.clone());
         if model.joint.is_some() {
             // Every body but the root brings one dof.
             moved_by.push(self.bodies.len() - 1);
@@ -138,11 +126,7 @@ impl Built {
                 Some(dof(body, &joints[joint], shares[joint]?))
             })
             .collect();
-        let positions: Vec<f64> = assembly
-            .bodies
-            .iter()
-            .filter_map(|b| b.joint.map(|j| joints[j].position))
-            .collect();
+        let positions: Vec<f64> = assembly.bodies.iter().filter_map(|b| b.joint.map(|j| joints[j].position)).collect();
         let Some(multibody) = self.multibody else {
             return;
         };
@@ -177,29 +161,22 @@ impl Built {
     ) -> Result<(), MechanismError> {
         set_contact_parameters(&mut self.world, contact);
         for name in &contact.links {
-            let error = |problem: &str, remedy: String| {
-                MechanismError::spec("contact", name, problem, remedy)
-            };
+            let error = |problem: &str, remedy: String| MechanismError::spec("contact", name, problem, remedy);
             let Some(link) = robot.links.iter().position(|l| &l.name == name) else {
                 let known = known_names(robot.links.iter().map(|l| l.name.as_str()));
                 return Err(error("the URDF has no such link", known));
             };
             if robot.links[link].collision.is_empty() {
-                return Err(error(
-                    "this link has no <collision>",
-                    "add one to the URDF".into(),
-                ));
+                return Err(error("this link has no <collision>", "add one to the URDF".into()));
             }
             for collision in &robot.links[link].collision {
-                let (own, shape) =
-                    placed_shape(file, name, &collision.origin, &collision.geometry)?;
+                let (own, shape) = placed_shape(file, name, &collision.origin, &collision.geometry)?;
                 let (body, link_pose) = assembly.placement[link];
                 let Some(builder) = collider(&shape) else {
                     return Err(error("its mesh has no volume", "use a closed mesh".into()));
                 };
-                let builder = builder
-                    .position(link_pose * own * engine_frame(&shape))
-                    .friction(contact.friction_coefficient);
+                let builder =
+                    builder.position(link_pose * own * engine_frame(&shape)).friction(contact.friction_coefficient);
                 self.attach(builder, link, self.bodies[body].handle);
             }
         }
@@ -221,10 +198,7 @@ fn moving_body(model: &BodyModel) -> RigidBodyBuilder {
         engine_vector(&moments),
         axes,
     );
-    RigidBodyBuilder::dynamic()
-        .additional_mass_properties(mass)
-        .gravity_scale(0.0)
-        .can_sleep(false)
+    RigidBodyBuilder::dynamic().additional_mass_properties(mass).gravity_scale(0.0).can_sleep(false)
 }
 
 fn engine_joint(joint: &JointModel, frame: &Pose) -> GenericJoint {
@@ -234,22 +208,11 @@ fn engine_joint(joint: &JointModel, frame: &Pose) -> GenericJoint {
         CoordinateKind::Angle => JointAxesMask::LOCKED_REVOLUTE_AXES,
         CoordinateKind::Length => JointAxesMask::LOCKED_PRISMATIC_AXES,
     };
-    GenericJointBuilder::new(locked)
-        .contacts_enabled(false)
-        .local_frame1(*frame * turned)
-        .local_frame2(turned)
-        .build()
+    GenericJointBuilder::new(locked).contacts_enabled(false).local_frame1(*frame * turned).local_frame2(turned).build()
 }
 
 fn dof(body: usize, joint: &JointModel, share: Share) -> Dof {
-    Dof {
-        body,
-        kind: joint.kind,
-        share,
-        stiffness: joint.stiffness,
-        damping: joint.damping,
-        rest: joint.rest,
-    }
+    Dof { body, kind: joint.kind, share, stiffness: joint.stiffness, damping: joint.damping, rest: joint.rest }
 }
 
 /// One coupling per follower, to the dof that is the coordinate itself.
@@ -276,8 +239,7 @@ fn couplings(dofs: &[Dof], bodies: &[Body]) -> Vec<MultibodyDofCoupling> {
 
 /// Index of the dof that measures a coordinate: that of its own joint.
 pub(super) fn leader_of(dofs: &[Dof], coordinate: usize) -> Option<usize> {
-    dofs.iter()
-        .position(|d| d.share.coordinate == coordinate && d.share.leads)
+    dofs.iter().position(|d| d.share.coordinate == coordinate && d.share.leads)
 }
 
 fn set_contact_parameters(world: &mut PhysicsWorld, contact: &ContactSpec) {

@@ -10,17 +10,9 @@ const READ: &[(&str, &[&str])] = &[
     ("inertial", &["origin", "mass", "inertia"]),
     ("visual", &["origin", "geometry", "material"]),
     ("collision", &["origin", "geometry"]),
-    (
-        "geometry",
-        &["box", "cylinder", "sphere", "mesh", "capsule"],
-    ),
+    ("geometry", &["box", "cylinder", "sphere", "mesh", "capsule"]),
     ("material", &["color"]),
-    (
-        "joint",
-        &[
-            "origin", "parent", "child", "axis", "limit", "dynamics", "mimic",
-        ],
-    ),
+    ("joint", &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"]),
 ];
 
 /// What the scan found.
@@ -67,14 +59,10 @@ pub(super) fn scan(xml: &str) -> XmlScan {
 /// Notes one start tag; false when the element is dropped by the reader.
 fn look_at(element: &str, open: &[Open], found: &mut XmlScan) -> bool {
     let parent = open.last().map_or("", |o| o.element);
-    let read = READ
-        .iter()
-        .any(|(p, children)| *p == parent && children.contains(&element));
+    let read = READ.iter().any(|(p, children)| *p == parent && children.contains(&element));
     let owner = open.iter().rev().find(|o| !o.name.is_empty());
     if !read {
-        let place = owner.map_or(String::new(), |o| {
-            format!(" of {} \"{}\"", o.element, o.name)
-        });
+        let place = owner.map_or(String::new(), |o| format!(" of {} \"{}\"", o.element, o.name));
         found.warnings.push(format!(
             "<{element}>{place} is not read and has no effect; what it describes belongs into the scene file"
         ));
@@ -121,9 +109,7 @@ fn tag_end(tag: &str) -> Option<usize> {
 }
 
 fn tag_name(tag: &str) -> &str {
-    tag.split(|c: char| c.is_whitespace() || c == '/')
-        .next()
-        .unwrap_or("")
+    tag.split(|c: char| c.is_whitespace() || c == '/').next().unwrap_or("")
 }
 
 /// Value of an attribute of a start tag.
@@ -163,17 +149,7 @@ mod tests {
 
     #[test]
     fn broken_text_does_not_panic() {
-        for text in [
-            "",
-            "<",
-            "<a",
-            "<a b='",
-            "</",
-            "<!--",
-            "<a name>",
-            "<é name=\"ü\">",
-            "<a name=",
-        ] {
+        for text in ["", "<", "<a", "<a b='", "</", "<!--", "<a name>", "<é name=\"ü\">", "<a name="] {
             scan(text);
         }
     }

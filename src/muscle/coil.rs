@@ -23,12 +23,7 @@ pub struct Coil<D> {
 ///
 /// `G` shear modulus of the wire, Pa; `d` wire diameter, m; `D` mean coil diameter, m; `N` active turns.
 /// Range: spring index `D/d` above about 4. Source: Wahl, Mechanical Springs.
-pub fn spring_rate<D: Scalar>(
-    shear_modulus_pa: D,
-    wire_diameter_m: D,
-    mean_diameter_m: D,
-    turns: D,
-) -> D {
+pub fn spring_rate<D: Scalar>(shear_modulus_pa: D, wire_diameter_m: D, mean_diameter_m: D, turns: D) -> D {
     shear_modulus_pa * wire_diameter_m.powi(4) / (mean_diameter_m.powi(3) * turns * 8.0)
 }
 
@@ -80,18 +75,10 @@ impl<D: Scalar> Stop<D> {
     pub fn push(&self, elongation_m: D, velocity_m_s: D) -> StopPush<D> {
         let push = -(self.stiffness_n_m * elongation_m + self.damping_n_s_m * velocity_m_s);
         if elongation_m.value() < 0.0 && push.value() > 0.0 {
-            return StopPush {
-                push_n: push,
-                dpush_de: -self.stiffness_n_m,
-                dpush_dv: -self.damping_n_s_m,
-            };
+            return StopPush { push_n: push, dpush_de: -self.stiffness_n_m, dpush_dv: -self.damping_n_s_m };
         }
         let zero = D::constant(0.0);
-        StopPush {
-            push_n: zero,
-            dpush_de: zero,
-            dpush_dv: zero,
-        }
+        StopPush { push_n: zero, dpush_de: zero, dpush_dv: zero }
     }
 
     /// Energy stored in the compressed stop, J.
@@ -114,26 +101,13 @@ mod tests {
     fn coil_and_stop() {
         near(spring_rate(69.1e9, 0.2e-3, 1.25e-3, 250.0), 28.3, 2e-3);
         let (_, pull) = first_derivative(
-            |e| {
-                Coil {
-                    stiffness_n_m: Dual64::from(28.3),
-                    preload_n: Dual64::from(0.1),
-                }
-                .energy_j(e)
-            },
+            |e| Coil { stiffness_n_m: Dual64::from(28.3), preload_n: Dual64::from(0.1) }.energy_j(e),
             0.02,
         );
         near(pull, 28.3 * 0.02 + 0.1, 1e-14);
-        let stop = Stop {
-            stiffness_n_m: 2e4,
-            damping_n_s_m: 3.0,
-        };
+        let stop = Stop { stiffness_n_m: 2e4, damping_n_s_m: 3.0 };
         near(stop.push(-1e-4, -0.1).push_n, 2.3, 1e-12);
-        assert_eq!(
-            stop.push(-1e-4, 1.0).push_n,
-            0.0,
-            "it never holds the ends together"
-        );
+        assert_eq!(stop.push(-1e-4, 1.0).push_n, 0.0, "it never holds the ends together");
         assert_eq!(stop.push(1e-4, -1.0).push_n, 0.0);
     }
 }

@@ -45,15 +45,7 @@ impl<D: Scalar> Friction<D> {
     /// The law with `A = nu = n = 1`, `rho = 0`: Dahl's friction with a pressure-dependent level.
     pub fn dahl(m0_n: D, m1_n_pa: D, presliding_length_m: D) -> Self {
         let one = D::constant(1.0);
-        Self {
-            m0_n,
-            m1_n_pa,
-            presliding_length_m,
-            a: one,
-            nu: one,
-            n: one,
-            rho: D::constant(0.0),
-        }
+        Self { m0_n, m1_n_pa, presliding_length_m, a: one, nu: one, n: one, rho: D::constant(0.0) }
     }
 
     /// Whether the state stays bounded, follows the motion and loses energy over every closed loop.
@@ -73,20 +65,12 @@ impl<D: Scalar> Friction<D> {
 
     /// Force level `m0 + m1 max(p, 0)`, N.
     pub fn level_n(&self, pressure_pa: D) -> D {
-        if pressure_pa.value() > 0.0 {
-            self.m0_n + self.m1_n_pa * pressure_pa
-        } else {
-            self.m0_n
-        }
+        if pressure_pa.value() > 0.0 { self.m0_n + self.m1_n_pa * pressure_pa } else { self.m0_n }
     }
 
     /// `dF/dp`, N/Pa (0 below gauge zero).
     pub fn force_per_pressure(&self, z: D, pressure_pa: D) -> D {
-        if pressure_pa.value() > 0.0 {
-            self.m1_n_pa * z
-        } else {
-            D::constant(0.0)
-        }
+        if pressure_pa.value() > 0.0 { self.m1_n_pa * z } else { D::constant(0.0) }
     }
 
     /// Friction force, N, added to the muscle's pull.
@@ -105,8 +89,7 @@ impl<D: Scalar> Friction<D> {
         let restoring = -(self.nu * self.n * power(z.abs(), self.n - 1.0));
         RateJacobian {
             drate_dz: velocity_m_s.abs() * restoring / self.presliding_length_m,
-            drate_dv: (self.a + self.pull_back(z) * direction(velocity_m_s))
-                / self.presliding_length_m,
+            drate_dv: (self.a + self.pull_back(z) * direction(velocity_m_s)) / self.presliding_length_m,
         }
     }
 
@@ -135,8 +118,7 @@ impl<D: Scalar> Friction<D> {
     /// What a changing pressure adds to the stored energy, W (either sign): the energy book's
     /// 'pressure-friction exchange'.
     pub fn pressure_exchange_w(&self, z: D, pressure_pa: D, pressure_rate_pa_s: D) -> D {
-        self.force_per_pressure(z, pressure_pa) * z * self.presliding_length_m / (self.a * 2.0)
-            * pressure_rate_pa_s
+        self.force_per_pressure(z, pressure_pa) * z * self.presliding_length_m / (self.a * 2.0) * pressure_rate_pa_s
     }
 
     /// `rho - nu |z|^(n-1) z`, the part of the rate that does not know the direction.

@@ -51,27 +51,14 @@ fn val_dahl_settles_at_its_level() {
     near(z, 1.0, 1e-8);
     near(stock().force_n(z, 1e6), 0.106 + 0.222, 1e-8);
     near(stock().force_n(z, -1e5), 0.106, 1e-8);
-    near(
-        stock().exact_step(0.0, 5.2e-3).unwrap(),
-        1.0 - (-1.0f64).exp(),
-        1e-14,
-    );
+    near(stock().exact_step(0.0, 5.2e-3).unwrap(), 1.0 - (-1.0f64).exp(), 1e-14);
 }
 
 #[test]
 fn val_closed_form_is_the_rates_integral() {
-    let law = Friction {
-        a: 1.3,
-        nu: 0.7,
-        rho: -0.4,
-        ..stock()
-    };
+    let law = Friction { a: 1.3, nu: 0.7, rho: -0.4, ..stock() };
     for leg in [2e-3, -9e-3, 30e-3] {
-        near(
-            walk(&law, 0.4, &[leg], 0.0).0,
-            law.exact_step(0.4, leg).unwrap(),
-            2e-8,
-        );
+        near(walk(&law, 0.4, &[leg], 0.0).0, law.exact_step(0.4, leg).unwrap(), 2e-8);
     }
     let free = Friction { nu: 0.0, ..stock() };
     near(free.exact_step(0.1, 5.2e-3).unwrap(), 1.1, 1e-14);
@@ -81,11 +68,7 @@ fn val_closed_form_is_the_rates_integral() {
 #[test]
 fn jacobian_is_the_rates() {
     for n in [1.0, 1.035, 2.0] {
-        let law = Friction {
-            n,
-            rho: -0.2,
-            ..stock()
-        };
+        let law = Friction { n, rho: -0.2, ..stock() };
         for (z, v) in [(0.3, 0.01), (-0.7, 0.02), (0.5, -0.03), (-0.2, -0.01)] {
             let jacobian = law.rate_jacobian(z, v);
             let (_, dz) = first_derivative(|z| dual(law).rate(z, Dual64::from(v)), z);
@@ -95,23 +78,13 @@ fn jacobian_is_the_rates() {
         }
     }
     assert_eq!(stock().rate(0.5, 0.0), 0.0);
-    assert_eq!(
-        dual(stock()).rate(Dual64::from(0.0), Dual64::from(0.0)).eps,
-        0.0
-    );
+    assert_eq!(dual(stock()).rate(Dual64::from(0.0), Dual64::from(0.0)).eps, 0.0);
 }
 
 #[test]
 fn refuses_what_does_not_settle() {
     assert!(stock().check().is_ok());
-    assert!(
-        Friction {
-            rho: 1.0,
-            ..stock()
-        }
-        .check()
-        .is_err()
-    );
+    assert!(Friction { rho: 1.0, ..stock() }.check().is_err());
     assert!(Friction { nu: 0.0, ..stock() }.check().is_err());
     assert!(Friction { n: 0.5, ..stock() }.check().is_err());
 }

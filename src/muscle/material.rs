@@ -75,25 +75,13 @@ impl<D: Scalar> Material<D> {
     pub fn map<E>(&self, f: impl Fn(D) -> E) -> Material<E> {
         match *self {
             Material::NeoHookean { c1_pa } => Material::NeoHookean { c1_pa: f(c1_pa) },
-            Material::Yeoh {
-                c1_pa,
-                c2_pa,
-                c3_pa,
-            } => Material::Yeoh {
-                c1_pa: f(c1_pa),
-                c2_pa: f(c2_pa),
-                c3_pa: f(c3_pa),
-            },
-            Material::Ogden { terms } => Material::Ogden {
-                terms: terms.map(|t| OgdenTerm {
-                    mu_pa: f(t.mu_pa),
-                    alpha: f(t.alpha),
-                }),
-            },
-            Material::Gent { mu_pa, jm } => Material::Gent {
-                mu_pa: f(mu_pa),
-                jm: f(jm),
-            },
+            Material::Yeoh { c1_pa, c2_pa, c3_pa } => {
+                Material::Yeoh { c1_pa: f(c1_pa), c2_pa: f(c2_pa), c3_pa: f(c3_pa) }
+            }
+            Material::Ogden { terms } => {
+                Material::Ogden { terms: terms.map(|t| OgdenTerm { mu_pa: f(t.mu_pa), alpha: f(t.alpha) }) }
+            }
+            Material::Gent { mu_pa, jm } => Material::Gent { mu_pa: f(mu_pa), jm: f(jm) },
         }
     }
 
@@ -101,11 +89,7 @@ impl<D: Scalar> Material<D> {
     pub(super) fn linear_coefficients(&self) -> Option<[D; 3]> {
         match *self {
             Material::NeoHookean { c1_pa } => Some([c1_pa, D::constant(0.0), D::constant(0.0)]),
-            Material::Yeoh {
-                c1_pa,
-                c2_pa,
-                c3_pa,
-            } => Some([c1_pa, c2_pa, c3_pa]),
+            Material::Yeoh { c1_pa, c2_pa, c3_pa } => Some([c1_pa, c2_pa, c3_pa]),
             _ => None,
         }
     }
@@ -144,11 +128,7 @@ impl<D: Scalar> Material<D> {
     fn profile(&self, j: D) -> [D; 3] {
         match *self {
             Material::NeoHookean { c1_pa } => [c1_pa * j, c1_pa, D::constant(0.0)],
-            Material::Yeoh {
-                c1_pa,
-                c2_pa,
-                c3_pa,
-            } => [
+            Material::Yeoh { c1_pa, c2_pa, c3_pa } => [
                 j * (c1_pa + j * (c2_pa + j * c3_pa)),
                 c1_pa + j * (c2_pa * 2.0 + j * c3_pa * 3.0),
                 c2_pa * 2.0 + j * c3_pa * 6.0,
@@ -168,24 +148,13 @@ fn gent_profile<D: Scalar>(mu: D, jm: D, j: D) -> [D; 3] {
     let slope = mu * 0.5 / room;
     let curvature = slope / (room * jm);
     let past = j - at;
-    [
-        w + past * (slope + past * curvature * 0.5),
-        slope + past * curvature,
-        curvature,
-    ]
+    [w + past * (slope + past * curvature * 0.5), slope + past * curvature, curvature]
 }
 
 fn ogden_response<D: Scalar>(terms: &[OgdenTerm<D>; 3], a: D, b: D) -> Response<D> {
     let (h1, h2) = (a.ln() * 0.5, b.ln() * 0.5);
     let zero = D::constant(0.0);
-    let mut sum = Response {
-        w: zero,
-        w1: zero,
-        w2: zero,
-        w11: zero,
-        w12: zero,
-        w22: zero,
-    };
+    let mut sum = Response { w: zero, w1: zero, w2: zero, w11: zero, w12: zero, w22: zero };
     for OgdenTerm { mu_pa, alpha } in *terms {
         let p1 = (alpha * h1).exp();
         let p2 = (alpha * h2).exp();

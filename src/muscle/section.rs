@@ -71,14 +71,7 @@ impl Section {
     /// The section's energy at axial stretch `l` and squared outer radius `y`.
     pub fn energy<D: Scalar>(&self, material: &Material<D>, l: D, y: D) -> SectionEnergy<D> {
         let zero = D::constant(0.0);
-        let mut sum = SectionEnergy {
-            u: zero,
-            u_l: zero,
-            u_y: zero,
-            u_ll: zero,
-            u_ly: zero,
-            u_yy: zero,
-        };
+        let mut sum = SectionEnergy { u: zero, u_l: zero, u_y: zero, u_ll: zero, u_ly: zero, u_yy: zero };
         let shrink = l.recip();
         for &(sigma, weight) in &self.points {
             sum.add(weight, ring_energy(material, l, shrink, y, sigma));
@@ -99,13 +92,7 @@ impl<D: Scalar> SectionEnergy<D> {
 }
 
 /// Energy density of the ring at `sigma`; `shrink` is `1/l`.
-fn ring_energy<D: Scalar>(
-    material: &Material<D>,
-    l: D,
-    shrink: D,
-    y: D,
-    sigma: f64,
-) -> SectionEnergy<D> {
+fn ring_energy<D: Scalar>(material: &Material<D>, l: D, shrink: D, y: D, sigma: f64) -> SectionEnergy<D> {
     let hoop = (y - shrink * (1.0 - sigma)) / sigma;
     let m = material.response(l * l, hoop);
     // Derivatives of h2 = ln(hoop)/2; those of h1 = ln(l) are 1/l and -1/l^2.
@@ -117,10 +104,7 @@ fn ring_energy<D: Scalar>(
         u: m.w,
         u_l: m.w1 * shrink + m.w2 * h_l,
         u_y: m.w2 * h_y,
-        u_ll: (m.w11 - m.w1) * shrink * shrink
-            + m.w12 * shrink * h_l * 2.0
-            + m.w22 * h_l * h_l
-            + m.w2 * h_ll,
+        u_ll: (m.w11 - m.w1) * shrink * shrink + m.w12 * shrink * h_l * 2.0 + m.w22 * h_l * h_l + m.w2 * h_ll,
         u_ly: h_y * (m.w12 * shrink + (m.w22 - m.w2 * 2.0) * h_l),
         u_yy: (m.w22 - m.w2 * 2.0) * h_y * h_y,
     }

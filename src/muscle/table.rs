@@ -48,20 +48,13 @@ impl HeldTable {
                 first = pair[1];
             }
         }
-        Self {
-            cells,
-            first: f64::from(first),
-        }
+        Self { cells, first: f64::from(first) }
     }
 
     #[inline]
     fn cell(&self, lambda: f64) -> Option<&Cell> {
         let place = self.first - STEPS / lambda;
-        if lambda > 0.0 && place >= 0.0 {
-            self.cells.get(place as usize)
-        } else {
-            None
-        }
+        if lambda > 0.0 && place >= 0.0 { self.cells.get(place as usize) } else { None }
     }
 
     /// `sum c_k I_k'` and `sum c_k I_k''`; none outside the table.
@@ -73,8 +66,7 @@ impl HeldTable {
         // Estrin's order: short chains, as this is the innermost law of every time step.
         let tt = t * t;
         let pull = (p[0] + t * p[1]) + tt * ((p[2] + t * p[3]) + tt * (p[4] + t * p[5]));
-        let slope =
-            (p[1] + t * p[2] * 2.0) + tt * ((p[3] * 3.0 + t * p[4] * 4.0) + tt * p[5] * 5.0);
+        let slope = (p[1] + t * p[2] * 2.0) + tt * ((p[3] * 3.0 + t * p[4] * 4.0) + tt * p[5] * 5.0);
         Some((pull, slope * cell.inverse_width))
     }
 
@@ -96,17 +88,9 @@ impl Cell {
         let width = end - start;
         let (left, right) = (basis(section, start), basis(section, end));
         let pull = std::array::from_fn(|k| {
-            quintic(
-                [left[k], right[k]]
-                    .map(|[_, g, slope, curvature]| [g, slope * width, curvature * width * width]),
-            )
+            quintic([left[k], right[k]].map(|[_, g, slope, curvature]| [g, slope * width, curvature * width * width]))
         });
-        Self {
-            start,
-            inverse_width: width.recip(),
-            energy: left.map(|values| values[0]),
-            pull,
-        }
+        Self { start, inverse_width: width.recip(), energy: left.map(|values| values[0]), pull }
     }
 
     /// Whether the middle of the cell agrees with the quadrature.

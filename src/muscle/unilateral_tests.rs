@@ -18,11 +18,7 @@ fn val_no_pressure_is_the_uniaxial_tube() {
         let state = stock().unilateral((lambda - 1.0) * 0.05, 0.0);
         near(state.pull_n, uniaxial(lambda), 1e-11);
         near(state.outer_radius_m, 0.525e-3 / f64::sqrt(lambda), 1e-11);
-        near(
-            state.volume_m3,
-            std::f64::consts::PI * 0.255e-3f64.powi(2) * 0.05,
-            1e-10,
-        );
+        near(state.volume_m3, std::f64::consts::PI * 0.255e-3f64.powi(2) * 0.05, 1e-10);
     }
 }
 
@@ -43,10 +39,7 @@ fn val_small_strain_stiffness_of_the_free_tube() {
 #[test]
 fn enough_pressure_holds_the_wall() {
     for pressure in [2.0e6, 6e6] {
-        let (free, held) = (
-            stock().unilateral(0.03, pressure),
-            stock().held(0.03, pressure),
-        );
+        let (free, held) = (stock().unilateral(0.03, pressure), stock().held(0.03, pressure));
         near(free.pull_n, held.pull_n, 1e-9);
         near(free.volume_m3, held.volume_m3, 1e-12);
         near(free.energy_j, held.energy_j, 1e-9);
@@ -67,14 +60,8 @@ fn pull_is_continuous_at_the_touch() {
             high = middle;
         }
     }
-    println!(
-        "the wall meets the coil at {:.4} MPa (lambda = 2)",
-        high * 1e-6
-    );
-    let (off, on) = (
-        stock().unilateral(0.05, low),
-        stock().unilateral(0.05, high),
-    );
+    println!("the wall meets the coil at {:.4} MPa (lambda = 2)", high * 1e-6);
+    let (off, on) = (stock().unilateral(0.05, low), stock().unilateral(0.05, high));
     near(off.pull_n, on.pull_n, 1e-8);
     near(off.volume_m3, on.volume_m3, 1e-8);
 }

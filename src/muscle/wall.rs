@@ -106,10 +106,7 @@ impl WallGeometry {
         if self.inner_radius_m < self.outer_radius_m {
             return Ok(());
         }
-        Err(MuscleError::NoWall {
-            inner_m: self.inner_radius_m,
-            outer_m: self.outer_radius_m,
-        })
+        Err(MuscleError::NoWall { inner_m: self.inner_radius_m, outer_m: self.outer_radius_m })
     }
 }
 
@@ -120,20 +117,12 @@ impl<D: Scalar> Wall<D> {
         material.map(|x| x.value()).check()?;
         let section = Section::new(geometry.bore_share());
         let table = HeldTable::new(&section);
-        Ok(Self {
-            geometry,
-            material,
-            shared: Arc::new(Shared { section, table }),
-        })
+        Ok(Self { geometry, material, shared: Arc::new(Shared { section, table }) })
     }
 
     /// The same tube of another material or number type, on the same table.
     pub fn with_material<E: Scalar>(&self, material: Material<E>) -> Wall<E> {
-        Wall {
-            geometry: self.geometry,
-            material,
-            shared: Arc::clone(&self.shared),
-        }
+        Wall { geometry: self.geometry, material, shared: Arc::clone(&self.shared) }
     }
 
     pub fn geometry(&self) -> &WallGeometry {
@@ -152,10 +141,7 @@ impl<D: Scalar> Wall<D> {
     /// Elastic energy `U` of the held wall, J.
     pub fn energy_j(&self, elongation_m: D) -> D {
         let lambda = self.stretch(elongation_m);
-        let tabulated = self
-            .material
-            .linear_coefficients()
-            .and_then(|c| self.shared.table.energy(&c, lambda));
+        let tabulated = self.material.linear_coefficients().and_then(|c| self.shared.table.energy(&c, lambda));
         let energy = match tabulated {
             Some(energy) => energy,
             None => self.held_section(lambda).u,
@@ -176,10 +162,8 @@ impl<D: Scalar> Wall<D> {
     /// `dU/dL` (N) and `d2U/dL2` (N/m) of the held wall.
     pub fn pull_and_stiffness(&self, elongation_m: D) -> (D, D) {
         let lambda = self.stretch(elongation_m);
-        let tabulated = self
-            .material
-            .linear_coefficients()
-            .and_then(|c| self.shared.table.pull_and_stiffness(&c, lambda));
+        let tabulated =
+            self.material.linear_coefficients().and_then(|c| self.shared.table.pull_and_stiffness(&c, lambda));
         let (pull, stiffness) = match tabulated {
             Some(both) => both,
             None => {
@@ -188,10 +172,7 @@ impl<D: Scalar> Wall<D> {
             }
         };
         let area = self.geometry.coil_area_m2();
-        (
-            pull * area,
-            stiffness * (area / self.geometry.rest_length_m),
-        )
+        (pull * area, stiffness * (area / self.geometry.rest_length_m))
     }
 
     /// The wall at an elongation and a pressure, under either condition.
@@ -208,8 +189,7 @@ impl<D: Scalar> Wall<D> {
         let (pull, stiffness) = self.pull_and_stiffness(elongation_m);
         WallState {
             pull_n: pull - pressure_pa * area,
-            volume_m3: (elongation_m + self.geometry.rest_length_m) * area
-                - self.geometry.silicone_volume_m3(),
+            volume_m3: (elongation_m + self.geometry.rest_length_m) * area - self.geometry.silicone_volume_m3(),
             energy_j: self.energy_j(elongation_m),
             outer_radius_m: D::constant(self.geometry.outer_radius_m),
             dpull_de: stiffness,
@@ -226,11 +206,7 @@ impl<D: Scalar> Wall<D> {
         let reach = |toward: f64| rest * (last_within(bore, limit, toward) - 1.0);
         ElongationRange {
             min_m: reach(1.0 - bore),
-            max_m: if limit.is_finite() {
-                reach((limit + 3.0).sqrt())
-            } else {
-                f64::INFINITY
-            },
+            max_m: if limit.is_finite() { reach((limit + 3.0).sqrt()) } else { f64::INFINITY },
         }
     }
 
@@ -239,9 +215,7 @@ impl<D: Scalar> Wall<D> {
     }
 
     fn section_energy(&self, lambda: D, squared_radius: D) -> SectionEnergy<D> {
-        self.shared
-            .section
-            .energy(&self.material, lambda, squared_radius)
+        self.shared.section.energy(&self.material, lambda, squared_radius)
     }
 }
 

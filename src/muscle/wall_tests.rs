@@ -8,20 +8,10 @@ use num_dual::{Dual64, first_derivative, second_derivative};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-pub(super) const STOCK: WallGeometry = WallGeometry {
-    inner_radius_m: 0.255e-3,
-    outer_radius_m: 0.525e-3,
-    rest_length_m: 0.05,
-};
-pub(super) const SILICONE: Material<f64> = Material::Yeoh {
-    c1_pa: 0.255e6,
-    c2_pa: 0.0155e6,
-    c3_pa: 0.0,
-};
-pub(super) const COIL: Coil<f64> = Coil {
-    stiffness_n_m: 28.3,
-    preload_n: 0.0,
-};
+pub(super) const STOCK: WallGeometry =
+    WallGeometry { inner_radius_m: 0.255e-3, outer_radius_m: 0.525e-3, rest_length_m: 0.05 };
+pub(super) const SILICONE: Material<f64> = Material::Yeoh { c1_pa: 0.255e6, c2_pa: 0.0155e6, c3_pa: 0.0 };
+pub(super) const COIL: Coil<f64> = Coil { stiffness_n_m: 28.3, preload_n: 0.0 };
 
 pub(super) fn stock() -> Wall<f64> {
     Wall::new(STOCK, SILICONE).unwrap()
@@ -29,29 +19,16 @@ pub(super) fn stock() -> Wall<f64> {
 
 pub(super) fn ogden() -> Material<f64> {
     let term = |mu_pa, alpha| OgdenTerm { mu_pa, alpha };
-    Material::Ogden {
-        terms: [term(0.3e6, 1.6), term(2e3, 5.0), term(-1e4, -2.0)],
-    }
+    Material::Ogden { terms: [term(0.3e6, 1.6), term(2e3, 5.0), term(-1e4, -2.0)] }
 }
 
 fn materials() -> [Material<f64>; 4] {
-    [
-        Material::NeoHookean { c1_pa: 0.255e6 },
-        SILICONE,
-        ogden(),
-        Material::Gent {
-            mu_pa: 0.51e6,
-            jm: 120.0,
-        },
-    ]
+    [Material::NeoHookean { c1_pa: 0.255e6 }, SILICONE, ogden(), Material::Gent { mu_pa: 0.51e6, jm: 120.0 }]
 }
 
 pub(super) fn near(a: f64, b: f64, relative: f64) {
     let scale = a.abs().max(b.abs());
-    assert!(
-        (a - b).abs() <= relative * scale,
-        "{a} is not {b} within {relative:e}"
-    );
+    assert!((a - b).abs() <= relative * scale, "{a} is not {b} within {relative:e}");
 }
 
 /// `I_1`, `I_1'` over the wall with the outer radius held; derived in closed form with `k = lambda - 1`:
@@ -92,10 +69,8 @@ fn val_stock_force_at_yield() {
 #[test]
 fn val_force_is_nearly_linear_in_elongation() {
     let wall = stock();
-    let points: Vec<(f64, f64)> = (0..=125)
-        .map(|mm| 1e-3 * f64::from(mm))
-        .map(|e| (e, wall.pull_n(e) + COIL.pull_n(e)))
-        .collect();
+    let points: Vec<(f64, f64)> =
+        (0..=125).map(|mm| 1e-3 * f64::from(mm)).map(|e| (e, wall.pull_n(e) + COIL.pull_n(e))).collect();
     let n = points.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
     let (me, mf) = (mean(&|p| p.0), mean(&|p| p.1));
@@ -115,11 +90,7 @@ fn val_small_strain_stiffness() {
     let per_modulus = 4.0 * STOCK.coil_area_m2() / 0.05 * (1.0 - s + m1 + m2);
     for material in materials() {
         let wall = Wall::new(STOCK, material).unwrap();
-        near(
-            wall.stiffness_n_m(0.0),
-            per_modulus * material.shear_modulus_pa(),
-            1e-10,
-        );
+        near(wall.stiffness_n_m(0.0), per_modulus * material.shear_modulus_pa(), 1e-10);
         assert!(wall.pull_n(0.0).abs() < 1e-12);
         assert!(wall.energy_j(0.0).abs() < 1e-14);
     }
@@ -132,11 +103,7 @@ fn val_pressure_area_is_the_coil_bore() {
     let area = PI * 0.525e-3f64.powi(2);
     near(-state.dpull_dp, area, 1e-14);
     near((further.volume_m3 - state.volume_m3) / 1e-3, area, 1e-10);
-    near(
-        stock().held(0.0, 0.0).volume_m3,
-        PI * 0.255e-3f64.powi(2) * 0.05,
-        1e-12,
-    );
+    near(stock().held(0.0, 0.0).volume_m3, PI * 0.255e-3f64.powi(2) * 0.05, 1e-12);
 }
 
 #[test]
@@ -145,17 +112,11 @@ fn derivatives_of_the_energy_by_dual_numbers() {
         let wall = Wall::new(STOCK, material).unwrap();
         for e in [-0.004, 0.0003, 0.02, 0.0625, 0.11, 0.23] {
             let (pull, stiffness) = wall.pull_and_stiffness(e);
-            let energy = |x| {
-                wall.with_material(material.map(num_dual::Dual2_64::from))
-                    .energy_j(x)
-            };
+            let energy = |x| wall.with_material(material.map(num_dual::Dual2_64::from)).energy_j(x);
             let (_, first, second) = second_derivative(energy, e);
             near(pull, first, 1e-11);
             near(stiffness, second, 1e-9);
-            let (_, slope) = first_derivative(
-                |x| wall.with_material(material.map(Dual64::from)).pull_n(x),
-                e,
-            );
+            let (_, slope) = first_derivative(|x| wall.with_material(material.map(Dual64::from)).pull_n(x), e);
             near(stiffness, slope, 1e-9);
         }
     }
@@ -166,11 +127,7 @@ fn derivative_to_a_parameter_is_the_basis() {
     let wall = stock();
     let (pull, to_c1) = first_derivative(
         |c1_pa| {
-            let material = Material::Yeoh {
-                c1_pa,
-                c2_pa: Dual64::from(0.0155e6),
-                c3_pa: Dual64::from(0.0),
-            };
+            let material = Material::Yeoh { c1_pa, c2_pa: Dual64::from(0.0155e6), c3_pa: Dual64::from(0.0) };
             wall.with_material(material).pull_n(Dual64::from(0.06))
         },
         0.255e6,
@@ -184,21 +141,10 @@ fn derivative_to_a_parameter_is_the_basis() {
 fn ogden_and_gent_contain_neo_hooke() {
     let c1 = 0.2e6;
     let plain = Wall::new(STOCK, Material::NeoHookean { c1_pa: c1 }).unwrap();
-    let none = OgdenTerm {
-        mu_pa: 0.0,
-        alpha: 2.0,
-    };
-    let one = OgdenTerm {
-        mu_pa: 2.0 * c1,
-        alpha: 2.0,
-    };
-    let ogden = plain.with_material(Material::Ogden {
-        terms: [one, none, none],
-    });
-    let gent = plain.with_material(Material::Gent {
-        mu_pa: 2.0 * c1,
-        jm: 1e9,
-    });
+    let none = OgdenTerm { mu_pa: 0.0, alpha: 2.0 };
+    let one = OgdenTerm { mu_pa: 2.0 * c1, alpha: 2.0 };
+    let ogden = plain.with_material(Material::Ogden { terms: [one, none, none] });
+    let gent = plain.with_material(Material::Gent { mu_pa: 2.0 * c1, jm: 1e9 });
     for e in [-0.003, 0.01, 0.07, 0.12] {
         near(plain.pull_n(e), ogden.pull_n(e), 1e-9);
         near(plain.energy_j(e), ogden.energy_j(e), 1e-9);
@@ -208,37 +154,20 @@ fn ogden_and_gent_contain_neo_hooke() {
 
 #[test]
 fn gent_says_where_it_ends_and_stays_finite_beyond() {
-    let wall = Wall::new(
-        STOCK,
-        Material::Gent {
-            mu_pa: 0.5e6,
-            jm: 30.0,
-        },
-    )
-    .unwrap();
+    let wall = Wall::new(STOCK, Material::Gent { mu_pa: 0.5e6, jm: 30.0 }).unwrap();
     let range = wall.valid_range();
     let e = range.max_m;
     assert!(e > 0.1 && e < 0.25, "{range:?}");
     assert!(wall.pull_n(0.95 * e) < wall.pull_n(e));
     assert!(wall.pull_n(1.2 * e).is_finite() && wall.pull_n(1.2 * e) > wall.pull_n(e));
-    near(
-        stock().valid_range().min_m,
-        -0.05 * (0.255f64 / 0.525).powi(2),
-        1e-9,
-    );
+    near(stock().valid_range().min_m, -0.05 * (0.255f64 / 0.525).powi(2), 1e-9);
     assert_eq!(stock().valid_range().max_m, f64::INFINITY);
 }
 
 #[test]
 fn refuses_impossible_walls() {
-    let thick = WallGeometry {
-        inner_radius_m: 0.6e-3,
-        ..STOCK
-    };
-    assert!(matches!(
-        Wall::new(thick, SILICONE),
-        Err(MuscleError::NoWall { .. })
-    ));
+    let thick = WallGeometry { inner_radius_m: 0.6e-3, ..STOCK };
+    assert!(matches!(Wall::new(thick, SILICONE), Err(MuscleError::NoWall { .. })));
     let error = Wall::new(STOCK, Material::NeoHookean { c1_pa: -1.0 }).unwrap_err();
     assert_eq!(error.to_string(), "shear modulus, Pa = -2 must be > 0");
 }

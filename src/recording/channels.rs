@@ -18,10 +18,7 @@ pub struct Channel {
 impl Channel {
     /// A channel of a column name and its values.
     pub fn new(column: impl Into<String>, values: Vec<f64>) -> Self {
-        Self {
-            column: column.into(),
-            values,
-        }
+        Self { column: column.into(), values }
     }
 
     /// The unit its name ends in.
@@ -59,10 +56,7 @@ impl Recording {
     /// Times not finite and increasing, a channel of another length, a column twice.
     pub fn new(time_s: Vec<f64>, channels: Vec<Channel>) -> Result<Self, RecordingError> {
         check_times(&time_s)?;
-        let mut recording = Self {
-            time_s,
-            channels: Vec::with_capacity(channels.len()),
-        };
+        let mut recording = Self { time_s, channels: Vec::with_capacity(channels.len()) };
         let mut seen = HashSet::from([TIME_COLUMN.to_owned()]);
         for channel in channels {
             recording.check_length(&channel)?;
@@ -117,10 +111,8 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::NoChannel`], which lists the columns there are.
     pub fn channel(&self, column: &str) -> Result<&Channel, RecordingError> {
-        self.find(column).ok_or_else(|| RecordingError::NoChannel {
-            column: column.to_owned(),
-            found: self.columns().join(", "),
-        })
+        self.find(column)
+            .ok_or_else(|| RecordingError::NoChannel { column: column.to_owned(), found: self.columns().join(", ") })
     }
 
     /// The samples of a column in SI units, NaN where missing.
@@ -136,11 +128,8 @@ impl Recording {
     /// # Errors
     /// No such column, no known unit, not a single sample.
     pub fn piecewise_si(&self, column: &str) -> Result<PiecewiseLinear, RecordingError> {
-        PiecewiseLinear::new(&self.time_s, &self.si(column)?).ok_or_else(|| {
-            RecordingError::AllMissing {
-                column: column.to_owned(),
-            }
-        })
+        PiecewiseLinear::new(&self.time_s, &self.si(column)?)
+            .ok_or_else(|| RecordingError::AllMissing { column: column.to_owned() })
     }
 
     fn check_length(&self, channel: &Channel) -> Result<(), RecordingError> {
@@ -163,11 +152,7 @@ fn check_times(time_s: &[f64]) -> Result<(), RecordingError> {
     let mut previous_s = f64::NEG_INFINITY;
     for (index, &time) in time_s.iter().enumerate() {
         if !time.is_finite() || time <= previous_s {
-            return Err(RecordingError::Time {
-                index,
-                time_s: time,
-                previous_s,
-            });
+            return Err(RecordingError::Time { index, time_s: time, previous_s });
         }
         previous_s = time;
     }
@@ -179,11 +164,7 @@ mod tests {
     use super::*;
 
     fn two_samples() -> Recording {
-        Recording::new(
-            vec![0.0, 0.5],
-            vec![Channel::new("plunger_mm", vec![1.0, 3.0])],
-        )
-        .unwrap()
+        Recording::new(vec![0.0, 0.5], vec![Channel::new("plunger_mm", vec![1.0, 3.0])]).unwrap()
     }
 
     #[test]
@@ -191,10 +172,7 @@ mod tests {
         let recording = two_samples();
         assert_eq!(recording.channel("plunger_mm").unwrap().values, [1.0, 3.0]);
         assert_eq!(recording.si("plunger_mm").unwrap(), [0.001, 0.003]);
-        assert_eq!(
-            recording.piecewise_si("plunger_mm").unwrap().value(0.25),
-            0.002
-        );
+        assert_eq!(recording.piecewise_si("plunger_mm").unwrap().value(0.25), 0.002);
     }
 
     #[test]

@@ -53,9 +53,7 @@ fn check_same_times(measured_s: &[f64], simulated_s: &[f64]) -> Result<(), Recor
     let differs = (0..common).find(|i| measured_s[*i] != simulated_s[*i]);
     match differs {
         Some(index) => Err(RecordingError::TimesDiffer { index }),
-        None if measured_s.len() != simulated_s.len() => {
-            Err(RecordingError::TimesDiffer { index: common })
-        }
+        None if measured_s.len() != simulated_s.len() => Err(RecordingError::TimesDiffer { index: common }),
         None => Ok(()),
     }
 }
@@ -91,11 +89,7 @@ mod tests {
     }
 
     fn force_output() -> Vec<ChannelSpec> {
-        vec![ChannelSpec {
-            column: "force_n".into(),
-            role: Role::Output,
-            noise_sd: Some(0.5),
-        }]
+        vec![ChannelSpec { column: "force_n".into(), role: Role::Output, noise_sd: Some(0.5) }]
     }
 
     #[test]

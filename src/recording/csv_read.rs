@@ -14,10 +14,7 @@ use std::path::Path;
 /// # Errors
 /// File, line, column, cause and remedy of the first thing that is wrong.
 pub fn read_csv(path: &Path) -> Result<Recording, RecordingError> {
-    let file = File::open(path).map_err(|source| RecordingError::Read {
-        file: path.to_owned(),
-        source,
-    })?;
+    let file = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
     read_csv_from(file, &path.display().to_string())
 }
 
@@ -28,14 +25,8 @@ pub fn read_csv(path: &Path) -> Result<Recording, RecordingError> {
 pub fn read_csv_from(mut source: impl Read, name: &str) -> Result<Recording, RecordingError> {
     let mut bytes = Vec::new();
     let read = source.read_to_end(&mut bytes);
-    read.map_err(|source| RecordingError::Read {
-        file: name.into(),
-        source,
-    })?;
-    let text = Text {
-        file: name,
-        bytes: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes),
-    };
+    read.map_err(|source| RecordingError::Read { file: name.into(), source })?;
+    let text = Text { file: name, bytes: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes) };
     let mut reader = ReaderBuilder::new()
         // Ragged rows are found here, to say what to do.
         .flexible(true)
@@ -63,9 +54,7 @@ impl Text<'_> {
     /// The line, from 1, of the record at a position. The reader's own count is one behind after
     /// blank lines, which it counts to the record below them.
     fn line(&self, position: Option<&Position>) -> u64 {
-        let start = position
-            .map_or(0, |p| p.byte() as usize)
-            .min(self.bytes.len());
+        let start = position.map_or(0, |p| p.byte() as usize).min(self.bytes.len());
         let is_blank = |byte: &&u8| matches!(byte, b'\r' | b'\n');
         let blanks = self.bytes[start..].iter().take_while(is_blank).count();
         let before = &self.bytes[..start + blanks];
@@ -73,18 +62,11 @@ impl Text<'_> {
     }
 
     fn line_error(&self, line: u64, problem: String) -> RecordingError {
-        RecordingError::Line {
-            file: self.file.to_owned(),
-            line,
-            problem,
-        }
+        RecordingError::Line { file: self.file.to_owned(), line, problem }
     }
 
     fn no_data(&self, what: &'static str) -> RecordingError {
-        RecordingError::NoData {
-            file: self.file.to_owned(),
-            what,
-        }
+        RecordingError::NoData { file: self.file.to_owned(), what }
     }
 
     fn error(&self, error: ::csv::Error) -> RecordingError {
@@ -112,11 +94,7 @@ impl<'a> Header<'a> {
         }
         let line = text.line(names.position());
         let time_index = check_names(&columns).map_err(|problem| text.line_error(line, problem))?;
-        Ok(Self {
-            text,
-            columns,
-            time_index,
-        })
+        Ok(Self { text, columns, time_index })
     }
 
     fn append(&self, row: &StringRecord, columns: &mut [Vec<f64>]) -> Result<(), RecordingError> {
@@ -126,9 +104,7 @@ impl<'a> Header<'a> {
                 "{cells} cells where the header names {names} columns; fill up the row, leaving missing cells \
                  empty between commas, and write decimals with a point"
             );
-            return Err(self
-                .text
-                .line_error(self.text.line(row.position()), problem));
+            return Err(self.text.line_error(self.text.line(row.position()), problem));
         }
         for (index, cell) in row.iter().enumerate() {
             let value = number(cell).map_err(|problem| self.cell_error(row, index, problem))?;
@@ -158,12 +134,7 @@ impl<'a> Header<'a> {
         let mut names = self.columns;
         names.remove(self.time_index);
         let channels = names.into_iter().zip(columns);
-        Recording::new(
-            time_s,
-            channels
-                .map(|(n, values)| Channel::new(n, values))
-                .collect(),
-        )
+        Recording::new(time_s, channels.map(|(n, values)| Channel::new(n, values)).collect())
     }
 }
 
@@ -178,27 +149,19 @@ fn check_names(columns: &[String]) -> Result<usize, String> {
         }
     }
     if let Some(unnamed) = columns.iter().position(String::is_empty) {
-        return Err(format!(
-            "column {} has no name; name it, or remove it and its comma",
-            unnamed + 1
-        ));
+        return Err(format!("column {} has no name; name it, or remove it and its comma", unnamed + 1));
     }
     let mut seen = HashSet::new();
     if let Some(twice) = columns.iter().find(|name| !seen.insert(name.as_str())) {
-        return Err(format!(
-            "column \"{twice}\" occurs twice; rename or remove one"
-        ));
+        return Err(format!("column \"{twice}\" occurs twice; rename or remove one"));
     }
-    columns
-        .iter()
-        .position(|name| name == TIME_COLUMN)
-        .ok_or_else(|| {
-            format!(
-                "no column \"{TIME_COLUMN}\" (found: {}); name the time column \"{TIME_COLUMN}\" and give it \
+    columns.iter().position(|name| name == TIME_COLUMN).ok_or_else(|| {
+        format!(
+            "no column \"{TIME_COLUMN}\" (found: {}); name the time column \"{TIME_COLUMN}\" and give it \
                  in seconds",
-                columns.join(", ")
-            )
-        })
+            columns.join(", ")
+        )
+    })
 }
 
 fn number(cell: &str) -> Result<f64, String> {
@@ -216,9 +179,7 @@ fn number(cell: &str) -> Result<f64, String> {
 
 fn check_time(time_s: f64, previous_s: Option<f64>) -> Result<(), String> {
     match previous_s {
-        _ if time_s.is_nan() => {
-            Err("the time is missing; give every row its time, or remove the row".to_owned())
-        }
+        _ if time_s.is_nan() => Err("the time is missing; give every row its time, or remove the row".to_owned()),
         Some(previous_s) if time_s <= previous_s => Err(format!(
             "{time_s} is not after {previous_s}; remove repeated rows, sort the rows by time, or split the \
              file where its clock starts anew"

@@ -30,19 +30,13 @@ fn missing_cells_are_kept_as_nan() {
 fn header_errors() {
     let needs = "a recording needs a header line with \"time_s\" and at least one line of numbers";
     assert_eq!(refusal(""), format!("a.csv: the file is empty; {needs}"));
-    assert_eq!(
-        refusal("time_s,a_n\n"),
-        format!("a.csv: there is no row below the header; {needs}")
-    );
+    assert_eq!(refusal("time_s,a_n\n"), format!("a.csv: there is no row below the header; {needs}"));
     assert_eq!(
         refusal("t,a_n\n0,1\n"),
         "a.csv: line 1: no column \"time_s\" (found: t, a_n); name the time column \"time_s\" and give \
              it in seconds"
     );
-    assert_eq!(
-        refusal("time_s,a_n,a_n\n0,1,2\n"),
-        "a.csv: line 1: column \"a_n\" occurs twice; rename or remove one"
-    );
+    assert_eq!(refusal("time_s,a_n,a_n\n0,1,2\n"), "a.csv: line 1: column \"a_n\" occurs twice; rename or remove one");
     assert_eq!(
         refusal("time_s,a_n,\n0,1,\n"),
         "a.csv: line 1: column 3 has no name; name it, or remove it and its comma"
@@ -83,17 +77,11 @@ fn lines_count_blank_ones_and_text_must_be_utf8() {
     assert!(refusal("time_s,a_n\n0,1\n\n1,x\n").starts_with("a.csv: line 4, "));
     assert!(refusal("\u{feff}time_s,a_n\r\n0,1\r\n1,x\r\n").starts_with("a.csv: line 3, "));
     let error = read_csv_from(&b"time_s,a_n\n0,\xff\n"[..], "a.csv").unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "a.csv: line 2: is not UTF-8 text; save the file as CSV in UTF-8"
-    );
+    assert_eq!(error.to_string(), "a.csv: line 2: is not UTF-8 text; save the file as CSV in UTF-8");
 }
 
 #[test]
 fn absent_file_is_named() {
     let error = read_csv(Path::new("no/such.csv")).unwrap_err().to_string();
-    assert!(
-        error.starts_with("no/such.csv: cannot be read: "),
-        "{error}"
-    );
+    assert!(error.starts_with("no/such.csv: cannot be read: "), "{error}");
 }

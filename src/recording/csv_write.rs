@@ -31,11 +31,7 @@ impl<W: Write> RowWriter<W> {
         }
         line.push('\n');
         target.write_all(line.as_bytes())?;
-        Ok(Self {
-            target,
-            column_count: columns.len(),
-            line,
-        })
+        Ok(Self { target, column_count: columns.len(), line })
     }
 
     /// Writes one row: the time [s] and one value per column, in the column's unit.
@@ -113,10 +109,7 @@ impl CsvWriter {
     /// The folder does not exist or cannot be written to.
     pub fn create(path: &Path, columns: &[&str]) -> Result<Self, RecordingError> {
         let start = || RowWriter::new(BufWriter::new(temporary_beside(path)?), columns);
-        Ok(Self {
-            path: path.to_owned(),
-            rows: start().map_err(|source| write_error(path, source))?,
-        })
+        Ok(Self { path: path.to_owned(), rows: start().map_err(|source| write_error(path, source))? })
     }
 
     /// Writes one row: the time [s] and one value per column, in the column's unit.
@@ -177,10 +170,7 @@ fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
 }
 
 fn write_error(path: &Path, source: io::Error) -> RecordingError {
-    RecordingError::Write {
-        file: path.to_owned(),
-        source,
-    }
+    RecordingError::Write { file: path.to_owned(), source }
 }
 
 #[cfg(test)]
@@ -199,16 +189,10 @@ mod tests {
     fn rows_look_as_documented() {
         let recording = Recording::new(
             vec![0.0, 0.1],
-            vec![
-                Channel::new("a_mm", vec![1.5, f64::NAN]),
-                Channel::new("odd, \"name\"", vec![-0.0, 1e-7]),
-            ],
+            vec![Channel::new("a_mm", vec![1.5, f64::NAN]), Channel::new("odd, \"name\"", vec![-0.0, 1e-7])],
         )
         .unwrap();
-        assert_eq!(
-            text(&recording),
-            "time_s,a_mm,\"odd, \"\"name\"\"\"\n0,1.5,-0\n0.1,NaN,0.0000001\n"
-        );
+        assert_eq!(text(&recording), "time_s,a_mm,\"odd, \"\"name\"\"\"\n0,1.5,-0\n0.1,NaN,0.0000001\n");
         let back = read_csv_from(text(&recording).as_bytes(), "x").unwrap();
         assert_eq!(back.columns(), recording.columns());
     }
@@ -257,15 +241,8 @@ mod tests {
     #[test]
     fn errors_name_the_file() {
         let error = CsvWriter::create(Path::new("no/such/out.csv"), &[]).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .starts_with("no/such/out.csv: cannot be written: ")
-        );
+        assert!(error.to_string().starts_with("no/such/out.csv: cannot be written: "));
         let mut rows = RowWriter::new(Vec::new(), &["a_mm"]).unwrap();
-        assert_eq!(
-            rows.row(0.0, &[]).unwrap_err().to_string(),
-            "a row of 0 values for 1 columns"
-        );
+        assert_eq!(rows.row(0.0, &[]).unwrap_err().to_string(), "a row of 0 values for 1 columns");
     }
 }

@@ -27,10 +27,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// A column name without a known unit.
-    #[error(
-        "column \"{column}\": its name ends in no known unit; rename it to end in one of {}",
-        known_suffixes()
-    )]
+    #[error("column \"{column}\": its name ends in no known unit; rename it to end in one of {}", known_suffixes())]
     UnknownUnit {
         /// The column.
         column: String,
@@ -58,9 +55,7 @@ pub enum RecordingError {
         problem: String,
     },
     /// A CSV file without data.
-    #[error(
-        "{file}: {what}; a recording needs a header line with \"time_s\" and at least one line of numbers"
-    )]
+    #[error("{file}: {what}; a recording needs a header line with \"time_s\" and at least one line of numbers")]
     NoData {
         /// The file.
         file: String,
@@ -105,9 +100,7 @@ pub enum RecordingError {
         column: String,
     },
     /// A time that is not after the one before, or not finite.
-    #[error(
-        "sample {index}: time_s = {time_s} is not after {previous_s}; times must be finite and increase"
-    )]
+    #[error("sample {index}: time_s = {time_s} is not after {previous_s}; times must be finite and increase")]
     Time {
         /// Index of the sample, from 0.
         index: usize,
@@ -123,9 +116,7 @@ pub enum RecordingError {
         column: String,
     },
     /// Measured and simulated samples do not belong together.
-    #[error(
-        "measured and simulated times differ at sample {index}; simulate at the recording's sample times"
-    )]
+    #[error("measured and simulated times differ at sample {index}; simulate at the recording's sample times")]
     TimesDiffer {
         /// First sample that differs, from 0.
         index: usize,

@@ -84,10 +84,8 @@ impl RecordingSet {
             true => path.join(SET_FILE_NAME),
             false => path.to_owned(),
         };
-        let text = std::fs::read_to_string(&file).map_err(|source| RecordingError::Read {
-            file: file.clone(),
-            source,
-        })?;
+        let text =
+            std::fs::read_to_string(&file).map_err(|source| RecordingError::Read { file: file.clone(), source })?;
         Self::parse(&text, &file)
     }
 
@@ -142,11 +140,7 @@ impl RecordingSet {
         let mut others = recording.columns();
         others.retain(|column| !is_declared(column));
         (!others.is_empty()).then(|| {
-            format!(
-                "{}: columns that recordings.toml does not declare are not used: {}",
-                run.file,
-                others.join(", ")
-            )
+            format!("{}: columns that recordings.toml does not declare are not used: {}", run.file, others.join(", "))
         })
     }
 }
@@ -154,9 +148,7 @@ impl RecordingSet {
 fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
     match top.number("format")? {
         Some(format) if format == FORMAT as f64 => Ok(()),
-        Some(format) => Err(top.error(format!(
-            "format = {format} is not known; this version reads format = {FORMAT}"
-        ))),
+        Some(format) => Err(top.error(format!("format = {format} is not known; this version reads format = {FORMAT}"))),
         None => Err(top.error(format!("key \"format\" is missing; add format = {FORMAT}"))),
     }
 }
@@ -186,20 +178,12 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     parse_column(column).map_err(|error| keys.error(error.to_string()))?;
     let role = keys
         .word("role", &[("input", Role::Input), ("output", Role::Output)])?
-        .ok_or_else(|| {
-            keys.error("key \"role\" is missing; add role = \"input\" or role = \"output\"")
-        })?;
+        .ok_or_else(|| keys.error("key \"role\" is missing; add role = \"input\" or role = \"output\""))?;
     let noise_sd = keys.number("noise_sd")?;
     if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
-        return Err(keys.error(format!(
-            "noise_sd = {sd} must be > 0; leave it out to have it estimated"
-        )));
+        return Err(keys.error(format!("noise_sd = {sd} must be > 0; leave it out to have it estimated")));
     }
-    Ok(ChannelSpec {
-        column: column.to_owned(),
-        role,
-        noise_sd,
-    })
+    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd })
 }
 
 fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {

@@ -13,20 +13,12 @@ pub(super) struct Keys<'a> {
 
 impl<'a> Keys<'a> {
     pub(super) fn new(file: &'a Path, name: impl Into<String>, table: &'a Table) -> Self {
-        Self {
-            file,
-            name: name.into(),
-            table,
-        }
+        Self { file, name: name.into(), table }
     }
 
     /// An error at this table.
     pub(super) fn error(&self, problem: impl Into<String>) -> RecordingError {
-        RecordingError::Key {
-            file: self.file.to_owned(),
-            table: self.name.clone(),
-            problem: problem.into(),
-        }
+        RecordingError::Key { file: self.file.to_owned(), table: self.name.clone(), problem: problem.into() }
     }
 
     /// Refuses keys that are not among the known ones.
@@ -45,30 +37,16 @@ impl<'a> Keys<'a> {
         match self.table.get(key) {
             None => Ok(None),
             Some(Value::String(text)) if !text.is_empty() => Ok(Some(text)),
-            Some(other) => Err(self.error(format!(
-                "{key} = {other} must be a text between quotes, not empty"
-            ))),
+            Some(other) => Err(self.error(format!("{key} = {other} must be a text between quotes, not empty"))),
         }
     }
 
-    pub(super) fn required_text(
-        &self,
-        key: &str,
-        example: &str,
-    ) -> Result<&'a str, RecordingError> {
-        self.text(key)?.ok_or_else(|| {
-            self.error(format!(
-                "key \"{key}\" is missing; add {key} = \"{example}\""
-            ))
-        })
+    pub(super) fn required_text(&self, key: &str, example: &str) -> Result<&'a str, RecordingError> {
+        self.text(key)?.ok_or_else(|| self.error(format!("key \"{key}\" is missing; add {key} = \"{example}\"")))
     }
 
     /// A text that is one of a few words.
-    pub(super) fn word<T: Copy>(
-        &self,
-        key: &str,
-        words: &[(&str, T)],
-    ) -> Result<Option<T>, RecordingError> {
+    pub(super) fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>, RecordingError> {
         let Some(text) = self.text(key)? else {
             return Ok(None);
         };
@@ -96,9 +74,8 @@ impl<'a> Keys<'a> {
     pub(super) fn tables(&self, key: &str) -> Result<Vec<&'a Table>, RecordingError> {
         let wrong = || self.error(format!("no [[{key}]] table; add one per {key}"));
         let list = self.table.get(key).and_then(Value::as_array);
-        let tables: Option<Vec<&Table>> = list
-            .filter(|list| !list.is_empty())
-            .and_then(|list| list.iter().map(Value::as_table).collect());
+        let tables: Option<Vec<&Table>> =
+            list.filter(|list| !list.is_empty()).and_then(|list| list.iter().map(Value::as_table).collect());
         tables.ok_or_else(wrong)
     }
 
@@ -116,9 +93,7 @@ fn did_you_mean(word: &str, known: &[&str]) -> String {
         .map(|candidate| (edit_distance(word, candidate), candidate))
         .min()
         .filter(|(distance, _)| *distance <= (word.chars().count() / 3).max(1))
-        .map_or(String::new(), |(_, near)| {
-            format!(", did you mean \"{near}\"?")
-        })
+        .map_or(String::new(), |(_, near)| format!(", did you mean \"{near}\"?"))
 }
 
 /// Letters to insert, delete or replace to turn one word into the other (Levenshtein).
@@ -150,10 +125,7 @@ mod tests {
 
     #[test]
     fn only_near_words_are_proposed() {
-        assert_eq!(
-            did_you_mean("rol", &["role", "column"]),
-            ", did you mean \"role\"?"
-        );
+        assert_eq!(did_you_mean("rol", &["role", "column"]), ", did you mean \"role\"?");
         assert_eq!(did_you_mean("weather", &["role", "column"]), "");
     }
 }

@@ -34,10 +34,7 @@ fn refusal(from: &str, to: &str) -> String {
 #[test]
 fn good_file_is_read_whole() {
     let set = parse(GOOD).unwrap();
-    assert_eq!(
-        (set.dir.as_path(), set.scene.as_str()),
-        (Path::new("rig"), "muscle_bench")
-    );
+    assert_eq!((set.dir.as_path(), set.scene.as_str()), (Path::new("rig"), "muscle_bench"));
     let outputs: Vec<_> = set.of_role(Role::Output).collect();
     assert_eq!(outputs[0].column, "force_n");
     assert_eq!(outputs[0].noise_sd, Some(1.0));
@@ -52,10 +49,7 @@ fn top_level_mistakes() {
         refusal("format = 1", "format = 2"),
         "rig/recordings.toml: top level: format = 2 is not known; this version reads format = 1"
     );
-    assert_eq!(
-        refusal("format = 1", ""),
-        "rig/recordings.toml: top level: key \"format\" is missing; add format = 1"
-    );
+    assert_eq!(refusal("format = 1", ""), "rig/recordings.toml: top level: key \"format\" is missing; add format = 1");
     assert_eq!(
         refusal("scene =", "scen ="),
         "rig/recordings.toml: top level: unknown key \"scen\", did you mean \"scene\"?; the keys here are \
@@ -65,9 +59,7 @@ fn top_level_mistakes() {
         refusal("[[run]]", "[[channel]]"),
         "rig/recordings.toml: [[channel]] 3: unknown key \"file\"; the keys here are column, role, noise_sd"
     );
-    assert!(
-        refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3")
-    );
+    assert!(refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3"));
 }
 
 #[test]
@@ -91,9 +83,7 @@ fn channel_mistakes() {
         "rig/recordings.toml: [[channel]] 2 (\"force_n\"): noise_sd = 0 must be > 0; leave it out to have \
          it estimated"
     );
-    assert!(
-        refusal("force_n", "force").contains("column \"force\": its name ends in no known unit")
-    );
+    assert!(refusal("force_n", "force").contains("column \"force\": its name ends in no known unit"));
     assert!(refusal("force_n", "plunger_mm").contains("declared twice"));
     assert!(refusal("force_n", "time_s").contains("the time is no channel"));
 }
@@ -119,14 +109,8 @@ fn runs_are_checked_against_the_declaration() {
     let csv = folder.path().join("sine.csv");
     std::fs::write(&csv, "time_s,plunger_mm,force_n,remark\n0,1,2,3\n").unwrap();
     let loaded = set.load_run(&set.runs[0]).unwrap();
-    assert_eq!(
-        loaded.recording.columns(),
-        ["plunger_mm", "force_n", "remark"]
-    );
-    assert_eq!(
-        loaded.notes,
-        ["sine.csv: columns that recordings.toml does not declare are not used: remark"]
-    );
+    assert_eq!(loaded.recording.columns(), ["plunger_mm", "force_n", "remark"]);
+    assert_eq!(loaded.notes, ["sine.csv: columns that recordings.toml does not declare are not used: remark"]);
     std::fs::write(&csv, "time_s,plunger_mm,force\n0,1,2\n").unwrap();
     let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
     assert!(

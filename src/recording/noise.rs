@@ -60,11 +60,7 @@ fn third_difference(time_s: &[f64], values: &[f64]) -> f64 {
 
 /// The smallest change between neighbouring samples; `None` when nothing ever changes.
 fn resolution(values: &[f64]) -> Option<f64> {
-    values
-        .windows(2)
-        .map(|w| (w[1] - w[0]).abs())
-        .filter(|change| *change > 0.0)
-        .min_by(f64::total_cmp)
+    values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|change| *change > 0.0).min_by(f64::total_cmp)
 }
 
 #[cfg(test)]
@@ -75,14 +71,10 @@ mod tests {
     fn normal_deviates(count: usize) -> Vec<f64> {
         let mut state: u64 = 42;
         let mut uniform = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
-        (0..count)
-            .map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0)
-            .collect()
+        (0..count).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
     }
 
     fn noisy_sine(time_s: &[f64], sd: f64) -> Vec<f64> {
@@ -102,9 +94,7 @@ mod tests {
     fn uneven_sampling_steps_missing_and_gaps_do_not_mislead() {
         let jitter = |i: u32| if i.is_multiple_of(3) { 0.004 } else { 0.0 };
         let gap = |i: u32| if i > 2000 { 7.0 } else { 0.0 };
-        let time_s: Vec<f64> = (0..4000)
-            .map(|i| f64::from(i) * 0.01 + jitter(i) + gap(i))
-            .collect();
+        let time_s: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.01 + jitter(i) + gap(i)).collect();
         let mut values = noisy_sine(&time_s, 0.05);
         values.iter_mut().skip(1000).for_each(|y| *y += 30.0);
         values.iter_mut().step_by(97).for_each(|y| *y = f64::NAN);
@@ -124,9 +114,6 @@ mod tests {
     fn too_little_or_constant_gives_none() {
         let time_s: Vec<f64> = (0..100).map(f64::from).collect();
         assert_eq!(noise_sd(&time_s, &[3.0; 100]), None);
-        assert_eq!(
-            noise_sd(&time_s[..10], &noisy_sine(&time_s[..10], 1.0)),
-            None
-        );
+        assert_eq!(noise_sd(&time_s[..10], &noisy_sine(&time_s[..10], 1.0)), None);
     }
 }

@@ -57,16 +57,11 @@ impl Survey {
         let mut notes = Vec::new();
         if self.is_uneven() {
             let percent = 100.0 * self.uneven_share;
-            notes.push(format!(
-                "uneven sampling: {percent:.1} % of the intervals are more than 20 % off the median"
-            ));
+            notes.push(format!("uneven sampling: {percent:.1} % of the intervals are more than 20 % off the median"));
         }
         notes.extend(self.gap_note());
         notes.extend(self.missing.iter().map(|m| {
-            format!(
-                "column \"{}\": {} of {} samples missing, left out",
-                m.column, m.count, self.sample_count
-            )
+            format!("column \"{}\": {} of {} samples missing, left out", m.column, m.count, self.sample_count)
         }));
         notes
     }
@@ -93,19 +88,13 @@ impl fmt::Display for Gap {
 
 impl fmt::Display for Survey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} samples over {} s",
-            self.sample_count, self.duration_s
-        )?;
+        write!(f, "{} samples over {} s", self.sample_count, self.duration_s)?;
         if let Some(interval_s) = self.median_interval_s {
             // Seven digits drop the rounding error of a difference of times.
             let interval_ms = (interval_s * 1e10).round() / 1e7;
             write!(f, ", median interval {interval_ms} ms")?;
         }
-        self.notes()
-            .iter()
-            .try_for_each(|note| write!(f, "\n{note}"))
+        self.notes().iter().try_for_each(|note| write!(f, "\n{note}"))
     }
 }
 
@@ -115,19 +104,13 @@ pub fn survey(recording: &Recording) -> Survey {
     let gap_limit_s = gap_limit_s(time_s);
     Survey {
         sample_count: time_s.len(),
-        duration_s: time_s
-            .last()
-            .zip(time_s.first())
-            .map_or(0.0, |(b, a)| b - a),
+        duration_s: time_s.last().zip(time_s.first()).map_or(0.0, |(b, a)| b - a),
         median_interval_s: median_interval_s(time_s),
         uneven_share: uneven_share(time_s),
         gaps: time_s
             .windows(2)
             .filter(|w| w[1] - w[0] > gap_limit_s)
-            .map(|w| Gap {
-                from_s: w[0],
-                to_s: w[1],
-            })
+            .map(|w| Gap { from_s: w[0], to_s: w[1] })
             .collect(),
         missing: missing(recording),
     }
@@ -157,15 +140,9 @@ fn uneven_share(time_s: &[f64]) -> f64 {
     let Some(median_s) = median_interval_s(time_s) else {
         return 0.0;
     };
-    let intervals_s: Vec<f64> = time_s
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .filter(|dt| *dt <= GAP_FACTOR * median_s)
-        .collect();
-    let uneven = intervals_s
-        .iter()
-        .filter(|dt| (**dt - median_s).abs() > UNEVEN_TOLERANCE * median_s)
-        .count();
+    let intervals_s: Vec<f64> =
+        time_s.windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt <= GAP_FACTOR * median_s).collect();
+    let uneven = intervals_s.iter().filter(|dt| (**dt - median_s).abs() > UNEVEN_TOLERANCE * median_s).count();
     uneven as f64 / intervals_s.len() as f64
 }
 
@@ -190,10 +167,7 @@ mod tests {
         let time_s = (0..100).map(|i| f64::from(i) * 0.01).collect();
         let survey = survey(&Recording::new(time_s, vec![]).unwrap());
         assert_eq!(survey.notes(), Vec::<String>::new());
-        assert_eq!(
-            survey.to_string(),
-            "100 samples over 0.99 s, median interval 10 ms"
-        );
+        assert_eq!(survey.to_string(), "100 samples over 0.99 s, median interval 10 ms");
     }
 
     #[test]

@@ -28,18 +28,8 @@ impl Unit {
     }
 }
 
-const fn unit(
-    suffix: &'static str,
-    symbol: &'static str,
-    si_suffix: &'static str,
-    factor: f64,
-) -> Unit {
-    Unit {
-        suffix,
-        symbol,
-        si_suffix,
-        factor,
-    }
+const fn unit(suffix: &'static str, symbol: &'static str, si_suffix: &'static str, factor: f64) -> Unit {
+    Unit { suffix, symbol, si_suffix, factor }
 }
 
 /// Every unit known. `_nm` is newton metre, `_mn` millinewton, `_mpa` megapascal.
@@ -113,17 +103,12 @@ pub fn parse_column(column: &str) -> Result<ColumnName<'_>, RecordingError> {
             (!base.is_empty()).then_some(ColumnName { base, unit: *unit })
         })
         .max_by_key(|name| name.unit.suffix.len())
-        .ok_or_else(|| RecordingError::UnknownUnit {
-            column: column.to_owned(),
-        })
+        .ok_or_else(|| RecordingError::UnknownUnit { column: column.to_owned() })
 }
 
 /// The known suffixes as an error prints them: `_m, _mm, ...`.
 pub(super) fn known_suffixes() -> String {
-    let suffixes: Vec<String> = KNOWN_UNITS
-        .iter()
-        .map(|u| format!("_{}", u.suffix))
-        .collect();
+    let suffixes: Vec<String> = KNOWN_UNITS.iter().map(|u| format!("_{}", u.suffix)).collect();
     suffixes.join(", ")
 }
 
@@ -151,10 +136,7 @@ mod tests {
     #[test]
     fn every_si_suffix_is_a_unit_of_factor_one() {
         for unit in KNOWN_UNITS {
-            let si = KNOWN_UNITS
-                .iter()
-                .find(|u| u.suffix == unit.si_suffix)
-                .unwrap();
+            let si = KNOWN_UNITS.iter().find(|u| u.suffix == unit.si_suffix).unwrap();
             assert_eq!(si.factor, 1.0, "{}", unit.suffix);
         }
     }

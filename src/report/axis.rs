@@ -60,11 +60,7 @@ impl Axis {
         let largest = self.low.abs().max(self.high.abs());
         if !(1e-3..1e5).contains(&largest) {
             let digits = (largest.log10().floor() - self.step.log10().floor()).max(0.0) as usize;
-            return if value == 0.0 {
-                "0".to_owned()
-            } else {
-                format!("{value:.digits$e}")
-            };
+            return if value == 0.0 { "0".to_owned() } else { format!("{value:.digits$e}") };
         }
         let decimals = (-self.step.log10().floor()).max(0.0) as usize;
         format!("{value:.decimals$}")
@@ -105,21 +101,12 @@ mod tests {
         assert_eq!(texts(-0.07, 0.06, 4), ["-0.05", "0.00", "0.05"]);
         assert_eq!(texts(-0.3, 0.19, 2), ["-0.2", "-0.1", "0.0", "0.1"]);
         assert_eq!(texts(0.0, 2.4e6, 3), ["0", "1e6", "2e6"]);
-        assert_eq!(
-            texts(1830.0, 1835.0, 5),
-            ["1830", "1831", "1832", "1833", "1834", "1835"]
-        );
+        assert_eq!(texts(1830.0, 1835.0, 5), ["1830", "1831", "1832", "1833", "1834", "1835"]);
     }
 
     #[test]
     fn constant_and_absent_values_have_an_axis() {
-        for values in [
-            vec![],
-            vec![f64::NAN],
-            vec![0.0, 0.0],
-            vec![7.0],
-            vec![1e5, 1e5],
-        ] {
+        for values in [vec![], vec![f64::NAN], vec![0.0, 0.0], vec![7.0], vec![1e5, 1e5]] {
             let axis = Axis::over(values.iter().copied(), 0.05, 4);
             assert!(axis.low < axis.high, "{values:?}");
             assert!((2..12).contains(&axis.ticks().len()), "{values:?}");

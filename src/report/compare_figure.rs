@@ -56,10 +56,7 @@ pub fn compare_svg(runs: &[ComparedRun]) -> String {
     for group in groups {
         for (column, run) in group.iter().enumerate() {
             for (row, channel) in run.channels.iter().enumerate() {
-                let corner = (
-                    EDGE + CELL_WIDTH * column as f64,
-                    y + CELL_HEIGHT * row as f64,
-                );
+                let corner = (EDGE + CELL_WIDTH * column as f64, y + CELL_HEIGHT * row as f64);
                 draw_cell(&mut svg, corner, run, channel);
             }
         }
@@ -69,12 +66,7 @@ pub fn compare_svg(runs: &[ComparedRun]) -> String {
 }
 
 fn draw_header(svg: &mut Svg) {
-    svg.text(
-        (EDGE + 12.0, 24.0),
-        Anchor::Start,
-        15.0,
-        "Measured and simulated",
-    );
+    svg.text((EDGE + 12.0, 24.0), Anchor::Start, 15.0, "Measured and simulated");
     let entries = [
         ("measured", BLUE, 1.0),
         ("simulated", VERMILION, 1.0),
@@ -85,17 +77,8 @@ fn draw_header(svg: &mut Svg) {
 }
 
 fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &ComparedChannel) {
-    let signal_area = Rect {
-        x: corner.0,
-        y: corner.1,
-        width: CELL_WIDTH,
-        height: SIGNAL_HEIGHT,
-    };
-    let residual_area = Rect {
-        y: signal_area.bottom(),
-        height: RESIDUAL_HEIGHT,
-        ..signal_area
-    };
+    let signal_area = Rect { x: corner.0, y: corner.1, width: CELL_WIDTH, height: SIGNAL_HEIGHT };
+    let residual_area = Rect { y: signal_area.bottom(), height: RESIDUAL_HEIGHT, ..signal_area };
     signal_panel(run, channel).draw(svg, signal_area);
     residual_panel(run, channel).draw(svg, residual_area);
 }
@@ -103,15 +86,9 @@ fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &Com
 fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
     let name = parse_column(&channel.column).ok();
     Panel {
-        title: vec![
-            format!("{}: {}", run.name, channel.column),
-            accuracy(channel),
-        ],
+        title: vec![format!("{}: {}", run.name, channel.column), accuracy(channel)],
         y_label: name.map_or(channel.column.clone(), |n| n.axis_label()),
-        series: vec![
-            line(&run.time_s, &channel.measured, BLUE),
-            line(&run.time_s, &channel.simulated, VERMILION),
-        ],
+        series: vec![line(&run.time_s, &channel.measured, BLUE), line(&run.time_s, &channel.simulated, VERMILION)],
         ..Panel::default()
     }
 }
@@ -134,12 +111,7 @@ fn residual_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
     let pairs = channel.measured.iter().zip(&channel.simulated);
     let residual: Vec<f64> = pairs.map(|(was, is)| was - is).collect();
     let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
-    let band = channel.noise_sd.map(|sd| Band {
-        label: String::new(),
-        colour: BLUE,
-        low: -2.0 * sd,
-        high: 2.0 * sd,
-    });
+    let band = channel.noise_sd.map(|sd| Band { label: String::new(), colour: BLUE, low: -2.0 * sd, high: 2.0 * sd });
     Panel {
         x_label: "time (s)".to_owned(),
         y_label: format!("residual ({symbol})"),
@@ -161,12 +133,7 @@ fn line(time_s: &[f64], values: &[f64], colour: &'static str) -> Series {
         x.push(*time);
         y.push(*value);
     }
-    Series {
-        label: String::new(),
-        colour,
-        x,
-        y,
-    }
+    Series { label: String::new(), colour, x, y }
 }
 
 #[cfg(test)]
@@ -182,19 +149,12 @@ mod tests {
             noise_sd: Some(0.02),
             rmse: 0.03,
         };
-        ComparedRun {
-            name: name.to_owned(),
-            channels: columns.iter().map(channel).collect(),
-            time_s: time_s.clone(),
-        }
+        ComparedRun { name: name.to_owned(), channels: columns.iter().map(channel).collect(), time_s: time_s.clone() }
     }
 
     #[test]
     fn every_run_and_channel_has_its_two_panels() {
-        let svg = compare_svg(&[
-            run("sine", &["elongation_mm", "pressure_kpa"]),
-            run("steps", &["elongation_mm"]),
-        ]);
+        let svg = compare_svg(&[run("sine", &["elongation_mm", "pressure_kpa"]), run("steps", &["elongation_mm"])]);
         assert_eq!(svg.matches("<polyline").count(), 3 * 3);
         assert!(svg.contains(">sine: pressure_kpa<") && svg.contains(">steps: elongation_mm<"));
         assert!(svg.contains(">RMSE 0.0300 mm, noise sd 0.0200 mm (ratio 1.50)<"));
@@ -204,9 +164,7 @@ mod tests {
 
     #[test]
     fn fifth_run_wraps() {
-        let runs: Vec<ComparedRun> = (0..5)
-            .map(|i| run(&format!("r{i}"), &["bend_deg"]))
-            .collect();
+        let runs: Vec<ComparedRun> = (0..5).map(|i| run(&format!("r{i}"), &["bend_deg"])).collect();
         let svg = compare_svg(&runs);
         let width = 4.0 * CELL_WIDTH + 2.0 * EDGE;
         let height = HEADER_HEIGHT + 2.0 * CELL_HEIGHT + EDGE;

@@ -18,10 +18,7 @@ impl HtmlPage {
     /// A page with a title, which is its first heading too.
     pub fn new(title: &str) -> Self {
         let title = escaped(title);
-        Self {
-            body: format!("<h1>{title}</h1>\n"),
-            title,
-        }
+        Self { body: format!("<h1>{title}</h1>\n"), title }
     }
 
     /// Adds a heading.
@@ -52,10 +49,7 @@ impl HtmlPage {
 
     /// Adds an SVG of this module with a caption.
     pub fn figure(&mut self, svg: &str, caption: &str) -> &mut Self {
-        self.body.push_str(&format!(
-            "<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n",
-            escaped(caption)
-        ));
+        self.body.push_str(&format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption)));
         self
     }
 
@@ -70,8 +64,7 @@ impl HtmlPage {
     }
 
     fn push(&mut self, tag: &str, text: &str) -> &mut Self {
-        self.body
-            .push_str(&format!("<{tag}>{}</{tag}>\n", escaped(text)));
+        self.body.push_str(&format!("<{tag}>{}</{tag}>\n", escaped(text)));
         self
     }
 }
@@ -88,11 +81,7 @@ mod tests {
         page.figure("<svg></svg>\n", "Figure");
         let text = page.finish();
         assert!(text.contains("<title>Rig &lt;1&gt;</title>") && text.contains("<p>a &amp; b</p>"));
-        assert!(
-            text.contains(
-                "<tr><th>run</th><th>RMSE</th></tr>\n<tr><td>sine</td><td>0.03</td></tr>"
-            )
-        );
+        assert!(text.contains("<tr><th>run</th><th>RMSE</th></tr>\n<tr><td>sine</td><td>0.03</td></tr>"));
         assert!(text.contains("<figure>\n<svg></svg>\n<figcaption>Figure</figcaption>"));
         assert!(text.ends_with("</html>\n"));
     }

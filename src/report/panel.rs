@@ -57,28 +57,16 @@ pub struct Panel {
 impl Panel {
     /// What has a name in the legend, with its colour and opacity.
     pub(super) fn legend(&self) -> Vec<(&str, &'static str, f64)> {
-        let lines = self
-            .series
-            .iter()
-            .map(|s| (s.label.as_str(), s.colour, 1.0));
-        let bands = self
-            .bands
-            .iter()
-            .map(|b| (b.label.as_str(), b.colour, 0.25));
-        lines
-            .chain(bands)
-            .filter(|(label, ..)| !label.is_empty())
-            .collect()
+        let lines = self.series.iter().map(|s| (s.label.as_str(), s.colour, 1.0));
+        let bands = self.bands.iter().map(|b| (b.label.as_str(), b.colour, 0.25));
+        lines.chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
     }
 
     /// Draws title, axes and lines within a rectangle.
     pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
         let plot = self.plot_area(outer);
-        let x_axis = Axis::over(
-            self.series.iter().flat_map(|s| s.x.iter().copied()),
-            0.0,
-            (plot.width / 70.0) as usize,
-        );
+        let x_axis =
+            Axis::over(self.series.iter().flat_map(|s| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
         let y_axis = Axis::over(self.y_values(), 0.05, (plot.height / 32.0) as usize);
         self.draw_text(svg, outer, plot);
         draw_x_ticks(svg, plot, &x_axis);
@@ -89,11 +77,7 @@ impl Panel {
         };
         for band in &self.bands {
             let (top, bottom) = (at(0.0, band.high).1, at(0.0, band.low).1);
-            let rect = Rect {
-                y: top,
-                height: bottom - top,
-                ..plot
-            };
+            let rect = Rect { y: top, height: bottom - top, ..plot };
             svg.fill(rect, band.colour, 0.25);
         }
         for series in &self.series {
@@ -112,11 +96,7 @@ impl Panel {
 
     fn plot_area(&self, outer: Rect) -> Rect {
         let above = LINE_HEIGHT * self.title.len() as f64 + 8.0;
-        let label_room = if self.x_label.is_empty() {
-            0.0
-        } else {
-            LINE_HEIGHT
-        };
+        let label_room = if self.x_label.is_empty() { 0.0 } else { LINE_HEIGHT };
         Rect {
             x: outer.x + LEFT_MARGIN,
             y: outer.y + above,
@@ -169,12 +149,7 @@ pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), entries: &[(&str, &'sta
     for (label, colour, opacity) in entries {
         let is_line = *opacity >= 1.0;
         let height = if is_line { 3.0 } else { 12.0 };
-        let swatch = Rect {
-            x,
-            y: y - 4.0 - height / 2.0,
-            width: 22.0,
-            height,
-        };
+        let swatch = Rect { x, y: y - 4.0 - height / 2.0, width: 22.0, height };
         svg.fill(swatch, colour, *opacity);
         svg.text((x + 28.0, y), Anchor::Start, TEXT_SIZE, label);
         x += 28.0 + text_width(label, TEXT_SIZE) + 20.0;
@@ -193,15 +168,7 @@ pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
         let y = GAP + row_height * index as f64;
         let legend_at = (LEFT_MARGIN, y + panel_height + 12.0);
         draw_legend(&mut svg, legend_at, &panel.legend());
-        panel.draw(
-            &mut svg,
-            Rect {
-                x: 0.0,
-                y,
-                width,
-                height: panel_height,
-            },
-        );
+        panel.draw(&mut svg, Rect { x: 0.0, y, width, height: panel_height });
     }
     svg.finish()
 }
@@ -226,12 +193,7 @@ mod tests {
             bands: vec![],
         };
         let svg = figure_svg(&[panel], 640.0, 300.0);
-        for text in [
-            "Force &amp; stroke",
-            ">stroke (mm)<",
-            ">force (N)<",
-            ">measured<",
-        ] {
+        for text in ["Force &amp; stroke", ">stroke (mm)<", ">force (N)<", ">measured<"] {
             assert!(svg.contains(text), "{text}");
         }
         assert_eq!(svg.matches("<polyline").count(), 2);

@@ -70,11 +70,7 @@ pub(super) struct Svg {
 
 impl Svg {
     pub(super) fn new(width: f64, height: f64) -> Self {
-        Self {
-            width,
-            height,
-            body: String::new(),
-        }
+        Self { width, height, body: String::new() }
     }
 
     fn push(&mut self, element: &str) {

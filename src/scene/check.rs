@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::recording::parse_column;
 
-use super::{ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, MusclesSpec, OutputSpec, Program, Quantity, SceneError, SceneFile};
+use super::{
+    ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, MusclesSpec, OutputSpec, Program, Quantity, SceneError, SceneFile,
+};
 
 /// Collects where in the file a value stands.
 struct Place<'a> {
@@ -14,15 +16,31 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn error(&self, message: impl Into<String>, remedy: impl Into<String>) -> SceneError {
-        SceneError::Value { file: self.file.to_owned(), table: self.table.clone(), message: message.into(), remedy: remedy.into() }
+        SceneError::Value {
+            file: self.file.to_owned(),
+            table: self.table.clone(),
+            message: message.into(),
+            remedy: remedy.into(),
+        }
     }
 
     fn positive(&self, key: &str, value: f64) -> Result<(), SceneError> {
-        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(self.error(format!("{key} = {value} must be > 0"), format!("give {key} a positive number in SI units"))) }
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(self.error(format!("{key} = {value} must be > 0"), format!("give {key} a positive number in SI units")))
+        }
     }
 
     fn not_negative(&self, key: &str, value: f64) -> Result<(), SceneError> {
-        if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(self.error(format!("{key} = {value} must be >= 0"), format!("give {key} a number that is not negative, in SI units"))) }
+        if value >= 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(self.error(
+                format!("{key} = {value} must be >= 0"),
+                format!("give {key} a number that is not negative, in SI units"),
+            ))
+        }
     }
 
     fn known(&self, key: &str, name: &str, known: &[&str]) -> Result<(), SceneError> {
@@ -95,10 +113,14 @@ fn check_simulation(scene: &SceneFile, place: &Place) -> Result<(), SceneError> 
     place.positive("step_s", s.step_s)?;
     place.positive("output_interval_s", s.output_interval_s)?;
     if s.substeps == 0 || s.substeps > 10_000 {
-        return Err(place.error(format!("substeps = {} must be 1 to 10000", s.substeps), "choose substeps so that step_s/substeps is about 1e-4 s"));
+        return Err(place.error(
+            format!("substeps = {} must be 1 to 10000", s.substeps),
+            "choose substeps so that step_s/substeps is about 1e-4 s",
+        ));
     }
     if s.duration_s / s.output_interval_s > 1e8 {
-        return Err(place.error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
+        return Err(place
+            .error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
     }
     Ok(())
 }
@@ -110,8 +132,9 @@ fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneErr
     for input in &scene.input {
         let place = Place { file, table: format!("[[input]] \"{}\"", input.channel) };
         let unit = si_unit(&input.channel, &place)?;
-        let program = Program::parse(&input.program, unit)
-            .map_err(|message| place.error(message, "see the table of programmes in the documentation of scene files"))?;
+        let program = Program::parse(&input.program, unit).map_err(|message| {
+            place.error(message, "see the table of programmes in the documentation of scene files")
+        })?;
         programs.push(program);
     }
     Ok(programs)
@@ -133,7 +156,10 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
     place.positive("fluid.density_kg_m3", h.fluid.density_kg_m3)?;
     place.not_negative("fluid.viscosity_pa_s", h.fluid.viscosity_pa_s)?;
     if !(1..=1000).contains(&h.line.segments) {
-        return Err(place.error(format!("line.segments = {} must be 1 to 1000", h.line.segments), "start with 1; 16 are exact to 1 % up to 50 Hz"));
+        return Err(place.error(
+            format!("line.segments = {} must be 1 to 1000", h.line.segments),
+            "start with 1; 16 are exact to 1 % up to 50 Hz",
+        ));
     }
     if h.line.segments > 1 && h.line.compliance_m3_pa <= 0.0 {
         return Err(place.error(
@@ -142,7 +168,10 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
         ));
     }
     if !(1.0..=4.0 / 3.0 + 1e-12).contains(&h.line.momentum_factor) {
-        return Err(place.error(format!("line.momentum_factor = {} must be 1 to 4/3", h.line.momentum_factor), "4/3 for laminar flow"));
+        return Err(place.error(
+            format!("line.momentum_factor = {} must be 1 to 4/3", h.line.momentum_factor),
+            "4/3 for laminar flow",
+        ));
     }
     Ok(())
 }
@@ -159,13 +188,19 @@ fn check_make(m: &MusclesSpec, place: &Place) -> Result<(), SceneError> {
     }
     let kinds = [m.tube.is_some(), m.linear.is_some(), m.displacement.is_some()];
     if kinds.iter().filter(|k| **k).count() != 1 {
-        return Err(place.error("exactly one of [muscles.tube], [muscles.linear], [muscles.displacement] is needed", "keep one of them"));
+        return Err(place.error(
+            "exactly one of [muscles.tube], [muscles.linear], [muscles.displacement] is needed",
+            "keep one of them",
+        ));
     }
     if let Some(tube) = &m.tube {
         place.positive("tube.inner_diameter_m", tube.inner_diameter_m)?;
         if tube.outer_diameter_m <= tube.inner_diameter_m {
             return Err(place.error(
-                format!("tube.outer_diameter_m = {} must be > tube.inner_diameter_m = {}", tube.outer_diameter_m, tube.inner_diameter_m),
+                format!(
+                    "tube.outer_diameter_m = {} must be > tube.inner_diameter_m = {}",
+                    tube.outer_diameter_m, tube.inner_diameter_m
+                ),
                 "give the diameters in m, outer larger than inner",
             ));
         }
@@ -189,7 +224,10 @@ fn check_muscle(scene: &SceneFile, muscle: &MuscleSpec, place: &Place) -> Result
     place.known("input", &muscle.input, &input_names(scene))?;
     match (&muscle.joint, &muscle.cable) {
         (Some(_), None) if make.displacement.is_some() => {
-            return Err(place.error("a muscle of [muscles.displacement] moves its end, so it needs a cable", "replace `joint` by `cable`"));
+            return Err(place.error(
+                "a muscle of [muscles.displacement] moves its end, so it needs a cable",
+                "replace `joint` by `cable`",
+            ));
         }
         (Some(_), None) => {}
         (None, Some(cable)) => {
@@ -199,11 +237,17 @@ fn check_muscle(scene: &SceneFile, muscle: &MuscleSpec, place: &Place) -> Result
                 place.positive("end_mass_kg (of [muscles])", make.end_mass_kg)?;
             }
         }
-        _ => return Err(place.error("exactly one of `joint` and `cable` is needed", "say what the muscle's free end is fixed to")),
+        _ => {
+            return Err(place
+                .error("exactly one of `joint` and `cable` is needed", "say what the muscle's free end is fixed to"));
+        }
     }
     let by_pressure = si_unit(&muscle.input, place)? == "pa";
     if !by_pressure && scene.hydraulics.is_none() && make.displacement.is_none() {
-        return Err(place.error("it is driven by a plunger, but there is no [hydraulics] table", "add [hydraulics], or drive it by a pressure channel"));
+        return Err(place.error(
+            "it is driven by a plunger, but there is no [hydraulics] table",
+            "add [hydraulics], or drive it by a pressure channel",
+        ));
     }
     Ok(())
 }
@@ -220,7 +264,8 @@ fn units_of(quantity: Quantity) -> &'static [&'static str] {
 
 fn check_outputs(scene: &SceneFile, file: &Path) -> Result<(), SceneError> {
     let list = Place { file, table: "[[output]]".to_owned() };
-    let columns = || scene.input.iter().map(|i| i.channel.as_str()).chain(scene.output.iter().map(|o| o.channel.as_str()));
+    let columns =
+        || scene.input.iter().map(|i| i.channel.as_str()).chain(scene.output.iter().map(|o| o.channel.as_str()));
     list.unique("channel", columns())?;
     if scene.output.is_empty() {
         return Err(list.error("there is no output", "name at least one output channel"));

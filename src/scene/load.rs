@@ -36,7 +36,8 @@ impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text = std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         Self::parse(&text, &path, overrides)
     }
 
@@ -114,8 +115,8 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     let folders = std::iter::once(Path::new(""))
         .chain(beside_program.iter().flat_map(|p| p.ancestors().skip(1)))
         .chain(std::iter::once(built_at));
-    folders.map(|folder| folder.join(&file)).find(|path| path.is_file()).ok_or_else(|| SceneError::UnknownName {
-        name: path_or_name.to_owned(),
-        known: STOCK_SCENES.join(", "),
-    })
+    folders
+        .map(|folder| folder.join(&file))
+        .find(|path| path.is_file())
+        .ok_or_else(|| SceneError::UnknownName { name: path_or_name.to_owned(), known: STOCK_SCENES.join(", ") })
 }

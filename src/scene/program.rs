@@ -28,11 +28,31 @@ pub struct Program {
 enum Shape {
     Constant(f64),
     /// Sum of `(stroke, frequency)` terms on an offset.
-    Sines { offset: f64, terms: Vec<(f64, f64)> },
-    Chirp { stroke: f64, from_hz: f64, to_hz: f64, duration_s: f64 },
-    Staircase { steps: Vec<f64>, hold_s: f64, rise_s: f64 },
-    RampHold { to: f64, rise_s: f64, hold_s: f64, fall_s: Option<f64> },
-    Points { times_s: Vec<f64>, values: Vec<f64> },
+    Sines {
+        offset: f64,
+        terms: Vec<(f64, f64)>,
+    },
+    Chirp {
+        stroke: f64,
+        from_hz: f64,
+        to_hz: f64,
+        duration_s: f64,
+    },
+    Staircase {
+        steps: Vec<f64>,
+        hold_s: f64,
+        rise_s: f64,
+    },
+    RampHold {
+        to: f64,
+        rise_s: f64,
+        hold_s: f64,
+        fall_s: Option<f64>,
+    },
+    Points {
+        times_s: Vec<f64>,
+        values: Vec<f64>,
+    },
 }
 
 /// Keys of a programme table, checked off as they are read.
@@ -51,13 +71,19 @@ impl Keys<'_> {
         self.used.push(key.to_owned());
         match self.table.get(key) {
             None => Ok(None),
-            Some(value) => as_number(value).map(Some).ok_or_else(|| format!("`{key} = {value}` is not a finite number")),
+            Some(value) => {
+                as_number(value).map(Some).ok_or_else(|| format!("`{key} = {value}` is not a finite number"))
+            }
         }
     }
 
     fn list(&mut self, key: &str) -> Result<Vec<f64>, String> {
         self.used.push(key.to_owned());
-        let list = self.table.get(key).and_then(Value::as_array).ok_or_else(|| format!("the key `{key}` (a list) is missing"))?;
+        let list = self
+            .table
+            .get(key)
+            .and_then(Value::as_array)
+            .ok_or_else(|| format!("the key `{key}` (a list) is missing"))?;
         let numbers: Option<Vec<f64>> = list.iter().map(as_number).collect();
         numbers.filter(|n| !n.is_empty()).ok_or_else(|| format!("`{key}` must be a list of numbers that is not empty"))
     }
@@ -99,10 +125,13 @@ impl Program {
         let t = (time_s - self.start_s).max(0.0);
         match &self.shape {
             Shape::Constant(value) => *value,
-            Shape::Sines { offset, terms } => offset + terms.iter().map(|(s, f)| s * (1.0 - (TAU * f * t).cos()) / 2.0).sum::<f64>(),
+            Shape::Sines { offset, terms } => {
+                offset + terms.iter().map(|(s, f)| s * (1.0 - (TAU * f * t).cos()) / 2.0).sum::<f64>()
+            }
             Shape::Chirp { stroke, from_hz, to_hz, duration_s } => {
                 let swept = t.min(*duration_s);
-                let cycles = from_hz * swept + (to_hz - from_hz) * swept * swept / (2.0 * duration_s) + to_hz * (t - swept);
+                let cycles =
+                    from_hz * swept + (to_hz - from_hz) * swept * swept / (2.0 * duration_s) + to_hz * (t - swept);
                 stroke * (1.0 - (TAU * cycles).cos()) / 2.0
             }
             Shape::Staircase { steps, hold_s, rise_s } => staircase(steps, *hold_s, *rise_s, t),

@@ -141,9 +141,15 @@ impl Builder<'_> {
         for spec in &self.scene.file.cable {
             let table = format!("[[cable]] \"{}\"", spec.name);
             let Some(mechanism) = self.mechanism else {
-                return Err(self.error(table, "there is no [mechanism] to pull on".to_owned(), "add [mechanism] with a URDF".to_owned()));
+                return Err(self.error(
+                    table,
+                    "there is no [mechanism] to pull on".to_owned(),
+                    "add [mechanism] with a URDF".to_owned(),
+                ));
             };
-            let route = mechanism.route(&spec.route).map_err(|source| SystemError::Mechanism { file: self.scene.path.clone(), source })?;
+            let route = mechanism
+                .route(&spec.route)
+                .map_err(|source| SystemError::Mechanism { file: self.scene.path.clone(), source })?;
             cables.push(self.cable(spec, mechanism, &route));
             routes.push(route);
         }
@@ -154,7 +160,13 @@ impl Builder<'_> {
         let mut jacobian = vec![0.0; self.dim];
         mechanism.path_length(route, &mut jacobian[..self.joints]);
         let drive = spec.drive.as_ref().and_then(|d| self.input(&d.input).map(|i| (i, d.lever_m)));
-        CablePlant { stiffness_n_m: spec.stiffness_n_m, damping_n_s_m: spec.damping_n_s_m, stretch_0_m: 0.0, jacobian, drive }
+        CablePlant {
+            stiffness_n_m: spec.stiffness_n_m,
+            damping_n_s_m: spec.damping_n_s_m,
+            stretch_0_m: 0.0,
+            jacobian,
+            drive,
+        }
     }
 
     fn input(&self, channel: &str) -> Option<usize> {
@@ -164,13 +176,18 @@ impl Builder<'_> {
     /// Index of a muscle's input; the scene has been checked to have it.
     fn muscle_input(&self, spec: &MuscleSpec) -> Result<usize, SystemError> {
         self.input(&spec.input).ok_or_else(|| {
-            self.error(format!("[[muscle]] \"{}\"", spec.name), format!("input = \"{}\" is not an input", spec.input), "add the [[input]]".to_owned())
+            self.error(
+                format!("[[muscle]] \"{}\"", spec.name),
+                format!("input = \"{}\" is not an input", spec.input),
+                "add the [[input]]".to_owned(),
+            )
         })
     }
 
     fn elastic(&self, make: &MusclesSpec) -> Result<Elastic<f64>, SystemError> {
         if let Some(tube) = &make.tube {
-            return tube_elastic(tube, make.rest_length_m).map_err(|source| SystemError::Muscle { file: self.scene.path.clone(), source });
+            return tube_elastic(tube, make.rest_length_m)
+                .map_err(|source| SystemError::Muscle { file: self.scene.path.clone(), source });
         }
         let (k, b) = make.linear.map_or((0.0, 0.0), |l| (l.stiffness_n_m, l.pressure_gain_m2));
         Ok(Elastic::Linear { stiffness_n_m: k, pressure_gain_m2: b })
@@ -245,7 +262,12 @@ impl Builder<'_> {
                 Ok((Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input }, state))
             }
             _ => {
-                let state = ChainState { pressure_pa: vec![0.0], flow_m3_s: Vec::new(), vapour_m3: vec![0.0], boiling: vec![false] };
+                let state = ChainState {
+                    pressure_pa: vec![0.0],
+                    flow_m3_s: Vec::new(),
+                    vapour_m3: vec![0.0],
+                    boiling: vec![false],
+                };
                 Ok((Drive::Pressure { pressure: input }, state))
             }
         }

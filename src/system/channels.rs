@@ -17,7 +17,11 @@ enum Reader {
     Tension(usize),
     Joints(Vec<usize>, f64),
     /// A body's position along an axis, in the world or in another link's frame.
-    Body { body: usize, axis: usize, frame: Option<usize> },
+    Body {
+        body: usize,
+        axis: usize,
+        frame: Option<usize>,
+    },
     Axis(Axis),
     /// Elongation of a displacement model: the pseudo-input that carries it.
     Displacement(usize),
@@ -104,7 +108,9 @@ fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
                 .ok_or_else(|| no_such(scene, output, "this muscle"))?,
             (None, None) => return Err(no_such(scene, output, "this muscle")),
         },
-        Quantity::SyringePressure => Reader::SyringePressure(muscle.ok_or_else(|| no_such(scene, output, "a pressure"))?),
+        Quantity::SyringePressure => {
+            Reader::SyringePressure(muscle.ok_or_else(|| no_such(scene, output, "a pressure"))?)
+        }
         Quantity::MusclePressure => Reader::MusclePressure(muscle.ok_or_else(|| no_such(scene, output, "a pressure"))?),
         Quantity::Pull => Reader::Pull(muscle.ok_or_else(|| no_such(scene, output, "a pull"))?),
         Quantity::Tension => {

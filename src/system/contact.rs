@@ -12,7 +12,13 @@ const STIFFNESS_RATIO: f64 = 2.0;
 ///
 /// The reaction of frictionless contact points along the gradient of the gap, so its direction in the coordinates is
 /// known from the force itself. `positions` is where it was touched, `fine_s` the fine step.
-pub(super) fn foreseen(force: &[f64], positions: &[f64], inertia: &DMatrix<f64>, dim: usize, fine_s: f64) -> Option<ContactSpring> {
+pub(super) fn foreseen(
+    force: &[f64],
+    positions: &[f64],
+    inertia: &DMatrix<f64>,
+    dim: usize,
+    fine_s: f64,
+) -> Option<ContactSpring> {
     let n = DVector::from_column_slice(force);
     let size = n.norm();
     if !(size > f64::MIN_POSITIVE && size.is_finite()) {

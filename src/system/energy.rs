@@ -39,7 +39,14 @@ impl EnergyBook {
     /// Opens the book at a state; `inputs` as they will be over the first step.
     pub fn open(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Self {
         let stored = stored(plant, state, inputs, 0.0);
-        Self { stored_0: stored, stored, sums: Powers::default(), engine: 0.0, turnover: 0.0, before: Powers::default() }
+        Self {
+            stored_0: stored,
+            stored,
+            sums: Powers::default(),
+            engine: 0.0,
+            turnover: 0.0,
+            before: Powers::default(),
+        }
     }
 
     /// To be called before each fine step.
@@ -66,7 +73,13 @@ impl EnergyBook {
     }
 
     /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
-    pub fn engine_changed(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) {
+    pub fn engine_changed(
+        &mut self,
+        plant: &Plant<f64>,
+        state: &PlantState<f64>,
+        inputs: &[InputSpan],
+        elapsed_s: f64,
+    ) {
         let now = stored(plant, state, inputs, elapsed_s);
         self.engine += now - self.stored;
         self.stored = now;
@@ -75,7 +88,12 @@ impl EnergyBook {
     /// What is not accounted for, J: the integrator's own error.
     pub fn unaccounted_j(&self) -> f64 {
         let s = &self.sums;
-        let lost = s.line_viscosity + s.muscle_damping + s.muscle_friction + s.cable_damping + s.joint_damping + s.stop_damping;
+        let lost = s.line_viscosity
+            + s.muscle_damping
+            + s.muscle_friction
+            + s.cable_damping
+            + s.joint_damping
+            + s.stop_damping;
         s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost
     }
 
@@ -132,7 +150,14 @@ fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
     p
 }
 
-fn muscle_powers(plant: &Plant<f64>, i: usize, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64, p: &mut Powers) {
+fn muscle_powers(
+    plant: &Plant<f64>,
+    i: usize,
+    state: &PlantState<f64>,
+    inputs: &[InputSpan],
+    elapsed_s: f64,
+    p: &mut Powers,
+) {
     let muscle = &plant.muscles[i];
     let f = plant.muscle_forces(i, state, inputs, elapsed_s);
     p.muscle_damping += f.damping_n * f.speed_m_s;

@@ -44,7 +44,10 @@ impl Warnings {
     pub fn summary(&mut self, end_s: f64) -> Vec<String> {
         let open: Vec<String> = self.active.keys().cloned().collect();
         open.iter().for_each(|c| self.close(c, end_s));
-        self.total_s.iter().map(|(c, (first, total))| format!("{c}: first at {first:.3} s, {total:.3} s in all")).collect()
+        self.total_s
+            .iter()
+            .map(|(c, (first, total))| format!("{c}: first at {first:.3} s, {total:.3} s in all"))
+            .collect()
     }
 }
 

@@ -26,7 +26,10 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use inputs::InputSource;
-pub use plant::{CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant, PlantState};
+pub use plant::{
+    CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
+    PlantState,
+};
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;

@@ -200,7 +200,13 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Forces of one muscle at a state, `elapsed_s` into the span of the inputs.
-    pub fn muscle_forces(&self, muscle: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> MuscleForces<D> {
+    pub fn muscle_forces(
+        &self,
+        muscle: usize,
+        state: &PlantState<D>,
+        inputs: &[InputSpan],
+        elapsed_s: f64,
+    ) -> MuscleForces<D> {
         let m = &self.muscles[muscle];
         let pressure = self.muscle_pressure(muscle, state, inputs, elapsed_s);
         let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;

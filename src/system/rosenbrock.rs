@@ -174,7 +174,11 @@ impl<D: Scalar> Stepper<D> {
             self.matrix[stop.coordinate * (n + 1)] += D::constant(g * stop.damping + g * g * stop.stiffness);
         }
         if let (Some(contact), true) = (&c.contact, self.touching) {
-            add_outer(&mut self.matrix, &contact.direction, D::constant(g * contact.damping + g * g * contact.stiffness));
+            add_outer(
+                &mut self.matrix,
+                &contact.direction,
+                D::constant(g * contact.damping + g * g * contact.stiffness),
+            );
         }
         for (cable, _) in plant.cables.iter().zip(&self.taut).filter(|(_, taut)| **taut) {
             add_outer(&mut self.matrix, &cable.jacobian, cable.damping_n_s_m * g + cable.stiffness_n_m * (g * g));
@@ -224,7 +228,12 @@ impl<D: Scalar> Stepper<D> {
             let t = &self.tangents[i];
             let acceleration = dot(&muscle.jacobian, &k.w);
             k.z[i] = (r.z[i] + t.rate_per_v * acceleration * g) / (-(t.rate_per_z * g) + 1.0);
-            self.solvers[i].back_substitute(t.area * acceleration, &r.chains[i], &state.chains[i].boiling, &mut k.chains[i]);
+            self.solvers[i].back_substitute(
+                t.area * acceleration,
+                &r.chains[i],
+                &state.chains[i].boiling,
+                &mut k.chains[i],
+            );
         }
     }
 

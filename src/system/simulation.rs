@@ -231,7 +231,8 @@ impl Simulation {
             let linear: f64 = cable.jacobian[..joints].iter().zip(&self.built.state.y).map(|(j, y)| j * y).sum();
             let spec = &self.scene.file.cable[i];
             let start_offset = self.built.start_offset_m[i];
-            cable.stretch_0_m = spec.pretension_n / spec.stiffness_n_m + length - self.built.path_0_m[i] - linear + start_offset;
+            cable.stretch_0_m =
+                spec.pretension_n / spec.stiffness_n_m + length - self.built.path_0_m[i] - linear + start_offset;
         }
     }
 

@@ -6,12 +6,10 @@ use rerun::blueprint::datatypes;
 use rerun::datatypes::{Range1D, Range2D};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns, TimeAxis,
-    TimePanelBlueprint, ViewportBlueprint, VisualBounds2D,
+    Background, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns, TimeAxis, TimePanelBlueprint,
+    ViewportBlueprint, VisualBounds2D,
 };
-use rerun::{
-    AsComponents, Color, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
-};
+use rerun::{AsComponents, Color, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 use super::channels::{axis_title, groups, headline, label};
 use super::layer::{TIMELINE, path};
@@ -25,38 +23,25 @@ const PLOTS_IN_SIGHT: usize = 5;
 const GROUND: [u8; 3] = [24, 26, 31];
 
 /// Sends the arrangement for a scene whose first frame is known.
-pub(super) fn send(
-    out: &RecordingStream,
-    graph: &SceneGraph,
-    first: &Frame,
-) -> RecordingStreamResult<()> {
+pub(super) fn send(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStreamResult<()> {
     let Some(info) = out.store_info() else {
         return Ok(());
     };
-    let (blueprint, storage) = RecordingStreamBuilder::new(info.application_id().clone())
-        .blueprint()
-        .enabled(true)
-        .memory()?;
+    let (blueprint, storage) =
+        RecordingStreamBuilder::new(info.application_id().clone()).blueprint().enabled(true).memory()?;
     blueprint.set_time_sequence("blueprint", 0);
     log(&blueprint, graph, first)?;
     let Some(blueprint_id) = blueprint.store_info().map(|info| info.store_id) else {
         return Ok(());
     };
-    let activation = BlueprintActivationCommand {
-        blueprint_id,
-        make_active: true,
-        make_default: true,
-    };
+    let activation = BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true };
     out.send_blueprint(storage.take(), activation);
     Ok(())
 }
 
 fn log(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStreamResult<()> {
     let root = Writer::new(out).root(page(graph, first))?;
-    let viewport = ViewportBlueprint::new()
-        .with_root_container(root)
-        .with_auto_layout(false)
-        .with_auto_views(false);
+    let viewport = ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
     out.log("viewport", &viewport)?;
     let hidden = PanelBlueprint::new().with_state(PanelState::Hidden);
     out.log("blueprint_panel", &hidden)?;
@@ -74,27 +59,17 @@ fn page(graph: &SceneGraph, first: &Frame) -> Pane {
 
 /// The mechanism; below it the loops, the angle and the colour scales.
 fn picture(graph: &SceneGraph) -> Pane {
-    let has_space =
-        !graph.links.is_empty() || !graph.cables.is_empty() || !graph.muscles.is_empty();
+    let has_space = !graph.links.is_empty() || !graph.cables.is_empty() || !graph.muscles.is_empty();
     let space = has_space.then(|| (0.66, space(graph)));
     let below = below(graph);
     let below = (!below.is_empty()).then_some((0.34, Pane::Row(below)));
     let panes: Vec<_> = space.into_iter().chain(below).collect();
-    if panes.is_empty() {
-        Pane::Tabs(vec![events()])
-    } else {
-        Pane::Column(panes)
-    }
+    if panes.is_empty() { Pane::Tabs(vec![events()]) } else { Pane::Column(panes) }
 }
 
 fn below(graph: &SceneGraph) -> Vec<(f32, Pane)> {
-    let loops: Vec<Pane> = (0..graph.loops.len())
-        .map(|number| loop_view(graph, number))
-        .collect();
-    let side: Vec<_> = headline_view(graph)
-        .into_iter()
-        .chain(legend_view(graph))
-        .collect();
+    let loops: Vec<Pane> = (0..graph.loops.len()).map(|number| loop_view(graph, number)).collect();
+    let side: Vec<_> = headline_view(graph).into_iter().chain(legend_view(graph)).collect();
     let mut panes = Vec::new();
     match loops.len() {
         0 => {}
@@ -109,10 +84,8 @@ fn below(graph: &SceneGraph) -> Vec<(f32, Pane)> {
 
 /// Plots along the chain, then events, joints and energies.
 fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
-    let mut plots: Vec<Pane> = groups(&graph.channels)
-        .into_iter()
-        .map(|group| series(&group.title, path(["plots", &group.key])))
-        .collect();
+    let mut plots: Vec<Pane> =
+        groups(&graph.channels).into_iter().map(|group| series(&group.title, path(["plots", &group.key]))).collect();
     let rest = plots.split_off(plots.len().min(PLOTS_IN_SIGHT));
     let mut tabs = vec![events()];
     tabs.extend(rest);
@@ -138,18 +111,9 @@ fn tiles(mut panes: Vec<Pane>) -> Pane {
 }
 
 fn space(graph: &SceneGraph) -> Pane {
-    let title = if graph.name.is_empty() {
-        "Mechanism"
-    } else {
-        &graph.name
-    };
-    let mut properties: Vec<(&'static str, Box<dyn AsComponents>)> = vec![
-        (
-            "LineGrid3D",
-            Box::new(LineGrid3D::new().with_visible(false)),
-        ),
-        ("Background", Box::new(ground())),
-    ];
+    let title = if graph.name.is_empty() { "Mechanism" } else { &graph.name };
+    let mut properties: Vec<(&'static str, Box<dyn AsComponents>)> =
+        vec![("LineGrid3D", Box::new(LineGrid3D::new().with_visible(false))), ("Background", Box::new(ground()))];
     // Without a camera, Rerun looks at everything.
     if graph.camera_position_m != graph.camera_target_m {
         properties.push(("EyeControls3D", Box::new(eye(graph))));
@@ -167,22 +131,13 @@ fn eye(graph: &SceneGraph) -> EyeControls3D {
 
 /// Up on the screen: z, unless the camera looks along it.
 fn eye_up(graph: &SceneGraph) -> [f64; 3] {
-    let [x, y, z]: [f64; 3] =
-        std::array::from_fn(|axis| graph.camera_target_m[axis] - graph.camera_position_m[axis]);
-    if x.hypot(y) < 0.05 * z.abs() {
-        [0.0, 1.0, 0.0]
-    } else {
-        [0.0, 0.0, 1.0]
-    }
+    let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| graph.camera_target_m[axis] - graph.camera_position_m[axis]);
+    if x.hypot(y) < 0.05 * z.abs() { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] }
 }
 
 fn loop_view(graph: &SceneGraph, number: usize) -> Pane {
     let (x, y) = graph.loops[number];
-    let title = format!(
-        "Loop: {} over {}",
-        label(&graph.channels[y]),
-        axis_title(&graph.channels[x])
-    );
+    let title = format!("Loop: {} over {}", label(&graph.channels[y]), axis_title(&graph.channels[x]));
     let [width, height] = FRAME;
     let bounds = bounds([-0.2, width + 0.08], [-height - 0.22, 0.3]);
     plane(&title, path(["loops", &(number + 1).to_string()]), bounds)
@@ -191,34 +146,22 @@ fn loop_view(graph: &SceneGraph, number: usize) -> Pane {
 fn legend_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let strips = strip_count(graph);
     let bottom = f64::from(SPACING) * strips as f64 - 0.1;
-    let pane = || {
-        plane(
-            "Colours",
-            path(["legend"]),
-            bounds([-0.15, 1.15], [-0.1, bottom]),
-        )
-    };
+    let pane = || plane("Colours", path(["legend"]), bounds([-0.15, 1.15], [-0.1, bottom]));
     (strips > 0).then(|| (0.55, pane()))
 }
 
 fn headline_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let channel = headline(&graph.channels, graph.input_count)?;
     let title = axis_title(&graph.channels[channel]);
-    Some((
-        0.45,
-        view(Kind::Document, &title, path(["headline"]), Vec::new()),
-    ))
+    Some((0.45, view(Kind::Document, &title, path(["headline"]), Vec::new())))
 }
 
 /// Path and level are the same for all events: only time and text are shown.
 fn events() -> Pane {
-    let body = TextLogColumn(datatypes::TextLogColumn {
-        visible: true.into(),
-        kind: datatypes::TextLogColumnKind::Body,
-    });
+    let body =
+        TextLogColumn(datatypes::TextLogColumn { visible: true.into(), kind: datatypes::TextLogColumnKind::Body });
     let columns = TextLogColumns::new().with_text_log_columns([body]);
-    let properties: Vec<(&'static str, Box<dyn AsComponents>)> =
-        vec![("TextLogColumns", Box::new(columns))];
+    let properties: Vec<(&'static str, Box<dyn AsComponents>)> = vec![("TextLogColumns", Box::new(columns))];
     view(Kind::Log, "Events", path(["events"]), properties)
 }
 
@@ -228,14 +171,8 @@ fn series(title: &str, origin: EntityPath) -> Pane {
         title,
         origin,
         vec![
-            (
-                "PlotLegend",
-                Box::new(PlotLegend::new().with_corner(Corner2D::LeftTop)),
-            ),
-            (
-                "TimeAxis",
-                Box::new(TimeAxis::new().with_link(LinkAxis::LinkToGlobal)),
-            ),
+            ("PlotLegend", Box::new(PlotLegend::new().with_corner(Corner2D::LeftTop))),
+            ("TimeAxis", Box::new(TimeAxis::new().with_link(LinkAxis::LinkToGlobal))),
         ],
     )
 }
@@ -245,18 +182,12 @@ fn plane(title: &str, origin: EntityPath, bounds: Range2D) -> Pane {
         Kind::Plane,
         title,
         origin,
-        vec![
-            ("VisualBounds2D", Box::new(VisualBounds2D::new(bounds))),
-            ("Background", Box::new(ground())),
-        ],
+        vec![("VisualBounds2D", Box::new(VisualBounds2D::new(bounds))), ("Background", Box::new(ground()))],
     )
 }
 
 fn bounds(x: [f64; 2], y: [f64; 2]) -> Range2D {
-    Range2D {
-        x_range: Range1D(x),
-        y_range: Range1D(y),
-    }
+    Range2D { x_range: Range1D(x), y_range: Range1D(y) }
 }
 
 fn ground() -> Background {
@@ -264,16 +195,6 @@ fn ground() -> Background {
     Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(red, green, blue))
 }
 
-fn view(
-    kind: Kind,
-    title: &str,
-    origin: EntityPath,
-    properties: Vec<(&'static str, Box<dyn AsComponents>)>,
-) -> Pane {
-    Pane::View(View {
-        kind,
-        title: title.to_owned(),
-        origin: origin.to_string(),
-        properties,
-    })
+fn view(kind: Kind, title: &str, origin: EntityPath, properties: Vec<(&'static str, Box<dyn AsComponents>)>) -> Pane {
+    Pane::View(View { kind, title: title.to_owned(), origin: origin.to_string(), properties })
 }

@@ -16,11 +16,7 @@ pub(super) struct Cables {
 
 impl Cables {
     pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
-        Cables {
-            names: graph.cables.clone(),
-            slack_below_n: options.slack_below_n,
-            scale_n: options.tension_scale_n,
-        }
+        Cables { names: graph.cables.clone(), slack_below_n: options.slack_below_n, scale_n: options.tension_scale_n }
     }
 
     fn colour(&self, cable: &CableFrame) -> rerun::Color {
@@ -41,9 +37,8 @@ impl Layer for Cables {
         for (number, name) in self.names.iter().enumerate() {
             let cables = || frames.iter().map(|frame| &frame.cables[number]);
             let strips = cables().map(|cable| LineStrip3D::from_iter(&cable.points_m));
-            let lines = LineStrips3D::update_fields()
-                .with_strips(strips)
-                .with_colors(cables().map(|cable| self.colour(cable)));
+            let lines =
+                LineStrips3D::update_fields().with_strips(strips).with_colors(cables().map(|cable| self.colour(cable)));
             let entity = path(["world", "cables", name]);
             out.send_columns(entity, [times(frames)], lines.columns_of_unit_batches()?)?;
         }

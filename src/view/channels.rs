@@ -89,14 +89,8 @@ pub(super) fn groups(names: &[String]) -> Vec<Group> {
 /// Name of a channel without its unit, for a legend.
 pub(super) fn label(name: &str) -> String {
     let unit = parts(name).unit;
-    let stem = name
-        .strip_suffix(unit)
-        .map_or(name, |stem| stem.trim_end_matches('_'));
-    if stem.is_empty() {
-        name.to_owned()
-    } else {
-        stem.replace('_', " ")
-    }
+    let stem = name.strip_suffix(unit).map_or(name, |stem| stem.trim_end_matches('_'));
+    if stem.is_empty() { name.to_owned() } else { stem.replace('_', " ") }
 }
 
 /// Name of a channel with its unit, for an axis: `tip force (N)`.
@@ -116,17 +110,13 @@ pub(super) fn key(name: &str) -> String {
 /// The angle to show large: a bending angle, else any output in degrees.
 pub(super) fn headline(names: &[String], input_count: usize) -> Option<usize> {
     let is_angle = |name: &str| parts(name).unit == "deg";
-    let bending = names
-        .iter()
-        .position(|name| is_angle(name) && name.contains("bend"));
+    let bending = names.iter().position(|name| is_angle(name) && name.contains("bend"));
     let output = || (input_count..names.len()).find(|&index| is_angle(&names[index]));
     bending.or_else(output)
 }
 
 fn new_group(key: String, name: &str, index: usize) -> Group {
-    let Parts {
-        quantity, symbol, ..
-    } = parts(name);
+    let Parts { quantity, symbol, .. } = parts(name);
     let known = QUANTITIES.iter().position(|known| *known == quantity);
     Group {
         key,
@@ -137,41 +127,22 @@ fn new_group(key: String, name: &str, index: usize) -> Group {
 }
 
 fn parts(name: &str) -> Parts<'_> {
-    let found = UNITS.iter().find(|(unit, _)| {
-        name.strip_suffix(unit)
-            .is_some_and(|stem| stem.ends_with('_'))
-    });
+    let found = UNITS.iter().find(|(unit, _)| name.strip_suffix(unit).is_some_and(|stem| stem.ends_with('_')));
     let (unit, symbol) = found.copied().unwrap_or(("", ""));
-    let stem = name
-        .strip_suffix(unit)
-        .unwrap_or(name)
-        .trim_end_matches('_');
-    let word = QUANTITIES
-        .into_iter()
-        .find(|known| stem.split('_').any(|word| word == *known));
-    let quantity =
-        word.unwrap_or_else(|| stem.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_'));
+    let stem = name.strip_suffix(unit).unwrap_or(name).trim_end_matches('_');
+    let word = QUANTITIES.into_iter().find(|known| stem.split('_').any(|word| word == *known));
+    let quantity = word.unwrap_or_else(|| stem.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_'));
     let quantity = if quantity.is_empty() { name } else { quantity };
-    Parts {
-        quantity,
-        unit,
-        symbol,
-    }
+    Parts { quantity, unit, symbol }
 }
 
 fn with_unit(text: String, symbol: &str) -> String {
-    if symbol.is_empty() {
-        text
-    } else {
-        format!("{text} ({symbol})")
-    }
+    if symbol.is_empty() { text } else { format!("{text} ({symbol})") }
 }
 
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]
@@ -194,16 +165,7 @@ mod tests {
         ]);
         let groups = groups(&channels);
         let titles: Vec<_> = groups.iter().map(|group| group.title.as_str()).collect();
-        assert_eq!(
-            titles,
-            [
-                "Plunger (mm)",
-                "Pressure (kPa)",
-                "Elongation (mm)",
-                "Angle (°)",
-                "Tension (N)"
-            ]
-        );
+        assert_eq!(titles, ["Plunger (mm)", "Pressure (kPa)", "Elongation (mm)", "Angle (°)", "Tension (N)"]);
         assert_eq!(groups[1].members, [1, 4]);
         assert_eq!(headline(&channels, 1), Some(5));
     }

@@ -27,10 +27,7 @@ pub(super) fn coil(muscle: &MuscleGraph) -> Coil {
         let (sin, cos) = (TAU * turns * share).sin_cos();
         [radius_m * cos, radius_m * sin, length_m * share]
     };
-    Coil {
-        points_m: (0..=count).map(point).collect(),
-        wire_radius_m: 0.16 * pitch_m,
-    }
+    Coil { points_m: (0..=count).map(point).collect(), wire_radius_m: 0.16 * pitch_m }
 }
 
 /// Rotation (x, y, z, w) that takes +z to `direction`.
@@ -54,15 +51,9 @@ mod tests {
 
     #[test]
     fn the_rotation_takes_z_to_the_direction() {
-        for direction in [
-            [1.0, 0.0, 0.0],
-            [0.0, -2.0, 0.0],
-            [0.3, 0.4, -0.5],
-            [0.0, 0.0, -1.0],
-        ] {
+        for direction in [[1.0, 0.0, 0.0], [0.0, -2.0, 0.0], [0.3, 0.4, -0.5], [0.0, 0.0, -1.0]] {
             let [x, y, z, w] = z_towards(direction);
-            let turned =
-                UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
+            let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
             let wanted = Vector3::from(direction).normalize();
             assert!((turned - wanted).norm() < 1e-9, "{direction:?}: {turned}");
         }

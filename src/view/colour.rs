@@ -57,16 +57,8 @@ pub(super) fn opaque([red, green, blue]: Rgb) -> rerun::Color {
 }
 
 fn blend(stops: &[Rgb; 3], fraction: f64) -> Rgb {
-    let place = if fraction.is_nan() {
-        0.0
-    } else {
-        fraction.clamp(0.0, 1.0)
-    } * 2.0;
-    let (from, to) = if place < 1.0 {
-        (stops[0], stops[1])
-    } else {
-        (stops[1], stops[2])
-    };
+    let place = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) } * 2.0;
+    let (from, to) = if place < 1.0 { (stops[0], stops[1]) } else { (stops[1], stops[2]) };
     let share = if place < 1.0 { place } else { place - 1.0 };
     std::array::from_fn(|channel| {
         let (a, b) = (f64::from(from[channel]), f64::from(to[channel]));

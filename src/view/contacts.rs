@@ -17,10 +17,7 @@ pub(super) struct Contacts {
 
 impl Contacts {
     pub(super) fn new(options: &ViewOptions) -> Self {
-        Contacts {
-            arrow_m_per_n: options.contact_arrow_m_per_n,
-            shown: false,
-        }
+        Contacts { arrow_m_per_n: options.contact_arrow_m_per_n, shown: false }
     }
 
     /// Frames with contacts, and the first one after them.
@@ -33,20 +30,14 @@ impl Contacts {
     }
 
     fn arrow(&self, contact: &Contact) -> [f64; 3] {
-        contact
-            .normal
-            .map(|part| part * contact.force_n * self.arrow_m_per_n)
+        contact.normal.map(|part| part * contact.force_n * self.arrow_m_per_n)
     }
 }
 
 impl Layer for Contacts {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
-        let points = Points3D::update_fields()
-            .with_colors([opaque(CONTACT)])
-            .with_radii([Radius::new_ui_points(4.0)]);
-        let arrows = Arrows3D::update_fields()
-            .with_colors([opaque(CONTACT)])
-            .with_radii([Radius::new_ui_points(1.5)]);
+        let points = Points3D::update_fields().with_colors([opaque(CONTACT)]).with_radii([Radius::new_ui_points(4.0)]);
+        let arrows = Arrows3D::update_fields().with_colors([opaque(CONTACT)]).with_radii([Radius::new_ui_points(1.5)]);
         out.log_static(path(["world", "contacts", "points"]), &points)?;
         out.log_static(path(["world", "contacts", "forces"]), &arrows)?;
         Ok(())
@@ -66,11 +57,7 @@ impl Layer for Contacts {
             .with_origins(places())
             .with_vectors(contacts().map(|contact| self.arrow(contact)));
         let entity = path(["world", "contacts", "points"]);
-        out.send_columns(
-            entity,
-            [times.clone()],
-            points.columns(lengths.iter().copied())?,
-        )?;
+        out.send_columns(entity, [times.clone()], points.columns(lengths.iter().copied())?)?;
         let entity = path(["world", "contacts", "forces"]);
         out.send_columns(entity, [times], arrows.columns(lengths.iter().copied())?)?;
         Ok(())

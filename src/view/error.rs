@@ -25,14 +25,9 @@ pub enum ViewError {
     ViewerFailed { detail: String },
 
     #[error("{path}: cannot write: {source}; check the folder, its rights and the free space")]
-    CannotWrite {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    CannotWrite { path: PathBuf, source: std::io::Error },
 
-    #[error(
-        "port {port} on 127.0.0.1 is not free: {source}; choose another port (0 picks a free one)"
-    )]
+    #[error("port {port} on 127.0.0.1 is not free: {source}; choose another port (0 picks a free one)")]
     PortTaken { port: u16, source: std::io::Error },
 
     #[error("a frame came before the scene: call `begin` first")]
@@ -45,22 +40,13 @@ pub enum ViewError {
         "frame at {time_s} s has {found} {what}, the scene has {expected}: \
          fill every frame in the order of its `SceneGraph`"
     )]
-    FrameShape {
-        time_s: f64,
-        what: &'static str,
-        expected: usize,
-        found: usize,
-    },
+    FrameShape { time_s: f64, what: &'static str, expected: usize, found: usize },
 
     #[error(
         "scene graph: {what} refers to number {index}, but there are only {count}: \
          indices start at 0"
     )]
-    BadIndex {
-        what: &'static str,
-        index: usize,
-        count: usize,
-    },
+    BadIndex { what: &'static str, index: usize, count: usize },
 
     #[error("not everything reached the viewer or file within {seconds} s: {detail}")]
     Unsent { seconds: u64, detail: String },
@@ -71,17 +57,13 @@ pub enum ViewError {
 
 impl From<RecordingStreamError> for ViewError {
     fn from(error: RecordingStreamError) -> Self {
-        ViewError::Refused {
-            detail: error.to_string(),
-        }
+        ViewError::Refused { detail: error.to_string() }
     }
 }
 
 impl From<SerializationError> for ViewError {
     fn from(error: SerializationError) -> Self {
-        ViewError::Refused {
-            detail: error.to_string(),
-        }
+        ViewError::Refused { detail: error.to_string() }
     }
 }
 
@@ -90,10 +72,7 @@ impl ViewError {
     pub(super) fn opening(path: &std::path::Path, error: RecordingStreamError) -> Self {
         match error {
             RecordingStreamError::FileSink(FileSinkError::CreateFile { source, .. }) => {
-                ViewError::CannotWrite {
-                    path: path.to_owned(),
-                    source,
-                }
+                ViewError::CannotWrite { path: path.to_owned(), source }
             }
             other => other.into(),
         }
@@ -101,9 +80,6 @@ impl ViewError {
 
     /// Error of a flush that did not get through in `seconds`.
     pub(super) fn unsent(seconds: u64, error: &SinkFlushError) -> Self {
-        ViewError::Unsent {
-            seconds,
-            detail: error.to_string(),
-        }
+        ViewError::Unsent { seconds, detail: error.to_string() }
     }
 }

@@ -18,11 +18,7 @@ impl Headline {
     /// None if the scene has no angle.
     pub(super) fn new(graph: &SceneGraph) -> Option<Self> {
         let channel = headline(&graph.channels, graph.input_count)?;
-        Some(Headline {
-            channel,
-            name: label(&graph.channels[channel]),
-            last: String::new(),
-        })
+        Some(Headline { channel, name: label(&graph.channels[channel]), last: String::new() })
     }
 
     fn text(&self, frame: &Frame) -> String {
@@ -59,22 +55,13 @@ pub(super) struct Events;
 
 impl Layer for Events {
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
-        let times_s = frames
-            .iter()
-            .flat_map(|frame| std::iter::repeat_n(frame.time_s, frame.events.len()));
-        let texts: Vec<&str> = frames
-            .iter()
-            .flat_map(|frame| frame.events.iter().map(String::as_str))
-            .collect();
+        let times_s = frames.iter().flat_map(|frame| std::iter::repeat_n(frame.time_s, frame.events.len()));
+        let texts: Vec<&str> = frames.iter().flat_map(|frame| frame.events.iter().map(String::as_str)).collect();
         if texts.is_empty() {
             return Ok(());
         }
         let log = TextLog::update_fields().with_many_text(texts);
-        out.send_columns(
-            "events",
-            [time_column(times_s)],
-            log.columns_of_unit_batches()?,
-        )?;
+        out.send_columns("events", [time_column(times_s)], log.columns_of_unit_batches()?)?;
         Ok(())
     }
 }

@@ -36,9 +36,6 @@ pub(super) fn time_column(times_s: impl IntoIterator<Item = f64>) -> TimeColumn 
 
 /// Path of an entity; names may contain any character.
 pub(super) fn path<const N: usize>(parts: [&str; N]) -> EntityPath {
-    let parts: Vec<_> = parts
-        .iter()
-        .map(|part| EntityPathPart::new(*part))
-        .collect();
+    let parts: Vec<_> = parts.iter().map(|part| EntityPathPart::new(*part)).collect();
     EntityPath::from(parts)
 }

@@ -6,9 +6,7 @@
 use rerun::blueprint::components::{ColumnShare, ContainerKind, IncludedContent, QueryExpression};
 use rerun::blueprint::components::{RootContainer, RowShare, ViewClass};
 use rerun::datatypes::{Float32, Uuid};
-use rerun::external::re_sdk_types::blueprint::archetypes::{
-    ContainerBlueprint, ViewBlueprint, ViewContents,
-};
+use rerun::external::re_sdk_types::blueprint::archetypes::{ContainerBlueprint, ViewBlueprint, ViewContents};
 use rerun::{AsComponents, RecordingStream, RecordingStreamResult};
 
 /// Kinds of views, by Rerun's names for them.
@@ -69,9 +67,7 @@ impl<'a> Writer<'a> {
             other => other,
         };
         self.pane(shared)?;
-        Ok(RootContainer(Uuid {
-            bytes: self.count.to_be_bytes(),
-        }))
+        Ok(RootContainer(Uuid { bytes: self.count.to_be_bytes() }))
     }
 
     fn pane(&mut self, pane: Pane) -> RecordingStreamResult<String> {
@@ -86,19 +82,13 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn container(
-        &mut self,
-        kind: ContainerKind,
-        panes: Vec<(f32, Pane)>,
-    ) -> RecordingStreamResult<String> {
+    fn container(&mut self, kind: ContainerKind, panes: Vec<(f32, Pane)>) -> RecordingStreamResult<String> {
         let (mut shares, mut paths) = (Vec::new(), Vec::new());
         for (share, pane) in panes {
             shares.push(share);
             paths.push(self.pane(pane)?);
         }
-        let contents = paths
-            .iter()
-            .map(|path| IncludedContent(path.as_str().into()));
+        let contents = paths.iter().map(|path| IncludedContent(path.as_str().into()));
         let container = ContainerBlueprint::new(kind)
             .with_contents(contents)
             .with_col_shares(shares.iter().map(|share| ColumnShare(Float32(*share))))
@@ -115,8 +105,7 @@ impl<'a> Writer<'a> {
             .with_space_origin(view.origin.as_str());
         self.out.log(path.as_str(), &blueprint)?;
         let query = QueryExpression("$origin/**".into());
-        self.out
-            .log(format!("{path}/ViewContents"), &ViewContents::new([query]))?;
+        self.out.log(format!("{path}/ViewContents"), &ViewContents::new([query]))?;
         for (name, value) in &view.properties {
             self.out.log(format!("{path}/{name}"), value.as_ref())?;
         }
@@ -127,13 +116,6 @@ impl<'a> Writer<'a> {
     fn next_id(&mut self) -> String {
         self.count += 1;
         let hex = format!("{:032x}", self.count);
-        format!(
-            "{}-{}-{}-{}-{}",
-            &hex[..8],
-            &hex[8..12],
-            &hex[12..16],
-            &hex[16..20],
-            &hex[20..]
-        )
+        format!("{}-{}-{}-{}-{}", &hex[..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..])
     }
 }

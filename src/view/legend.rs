@@ -33,9 +33,7 @@ impl Legend {
     pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
         let cables = (!graph.cables.is_empty()).then(|| tension_strip(options));
         let muscles = (!graph.muscles.is_empty()).then(|| pressure_strip(options));
-        Legend {
-            strips: cables.into_iter().chain(muscles).collect(),
-        }
+        Legend { strips: cables.into_iter().chain(muscles).collect() }
     }
 }
 

@@ -15,10 +15,7 @@ pub(super) struct Links {
 
 impl Links {
     pub(super) fn new(graph: &SceneGraph) -> Self {
-        Links {
-            names: graph.links.clone(),
-            visuals: graph.visuals.clone(),
-        }
+        Links { names: graph.links.clone(), visuals: graph.visuals.clone() }
     }
 }
 
@@ -52,16 +49,10 @@ fn log_poses(
     let transforms = Transform3D::update_fields()
         .with_many_translation(poses.clone().map(|pose| pose.translation_m))
         .with_many_quaternion(poses.map(|pose| quaternion(pose.rotation_xyzw)));
-    out.send_columns(
-        entity,
-        [times(frames)],
-        transforms.columns_of_unit_batches()?,
-    )?;
+    out.send_columns(entity, [times(frames)], transforms.columns_of_unit_batches()?)?;
     Ok(())
 }
 
 fn transform(pose: Pose) -> Transform3D {
-    Transform3D::update_fields()
-        .with_translation(pose.translation_m)
-        .with_quaternion(quaternion(pose.rotation_xyzw))
+    Transform3D::update_fields().with_translation(pose.translation_m).with_quaternion(quaternion(pose.rotation_xyzw))
 }

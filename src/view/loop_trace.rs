@@ -12,13 +12,7 @@ pub(super) struct LoopTrace {
 
 impl LoopTrace {
     pub(super) fn new(capacity: usize) -> Self {
-        LoopTrace {
-            points: Vec::new(),
-            capacity: capacity.max(16),
-            stride: 1,
-            seen: 0,
-            range: None,
-        }
+        LoopTrace { points: Vec::new(), capacity: capacity.max(16), stride: 1, seen: 0, range: None }
     }
 
     /// Adds a point; points that are not finite are left out.
@@ -73,11 +67,7 @@ mod tests {
         for n in 0..10_000 {
             trace.push([f64::from(n), -f64::from(n)]);
         }
-        let gaps: Vec<f64> = trace
-            .points()
-            .windows(2)
-            .map(|p| p[1][0] - p[0][0])
-            .collect();
+        let gaps: Vec<f64> = trace.points().windows(2).map(|p| p[1][0] - p[0][0]).collect();
         assert!((32..64).contains(&trace.points().len()));
         assert!(gaps.iter().all(|gap| *gap == gaps[0]));
         assert_eq!(trace.range(), Some([[0.0, 9999.0], [-9999.0, 0.0]]));

@@ -3,9 +3,7 @@
 //! Rerun has no x-y plot. The points are logged in their own units (vertical axis negated, since
 //! the view's points down) under a transform that fits them into the frame, logged when it settles.
 
-use rerun::{
-    EntityPath, LineStrip2D, LineStrips2D, Points2D, Radius, RecordingStream, Transform3D,
-};
+use rerun::{EntityPath, LineStrip2D, LineStrips2D, Points2D, Radius, RecordingStream, Transform3D};
 
 use super::channels::axis_title;
 use super::colour::{AXIS, NOW, age, opaque};
@@ -35,10 +33,7 @@ impl Loop {
         let new = |(number, &(x, y)): (usize, &(usize, usize))| Loop {
             number,
             channels: (x, y),
-            titles: [
-                axis_title(&graph.channels[x]),
-                axis_title(&graph.channels[y]),
-            ],
+            titles: [axis_title(&graph.channels[x]), axis_title(&graph.channels[y])],
             trace: LoopTrace::new(options.loop_points),
         };
         graph.loops.iter().enumerate().map(new).collect()
@@ -53,10 +48,7 @@ impl Loop {
     }
 
     fn point(&self, frame: &Frame) -> [f64; 2] {
-        [
-            frame.channels[self.channels.0],
-            frame.channels[self.channels.1],
-        ]
+        [frame.channels[self.channels.0], frame.channels[self.channels.1]]
     }
 }
 
@@ -67,17 +59,13 @@ impl Layer for Loop {
             .with_colors([opaque(AXIS)])
             .with_radii([Radius::new_ui_points(0.75)]);
         out.log_static(self.entity("frame"), &edge)?;
-        let now = Points2D::update_fields()
-            .with_colors([opaque(NOW)])
-            .with_radii([Radius::new_ui_points(5.0)]);
+        let now = Points2D::update_fields().with_colors([opaque(NOW)]).with_radii([Radius::new_ui_points(5.0)]);
         out.log_static(self.data_entity("now"), &now)?;
         Ok(())
     }
 
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
-        frames
-            .iter()
-            .for_each(|frame| self.trace.push(self.point(frame)));
+        frames.iter().for_each(|frame| self.trace.push(self.point(frame)));
         let now = frames.iter().map(|frame| downwards(&self.point(frame)));
         let points = Points2D::update_fields().with_positions(now);
         let columns = points.columns_of_unit_batches()?;
@@ -108,10 +96,7 @@ struct Scale {
 impl Scale {
     fn new([low, high]: [f64; 2]) -> Self {
         let values = ticks(low, high, 5);
-        let places = values
-            .iter()
-            .map(|value| (value - low) / (high - low))
-            .collect();
+        let places = values.iter().map(|value| (value - low) / (high - low)).collect();
         Scale { values, places }
     }
 
@@ -151,27 +136,16 @@ fn tick_lines([x, y]: &[Scale; 2]) -> LineStrips2D {
         let at = (-place * FRAME[1]) as f32;
         [(0.0, at), (-TICK as f32, at)]
     });
-    LineStrips2D::new(below.chain(left))
-        .with_colors([opaque(AXIS)])
-        .with_radii([Radius::new_ui_points(0.75)])
+    LineStrips2D::new(below.chain(left)).with_colors([opaque(AXIS)]).with_radii([Radius::new_ui_points(0.75)])
 }
 
 /// Invisible points that carry the texts of ticks and axes.
 fn labels([x, y]: &[Scale; 2], [x_title, y_title]: &[String; 2]) -> Points2D {
     let below = x.places.iter().map(|place| [place * FRAME[0], 0.03]);
-    let left = y
-        .places
-        .iter()
-        .map(|place| [-0.11, -place * FRAME[1] - 0.04]);
+    let left = y.places.iter().map(|place| [-0.11, -place * FRAME[1] - 0.04]);
     let titles = [[0.5 * FRAME[0], 0.14], [0.0, -FRAME[1] - 0.14]];
-    let places = below
-        .chain(left)
-        .chain(titles)
-        .map(|[x, y]| (x as f32, y as f32));
-    let texts = x
-        .texts()
-        .chain(y.texts())
-        .chain([x_title.clone(), y_title.clone()]);
+    let places = below.chain(left).chain(titles).map(|[x, y]| (x as f32, y as f32));
+    let texts = x.texts().chain(y.texts()).chain([x_title.clone(), y_title.clone()]);
     Points2D::new(places)
         .with_labels(texts)
         .with_show_labels(true)

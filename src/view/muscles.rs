@@ -17,10 +17,7 @@ pub(super) struct Muscles {
 
 impl Muscles {
     pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
-        Muscles {
-            muscles: graph.muscles.clone(),
-            scale_pa: options.pressure_scale_pa,
-        }
+        Muscles { muscles: graph.muscles.clone(), scale_pa: options.pressure_scale_pa }
     }
 }
 
@@ -75,10 +72,6 @@ fn log_stretch(
         .with_many_quaternion(frames.iter().map(|_| turned))
         .with_many_scale(stretches);
     let entity = path(["world", "muscles", &muscle.name]);
-    out.send_columns(
-        entity,
-        [times(frames)],
-        transforms.columns_of_unit_batches()?,
-    )?;
+    out.send_columns(entity, [times(frames)], transforms.columns_of_unit_batches()?)?;
     Ok(())
 }

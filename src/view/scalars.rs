@@ -34,13 +34,9 @@ impl Channels {
         };
         let lines = groups(&graph.channels).into_iter().flat_map(|group| {
             let members = group.members.into_iter().enumerate();
-            members
-                .map(|(place, channel)| line(&group.key, place, channel))
-                .collect::<Vec<_>>()
+            members.map(|(place, channel)| line(&group.key, place, channel)).collect::<Vec<_>>()
         });
-        Channels {
-            lines: lines.collect(),
-        }
+        Channels { lines: lines.collect() }
     }
 }
 
@@ -115,16 +111,8 @@ impl Layer for Energies {
     }
 }
 
-fn style(
-    out: &RecordingStream,
-    entity: &EntityPath,
-    name: &str,
-    place: usize,
-) -> Result<(), ViewError> {
-    let lines = SeriesLines::new()
-        .with_names([name])
-        .with_colors([opaque(series(place))])
-        .with_widths([2.0_f32]);
+fn style(out: &RecordingStream, entity: &EntityPath, name: &str, place: usize) -> Result<(), ViewError> {
+    let lines = SeriesLines::new().with_names([name]).with_colors([opaque(series(place))]).with_widths([2.0_f32]);
     out.log_static(entity.clone(), &lines)?;
     Ok(())
 }

@@ -16,11 +16,7 @@ pub(super) fn check_graph(graph: &SceneGraph) -> Result<(), ViewError> {
 }
 
 /// A frame has what its graph promises, and as many joints as the frame before.
-pub(super) fn check_frame(
-    graph: &SceneGraph,
-    joints_before: Option<usize>,
-    frame: &Frame,
-) -> Result<(), ViewError> {
+pub(super) fn check_frame(graph: &SceneGraph, joints_before: Option<usize>, frame: &Frame) -> Result<(), ViewError> {
     let joints = frame.joint_positions.len();
     let counts = [
         ("channels", graph.channels.len(), frame.channels.len()),
@@ -30,16 +26,8 @@ pub(super) fn check_frame(
         ("joints", joints_before.unwrap_or(joints), joints),
     ];
     let time_s = frame.time_s;
-    match counts
-        .into_iter()
-        .find(|(_, expected, found)| expected != found)
-    {
-        Some((what, expected, found)) => Err(ViewError::FrameShape {
-            time_s,
-            what,
-            expected,
-            found,
-        }),
+    match counts.into_iter().find(|(_, expected, found)| expected != found) {
+        Some((what, expected, found)) => Err(ViewError::FrameShape { time_s, what, expected, found }),
         None => Ok(()),
     }
 }

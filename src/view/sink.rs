@@ -51,9 +51,7 @@ fn builder() -> RecordingStreamBuilder {
 }
 
 fn open_file(path: &std::path::Path) -> Result<Connection, ViewError> {
-    let stream = builder()
-        .save(path)
-        .map_err(|error| ViewError::opening(path, error))?;
+    let stream = builder().save(path).map_err(|error| ViewError::opening(path, error))?;
     Ok(Connection {
         stream,
         announcement: format!("{0}: open it with `rerun {0}`", path.display()),
@@ -66,11 +64,7 @@ fn open_window() -> Result<Connection, ViewError> {
     let info = rerun::spawn(&window_options()).map_err(spawn_error)?;
     let url = proxy_url(info.port);
     let stream = builder().connect_grpc_opts(url.as_str())?;
-    Ok(Connection {
-        stream,
-        announcement: format!("viewer at {url}"),
-        pace: live_pace(),
-    })
+    Ok(Connection { stream, announcement: format!("viewer at {url}"), pace: live_pace() })
 }
 
 /// The viewer listens on all interfaces unless told otherwise.
@@ -88,9 +82,7 @@ fn spawn_error(error: SpawnError) -> ViewError {
         SpawnError::ExecutableNotFoundInPath { .. } | SpawnError::ExecutableNotFound { .. } => {
             ViewError::ViewerNotFound
         }
-        SpawnError::Io(source) => ViewError::ViewerFailed {
-            detail: source.to_string(),
-        },
+        SpawnError::Io(source) => ViewError::ViewerFailed { detail: source.to_string() },
     }
 }
 
@@ -106,11 +98,7 @@ fn serve(port: u16) -> Result<Connection, ViewError> {
     let port = free_port(port)?;
     let stream = builder().serve_grpc_opts(LOOPBACK, port, ServerOptions::default())?;
     let url = proxy_url(port);
-    Ok(Connection {
-        stream,
-        announcement: format!("serving at {url}: open it with `rerun {url}`"),
-        pace: live_pace(),
-    })
+    Ok(Connection { stream, announcement: format!("serving at {url}: open it with `rerun {url}`"), pace: live_pace() })
 }
 
 /// Rerun binds in a thread of its own and would only log a taken port; so try it first.
@@ -138,20 +126,13 @@ mod tests {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let port = listener.local_addr().unwrap().port();
         let error = ViewSink::Serve { port }.open().err().unwrap().to_string();
-        assert!(
-            error.contains(&port.to_string()) && error.contains("0 picks"),
-            "{error}"
-        );
+        assert!(error.contains(&port.to_string()) && error.contains("0 picks"), "{error}");
     }
 
     #[test]
     fn serving_announces_the_loopback_address_and_the_command() {
         let connection = ViewSink::Serve { port: 0 }.open().unwrap();
-        assert!(
-            connection
-                .announcement
-                .contains("`rerun rerun+http://127.0.0.1:")
-        );
+        assert!(connection.announcement.contains("`rerun rerun+http://127.0.0.1:"));
     }
 
     #[test]
@@ -163,19 +144,13 @@ mod tests {
     fn an_impossible_file_is_named() {
         let file = ViewSink::File("/nonexistent-folder/a.rrd".into());
         let error = file.open().err().unwrap().to_string();
-        assert!(
-            error.contains("/nonexistent-folder/a.rrd: cannot write"),
-            "{error}"
-        );
+        assert!(error.contains("/nonexistent-folder/a.rrd: cannot write"), "{error}");
     }
 
     #[test]
     fn a_missing_viewer_tells_how_to_install_it() {
-        let options = SpawnOptions {
-            executable_name: "no-such-rerun".into(),
-            port: free_port(0).unwrap(),
-            ..window_options()
-        };
+        let options =
+            SpawnOptions { executable_name: "no-such-rerun".into(), port: free_port(0).unwrap(), ..window_options() };
         let error = spawn_error(rerun::spawn(&options).unwrap_err()).to_string();
         assert!(error.contains("pip install rerun-sdk==0.36.3"), "{error}");
     }

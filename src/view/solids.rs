@@ -9,25 +9,18 @@ use crate::mechanism::geometry::{Shape, Visual};
 pub(super) fn solid(visual: &Visual) -> Box<dyn AsComponents> {
     let colour = colour(visual.colour_rgba);
     match &visual.shape {
-        Shape::Box { size_m } => Box::new(
-            Boxes3D::from_sizes([*size_m])
-                .with_colors([colour])
-                .with_fill_mode(FillMode::Solid),
-        ),
+        Shape::Box { size_m } => {
+            Box::new(Boxes3D::from_sizes([*size_m]).with_colors([colour]).with_fill_mode(FillMode::Solid))
+        }
         Shape::Cylinder { radius_m, length_m } => Box::new(
             Cylinders3D::from_lengths_and_radii([*length_m as f32], [*radius_m as f32])
                 .with_colors([colour])
                 .with_fill_mode(FillMode::Solid),
         ),
-        Shape::Sphere { radius_m } => Box::new(
-            Ellipsoids3D::from_radii([*radius_m as f32])
-                .with_colors([colour])
-                .with_fill_mode(FillMode::Solid),
-        ),
-        Shape::Mesh {
-            vertices_m,
-            triangles,
-        } => Box::new(mesh(vertices_m, triangles, colour)),
+        Shape::Sphere { radius_m } => {
+            Box::new(Ellipsoids3D::from_radii([*radius_m as f32]).with_colors([colour]).with_fill_mode(FillMode::Solid))
+        }
+        Shape::Mesh { vertices_m, triangles } => Box::new(mesh(vertices_m, triangles, colour)),
     }
 }
 
@@ -38,14 +31,9 @@ pub(super) fn quaternion(xyzw: [f64; 4]) -> Quaternion {
 
 /// Every triangle gets corners of its own, so that edges stay sharp under flat normals.
 fn mesh(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]], colour: Color) -> Mesh3D {
-    let corners: Vec<[[f64; 3]; 3]> = triangles
-        .iter()
-        .filter_map(|triangle| corners(vertices_m, *triangle))
-        .collect();
+    let corners: Vec<[[f64; 3]; 3]> = triangles.iter().filter_map(|triangle| corners(vertices_m, *triangle)).collect();
     let normals = corners.iter().flat_map(|triangle| [normal(triangle); 3]);
-    Mesh3D::new(corners.iter().flatten().copied())
-        .with_vertex_normals(normals)
-        .with_albedo_factor(colour.0)
+    Mesh3D::new(corners.iter().flatten().copied()).with_vertex_normals(normals).with_albedo_factor(colour.0)
 }
 
 fn corners(vertices_m: &[[f64; 3]], triangle: [u32; 3]) -> Option<[[f64; 3]; 3]> {

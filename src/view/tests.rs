@@ -17,26 +17,16 @@ const FRAMES: usize = 250;
 #[test]
 fn every_channel_value_comes_back_in_order() {
     let chunks = run(7);
-    let values = component::<Scalar>(
-        &chunks,
-        "/plots/pressure_kpa/pressure_1_kpa",
-        "Scalars:scalars",
-    );
+    let values = component::<Scalar>(&chunks, "/plots/pressure_kpa/pressure_1_kpa", "Scalars:scalars");
     let wanted: Vec<f64> = (0..FRAMES).map(|n| frame(n).channels[0]).collect();
-    assert_eq!(
-        values.iter().map(|value| value.0.0).collect::<Vec<_>>(),
-        wanted
-    );
+    assert_eq!(values.iter().map(|value| value.0.0).collect::<Vec<_>>(), wanted);
 }
 
 #[test]
 fn each_frame_has_its_time() {
     let chunks = run(1000);
     let at = of(&chunks, "/joints/01").flat_map(|chunk| {
-        let times = chunk
-            .timelines()
-            .values()
-            .flat_map(|column| column.times_raw().to_vec());
+        let times = chunk.timelines().values().flat_map(|column| column.times_raw().to_vec());
         times.collect::<Vec<_>>()
     });
     let wanted: Vec<i64> = (0..FRAMES as i64).map(|n| n * 10_000_000).collect();
@@ -49,10 +39,7 @@ fn poses_keep_their_order_and_count() {
     let name = "Transform3D:translation";
     let moved = component::<Translation3D>(&chunks, "/world/links/tip link", name);
     assert_eq!(moved.len(), FRAMES);
-    assert_eq!(
-        moved[100].0.x(),
-        frame(100).link_poses[0].translation_m[0] as f32
-    );
+    assert_eq!(moved[100].0.x(), frame(100).link_poses[0].translation_m[0] as f32);
 }
 
 #[test]
@@ -68,10 +55,7 @@ fn the_loop_is_drawn_with_axes_that_name_their_units() {
     let chunks = run(64);
     let texts = component::<rerun::Text>(&chunks, "/loops/1/labels", "Points2D:labels");
     let texts: Vec<&str> = texts.iter().map(|text| text.as_str()).collect();
-    assert!(
-        texts.contains(&"pressure 1 (kPa)") && texts.contains(&"bending angle (°)"),
-        "{texts:?}"
-    );
+    assert!(texts.contains(&"pressure 1 (kPa)") && texts.contains(&"bending angle (°)"), "{texts:?}");
 }
 
 #[test]
@@ -81,10 +65,7 @@ fn frames_that_do_not_fit_the_scene_are_refused_with_their_time() {
     let mut wrong = frame(3);
     wrong.channels.pop();
     let error = viewer.frame(&wrong).unwrap_err().to_string();
-    assert!(
-        error.starts_with("frame at 0.03 s has 1 channels, the scene has 2"),
-        "{error}"
-    );
+    assert!(error.starts_with("frame at 0.03 s has 1 channels, the scene has 2"), "{error}");
 }
 
 #[test]
@@ -96,14 +77,8 @@ fn a_frame_before_the_scene_is_refused() {
 #[test]
 fn a_graph_that_points_nowhere_is_refused() {
     let (mut viewer, _storage) = viewer(8);
-    let graph = SceneGraph {
-        loops: vec![(0, 9)],
-        ..graph()
-    };
-    assert!(matches!(
-        viewer.begin(&graph),
-        Err(ViewError::BadIndex { index: 9, .. })
-    ));
+    let graph = SceneGraph { loops: vec![(0, 9)], ..graph() };
+    assert!(matches!(viewer.begin(&graph), Err(ViewError::BadIndex { index: 9, .. })));
 }
 
 #[test]
@@ -133,24 +108,15 @@ fn run(stretch: usize) -> Vec<Chunk> {
 }
 
 fn viewer(stretch: usize) -> (Viewer, MemorySinkStorage) {
-    let (stream, storage) = RecordingStreamBuilder::new("smam")
-        .enabled(true)
-        .memory()
-        .unwrap();
-    let connection = Connection {
-        stream,
-        announcement: String::new(),
-        pace: Pace::Frames(stretch),
-    };
+    let (stream, storage) = RecordingStreamBuilder::new("smam").enabled(true).memory().unwrap();
+    let connection = Connection { stream, announcement: String::new(), pace: Pace::Frames(stretch) };
     (Viewer::new(connection, ViewOptions::default()), storage)
 }
 
 fn chunks(storage: &MemorySinkStorage) -> Vec<Chunk> {
     let messages = storage.take().into_iter();
     let chunk = |message| match message {
-        LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
-            Some(Chunk::from_arrow_msg(&arrow).unwrap())
-        }
+        LogMsg::ArrowMsg(store, arrow) if store.is_recording() => Some(Chunk::from_arrow_msg(&arrow).unwrap()),
         _ => None,
     };
     messages.filter_map(chunk).collect()
@@ -162,10 +128,7 @@ fn of<'a>(chunks: &'a [Chunk], entity: &'a str) -> impl Iterator<Item = &'a Chun
 }
 
 fn rows(chunks: &[Chunk], entity: &str) -> usize {
-    of(chunks, entity)
-        .filter(|chunk| !chunk.is_static())
-        .map(Chunk::num_rows)
-        .sum()
+    of(chunks, entity).filter(|chunk| !chunk.is_static()).map(Chunk::num_rows).sum()
 }
 
 fn component<C: rerun::Component>(chunks: &[Chunk], entity: &str, name: &'static str) -> Vec<C> {
@@ -203,37 +166,17 @@ fn graph() -> SceneGraph {
 
 fn frame(n: usize) -> Frame {
     let phase = n as f64 * 0.1;
-    let contact = Contact {
-        link_a: 0,
-        link_b: 0,
-        point_m: [0.0; 3],
-        normal: [0.0, 0.0, 1.0],
-        penetration_m: 0.0,
-        force_n: 1.0,
-    };
+    let contact =
+        Contact { link_a: 0, link_b: 0, point_m: [0.0; 3], normal: [0.0, 0.0, 1.0], penetration_m: 0.0, force_n: 1.0 };
     Frame {
         time_s: n as f64 * 0.01,
         channels: vec![100.0 * phase.sin(), 10.0 * (phase - 0.3).sin()],
-        link_poses: vec![Pose {
-            translation_m: [phase, 0.0, 0.0],
-            ..Pose::IDENTITY
-        }],
-        cables: vec![CableFrame {
-            points_m: vec![[0.0; 3], [phase, 0.0, 0.0]],
-            tension_n: phase,
-        }],
+        link_poses: vec![Pose { translation_m: [phase, 0.0, 0.0], ..Pose::IDENTITY }],
+        cables: vec![CableFrame { points_m: vec![[0.0; 3], [phase, 0.0, 0.0]], tension_n: phase }],
         muscles: vec![MuscleFrame::default()],
-        contacts: if (100..110).contains(&n) {
-            vec![contact]
-        } else {
-            Vec::new()
-        },
+        contacts: if (100..110).contains(&n) { vec![contact] } else { Vec::new() },
         joint_positions: vec![phase],
-        events: if n == 42 {
-            vec!["m: cavitation begins".into()]
-        } else {
-            Vec::new()
-        },
+        events: if n == 42 { vec!["m: cavitation begins".into()] } else { Vec::new() },
         energy_j: vec![("stored".into(), phase)],
     }
 }

@@ -21,20 +21,13 @@ pub(super) fn text(value: f64, values: &[f64]) -> String {
 /// `[low, high]` with a margin of 5 %; a single value gets room around it.
 pub(super) fn padded(low: f64, high: f64) -> [f64; 2] {
     let width = high - low;
-    let margin = if width > 0.0 {
-        0.05 * width
-    } else {
-        0.5 * low.abs().max(1.0)
-    };
+    let margin = if width > 0.0 { 0.05 * width } else { 0.5 * low.abs().max(1.0) };
     [low - margin, high + margin]
 }
 
 fn round_step(raw: f64) -> f64 {
     let power = 10f64.powf(raw.log10().floor());
-    let factor = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|factor| factor * power >= raw * (1.0 - 1e-9))
-        .unwrap_or(10.0);
+    let factor = [1.0, 2.0, 5.0, 10.0].into_iter().find(|factor| factor * power >= raw * (1.0 - 1e-9)).unwrap_or(10.0);
     factor * power
 }
 

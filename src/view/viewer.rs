@@ -133,11 +133,7 @@ impl Drop for Viewer {
 }
 
 impl Run {
-    fn begin(
-        out: &RecordingStream,
-        graph: &SceneGraph,
-        options: &ViewOptions,
-    ) -> Result<Self, ViewError> {
+    fn begin(out: &RecordingStream, graph: &SceneGraph, options: &ViewOptions) -> Result<Self, ViewError> {
         let mut layers = layers(graph, options);
         layers.iter_mut().try_for_each(|layer| layer.begin(out))?;
         Ok(Run {
@@ -183,9 +179,7 @@ impl Run {
 
     fn settle(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
         self.last_settled = Instant::now();
-        self.layers
-            .iter_mut()
-            .try_for_each(|layer| layer.settle(out))
+        self.layers.iter_mut().try_for_each(|layer| layer.settle(out))
     }
 }
 

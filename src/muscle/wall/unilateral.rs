@@ -49,11 +49,7 @@ impl<D: Scalar> Wall<D> {
                 y = next;
                 break;
             }
-            y = if low < next.value() && next.value() < high {
-                next
-            } else {
-                D::constant(0.5 * (low + high))
-            };
+            y = if low < next.value() && next.value() < high { next } else { D::constant(0.5 * (low + high)) };
         }
         self.polish(lambda, pressure, y)
     }
@@ -67,14 +63,7 @@ impl<D: Scalar> Wall<D> {
     }
 
     /// Pull, volume and slopes; `softness` is `1/u_yy` off the coil and 0 on it.
-    fn assemble(
-        &self,
-        lambda: D,
-        y: D,
-        pressure: D,
-        energy: &SectionEnergy<D>,
-        softness: D,
-    ) -> WallState<D> {
+    fn assemble(&self, lambda: D, y: D, pressure: D, energy: &SectionEnergy<D>, softness: D) -> WallState<D> {
         let area = self.geometry.coil_area_m2();
         let rest = self.geometry.rest_length_m;
         let mixed = energy.u_ly - pressure;
