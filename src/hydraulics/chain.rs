@@ -279,8 +279,8 @@ impl<D: Scalar> ChainSolver<D> {
             k.flow_m3_s2[j] = self.s[j] - self.t[j] * k.pressure_pa_s[j + 1];
             k.pressure_pa_s[j] = self.rho[j] - self.sigma[j] * k.flow_m3_s2[j];
         }
-        for j in 0..=n {
-            k.vapour_m3_s[j] = if boiling[j] {
+        for (j, &boils) in boiling.iter().enumerate() {
+            k.vapour_m3_s[j] = if boils {
                 let entering = if j == 0 { D::constant(0.0) } else { k.flow_m3_s2[j - 1] };
                 let leaving = if j == n { k_out } else { k.flow_m3_s2[j] };
                 r.vapour_m3_s[j] - (entering - leaving) * self.g

@@ -60,7 +60,7 @@ pub fn minimise(
             break;
         }
     }
-    Some(LmResult { parameters: search.from_unit(&u), cost: r.norm_squared(), evaluations: search.evaluations })
+    Some(LmResult { parameters: search.scaled_back(&u), cost: r.norm_squared(), evaluations: search.evaluations })
 }
 
 /// Parameters are searched as shares of their ranges, so that their units do not matter.
@@ -76,13 +76,13 @@ impl Search<'_> {
         DVector::from_iterator(x.len(), shares)
     }
 
-    fn from_unit(&self, u: &DVector<f64>) -> Vec<f64> {
+    fn scaled_back(&self, u: &DVector<f64>) -> Vec<f64> {
         u.iter().zip(self.bounds).map(|(u, b)| b.min + u * (b.max - b.min)).collect()
     }
 
     fn evaluate(&mut self, u: &DVector<f64>) -> Option<DVector<f64>> {
         self.evaluations += 1;
-        (self.residuals)(&self.from_unit(u)).filter(|r| r.iter().all(|x| x.is_finite()))
+        (self.residuals)(&self.scaled_back(u)).filter(|r| r.iter().all(|x| x.is_finite()))
     }
 
     fn jacobian(&mut self, u: &DVector<f64>, r: &DVector<f64>, difference: f64) -> DMatrix<f64> {

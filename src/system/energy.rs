@@ -161,10 +161,10 @@ fn muscle_powers(
     let muscle = &plant.muscles[i];
     let f = plant.muscle_forces(i, state, inputs, elapsed_s);
     p.muscle_damping += f.damping_n * f.speed_m_s;
-    if let Some(stop) = &muscle.stop {
-        if f.elongation_m < 0.0 {
-            p.stop_damping += (-stop.stiffness_n_m * f.elongation_m - f.stop_n) * f.speed_m_s;
-        }
+    if let Some(stop) = &muscle.stop
+        && f.elongation_m < 0.0
+    {
+        p.stop_damping += (-stop.stiffness_n_m * f.elongation_m - f.stop_n) * f.speed_m_s;
     }
     let pressure_rate = match &muscle.drive {
         Drive::Hydraulic { chain, syringe_area_m2, plunger } => {
