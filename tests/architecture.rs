@@ -14,12 +14,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
     ("hysteresis", &["scalar"]),
-    ("scene", &["hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar"]),
-    ("system", &["hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
-    ("identify", &["recording", "scalar", "scene", "system"]),
-    ("report", &["recording"]),
+    ("effects", &["scalar"]),
+    ("scene", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar"]),
+    ("system", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
+    ("identify", &["effects", "recording", "scalar", "scene", "system"]),
+    ("diagnose", &["effects", "identify", "recording", "scalar", "scene", "system"]),
+    ("report", &["diagnose", "recording"]),
     ("view", &["mechanism", "system"]),
-    ("cli", &["identify", "mechanism", "recording", "report", "scene", "system", "view"]),
+    ("cli", &["diagnose", "effects", "identify", "mechanism", "recording", "report", "scene", "system", "view"]),
 ];
 
 /// Crates that belong to one folder: names as they stand in Rust paths, and the folder.

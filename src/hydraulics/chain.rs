@@ -7,7 +7,7 @@ use crate::scalar::Scalar;
 ///
 /// ```text
 /// C_0 dp_0/dt = Q_in - Q_1
-/// I dQ_j/dt   = p_(j-1) - p_j - R Q_j
+/// I dQ_j/dt   = p_(j-1) - p_j - R Q_j - q Q_j |Q_j|
 /// C_j dp_j/dt = Q_j - Q_(j+1)          (Q_(N+1): what the muscle takes)
 /// ```
 /// Gauge pressures in Pa, flows in m³/s positive towards the muscle. A node at the vapour pressure keeps it and
@@ -18,6 +18,8 @@ pub struct Chain<D> {
     pub compliance_m3_pa: Vec<D>,
     /// Resistance of one segment, Pa s/m³.
     pub resistance_pa_s_m3: D,
+    /// Quadratic loss of one segment, `q Q |Q|`, Pa s²/m⁶.
+    pub quadratic_pa_s2_m6: D,
     /// Inertance of one segment, Pa s²/m³.
     pub inertance_pa_s2_m3: D,
     /// Gauge pressure at which the fluid boils, Pa.
@@ -66,6 +68,7 @@ impl<D: Scalar> Chain<D> {
         Self {
             compliance_m3_pa: compliance,
             resistance_pa_s_m3: D::constant(line.resistance_pa_s_m3(fluid) / n as f64),
+            quadratic_pa_s2_m6: D::constant(0.0),
             inertance_pa_s2_m3: D::constant(line.inertance_pa_s2_m3(fluid) / n as f64),
             cavitation_pressure_pa: fluid.cavitation_gauge_pressure_pa(),
         }
@@ -104,7 +107,9 @@ impl<D: Scalar> Chain<D> {
         }
         for j in 0..n {
             let drop = state.pressure_pa[j] - state.pressure_pa[j + 1];
-            out.flow_m3_s2[j] = (drop - self.resistance_pa_s_m3 * state.flow_m3_s[j]) / self.inertance_pa_s2_m3;
+            let flow = state.flow_m3_s[j];
+            let resistance = self.resistance_pa_s_m3 + self.quadratic_pa_s2_m6 * flow.abs();
+            out.flow_m3_s2[j] = (drop - resistance * flow) / self.inertance_pa_s2_m3;
         }
     }
 
@@ -138,9 +143,10 @@ impl<D: Scalar> Chain<D> {
         elastic + kinetic
     }
 
-    /// Power lost to viscosity, `sum R Q²`, W.
+    /// Power lost to viscosity, `sum (R + q |Q|) Q²`, W.
     pub fn dissipation_w(&self, state: &ChainState<D>) -> D {
-        state.flow_m3_s.iter().map(|&q| self.resistance_pa_s_m3 * q * q).sum()
+        let resistance = |q: D| self.resistance_pa_s_m3 + self.quadratic_pa_s2_m6 * q.abs();
+        state.flow_m3_s.iter().map(|&q| resistance(q) * q * q).sum()
     }
 }
 
@@ -247,7 +253,8 @@ impl<D: Scalar> ChainSolver<D> {
                 self.sigma[j] = over_compliance * self.pivot_node[j];
             }
             if j < n {
-                let pivot = over_inertance * (chain.resistance_pa_s_m3 + self.sigma[j]) + 1.0;
+                let slope = chain.resistance_pa_s_m3 + chain.quadratic_pa_s2_m6 * state.flow_m3_s[j].abs() * 2.0;
+                let pivot = over_inertance * (slope + self.sigma[j]) + 1.0;
                 self.pivot_flow[j] = pivot.recip();
                 self.t[j] = over_inertance * self.pivot_flow[j];
             }

@@ -100,6 +100,7 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
         place.positive("derivative_window_s", axis.derivative_window_s)?;
     }
     check_outputs(scene, file)?;
+    super::check_effects::check(scene, file)?;
     Ok(programs)
 }
 

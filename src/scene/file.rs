@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::effects::EffectTable;
 use crate::hydraulics::{Fluid, Line, Syringe};
 use crate::hysteresis::DisplacementModel;
 use crate::mechanism::{MechanismSpec, RouteSpec};
@@ -32,6 +33,9 @@ pub struct SceneFile {
     pub cable: Vec<CableSpec>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<LoadSpec>,
+    /// Physics beyond the stock rig, from the catalogue (`smam effects`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effect: Vec<EffectTable>,
     /// An axis moved at a recorded position that answers with a force; stands alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<AxisSpec>,

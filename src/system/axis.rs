@@ -1,28 +1,124 @@
 //! An axis moved at a recorded position that answers with a force.
 
+use crate::effects::{Effect, Kind};
+use crate::recording::PiecewiseLinear;
+use crate::scalar::Scalar;
 use crate::scene::AxisSpec;
-
-use super::InputSource;
 
 /// `F = F0 + A p + c v + m a`, with `v` and `a` as central differences of the recorded position over a window `w`:
 /// `v = (x(t + w/2) - x(t - w/2))/w`, `a = (x(t + w) - 2 x(t) + x(t - w))/w²`. A window of a few samples keeps the
 /// position's quantisation out of them.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub(super) struct Axis {
     pub spec: AxisSpec,
     pub position: usize,
     pub pressure: Option<usize>,
 }
 
+/// The numbers of an axis, over any scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AxisNumbers<D> {
+    piston_area_m2: D,
+    mass_kg: D,
+    damping_n_s_m: D,
+    offset_n: D,
+}
+
+/// Which number of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisNumber {
+    PistonArea,
+    Mass,
+    Damping,
+    Offset,
+}
+
+/// The axis at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct AxisMotion {
+    pub position_m: f64,
+    pub speed_m_s: f64,
+    pub acceleration_m_s2: f64,
+    pub pressure_pa: f64,
+}
+
 impl Axis {
-    /// Force at a time, N.
-    pub fn force_n(&self, inputs: &[InputSource], time_s: f64) -> f64 {
-        let s = &self.spec;
-        let w = s.derivative_window_s;
-        let x = |t: f64| inputs[self.position].value(t);
-        let speed = (x(time_s + w / 2.0) - x(time_s - w / 2.0)) / w;
-        let acceleration = (x(time_s + w) - 2.0 * x(time_s) + x(time_s - w)) / (w * w);
-        let pressure = self.pressure.map_or(0.0, |i| inputs[i].value(time_s));
-        s.offset_n + s.piston_area_m2 * pressure + s.damping_n_s_m * speed + s.mass_kg * acceleration
+    /// The scene's numbers.
+    pub fn numbers<D: Scalar>(&self) -> AxisNumbers<D> {
+        AxisNumbers {
+            piston_area_m2: D::constant(self.spec.piston_area_m2),
+            mass_kg: D::constant(self.spec.mass_kg),
+            damping_n_s_m: D::constant(self.spec.damping_n_s_m),
+            offset_n: D::constant(self.spec.offset_n),
+        }
+    }
+
+    /// The motion at a time, from the inputs as functions of time.
+    pub fn motion_at(&self, input: impl Fn(usize, f64) -> f64, time_s: f64) -> AxisMotion {
+        let w = self.spec.derivative_window_s;
+        let x = |t: f64| input(self.position, t);
+        AxisMotion {
+            position_m: x(time_s),
+            speed_m_s: (x(time_s + w / 2.0) - x(time_s - w / 2.0)) / w,
+            acceleration_m_s2: (x(time_s + w) - 2.0 * x(time_s) + x(time_s - w)) / (w * w),
+            pressure_pa: self.pressure.map_or(0.0, |i| input(i, time_s)),
+        }
+    }
+
+    /// The motion at sampled times.
+    pub fn motion(&self, times_s: &[f64], inputs: &[Vec<f64>]) -> Vec<AxisMotion> {
+        let lines: Vec<Option<PiecewiseLinear>> = inputs.iter().map(|x| PiecewiseLinear::new(times_s, x)).collect();
+        let value = |i: usize, t: f64| lines[i].as_ref().map_or(0.0, |l| l.value(t));
+        times_s.iter().map(|&t| self.motion_at(value, t)).collect()
+    }
+}
+
+impl<D: Scalar> AxisNumbers<D> {
+    /// Replaces one number.
+    pub fn put(&mut self, which: AxisNumber, value: D) {
+        match which {
+            AxisNumber::PistonArea => self.piston_area_m2 = value,
+            AxisNumber::Mass => self.mass_kg = value,
+            AxisNumber::Damping => self.damping_n_s_m = value,
+            AxisNumber::Offset => self.offset_n = value,
+        }
+    }
+
+    /// Force without friction, N.
+    pub fn force_n(&self, m: &AxisMotion) -> D {
+        self.offset_n
+            + self.piston_area_m2 * m.pressure_pa
+            + self.damping_n_s_m * m.speed_m_s
+            + self.mass_kg * m.acceleration_m_s2
+    }
+}
+
+/// Dry friction of the axis' seals: `(F_c + f_p p) z`, `dz/dx = (sgn - z)/s` along the recorded way.
+#[derive(Clone, Debug)]
+pub(super) struct AxisFriction<D> {
+    /// Level, growth with pressure, presliding; state.
+    seals: Vec<([D; 3], D)>,
+    position_m: Option<f64>,
+}
+
+impl<D: Scalar> AxisFriction<D> {
+    /// The seals among the effects of a scene.
+    pub fn of(effects: &[Effect<D>]) -> Self {
+        let seals = effects.iter().filter(|e| e.kind == Kind::SealFriction);
+        let numbers = seals.filter_map(|e| e.values.first_chunk::<3>().copied());
+        Self { seals: numbers.map(|n| (n, D::constant(0.0))).collect(), position_m: None }
+    }
+
+    /// Force, N, after the axis went on to its present position; instants must come in order.
+    pub fn force_n(&mut self, m: &AxisMotion) -> D {
+        let way = m.position_m - self.position_m.replace(m.position_m).unwrap_or(m.position_m);
+        let mut force = D::constant(0.0);
+        for ([level, growth, presliding], z) in &mut self.seals {
+            // Exact on a straight way: z goes to the direction by exp(-|dx|/s).
+            let left = (-(presliding.recip() * way.abs())).exp();
+            *z = (*z - way.signum()) * left + way.signum();
+            force += (*level + *growth * m.pressure_pa.max(0.0)) * *z;
+        }
+        force
     }
 }

@@ -8,6 +8,8 @@ use crate::scene::{CableSpec, MuscleSpec, MusclesSpec, Scene, TubeSpec, WallSpec
 
 use super::SystemError;
 use super::elastic::Elastic;
+use super::extras::{MechanismExtras, MuscleExtras};
+use super::install::{Site, install, settle_memory};
 use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant, PlantState};
 
 /// A plant with its starting state, and how its parts hang on the mechanism.
@@ -56,7 +58,12 @@ impl Builder<'_> {
     fn build(&self, displaced: bool) -> Result<Built, SystemError> {
         let (cables, routes) = self.cables()?;
         let mut built = Built {
-            plant: Plant { coordinates: self.coordinates()?, muscles: Vec::new(), cables },
+            plant: Plant {
+                coordinates: self.coordinates()?,
+                muscles: Vec::new(),
+                cables,
+                mechanism: MechanismExtras::default(),
+            },
             state: self.start(),
             path_0_m: vec![0.0; routes.len()],
             start_offset_m: vec![0.0; routes.len()],
@@ -77,6 +84,7 @@ impl Builder<'_> {
             }
         }
         self.settle_cables(&mut built);
+        self.install_effects(&mut built)?;
         Ok(built)
     }
 
@@ -132,7 +140,16 @@ impl Builder<'_> {
         }
         let pre = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.pre_elongation_ratio * m.rest_length_m);
         y[self.joints..].fill(pre);
-        PlantState { w: vec![0.0; self.dim], y, chains: Vec::new(), z: Vec::new() }
+        PlantState {
+            w: vec![0.0; self.dim],
+            y,
+            chains: Vec::new(),
+            z: Vec::new(),
+            joint_z: Vec::new(),
+            slow: Vec::new(),
+            greatest_j: Vec::new(),
+            piston_ahead_m: Vec::new(),
+        }
     }
 
     fn cables(&self) -> Result<(Vec<CablePlant<f64>>, Vec<Route>), SystemError> {
@@ -166,6 +183,7 @@ impl Builder<'_> {
             stretch_0_m: 0.0,
             jacobian,
             drive,
+            friction: None,
         }
     }
 
@@ -246,6 +264,8 @@ impl Builder<'_> {
             stop: stop.map(|s| Stop { stiffness_n_m: s.stiffness_n_m, damping_n_s_m: s.damping_n_s_m }),
             jacobian,
             elongation_0_m: elongation_0,
+            extras: MuscleExtras::default(),
+            slow_at: 0,
         });
         built.state.chains.push(chain_state);
         built.state.z.push(0.0);
@@ -282,6 +302,24 @@ impl Builder<'_> {
         built.displacements.push(Displacement { muscle, plunger, input });
         built.muscle_index.push(None);
         built.end_coordinate.push(None);
+        Ok(())
+    }
+
+    /// Where the mechanism's effects act; every coordinate of a full scene is one hinge.
+    fn site(&self, plant: &Plant<f64>) -> Site {
+        let wraps = self.scene.file.cable.iter().map(|c| c.sheath_angle_rad).collect();
+        Site::of(plant, self.joints, vec![1; self.dim], wraps)
+    }
+
+    fn install_effects(&self, built: &mut Built) -> Result<(), SystemError> {
+        let site = self.site(&built.plant);
+        for (i, table) in self.scene.file.effect.iter().enumerate() {
+            let effect = table
+                .effect()
+                .map_err(|e| self.error(format!("[[effect]] {} \"{}\"", i + 1, table.name), e.message, e.remedy))?;
+            install(&mut built.plant, &site, &effect);
+        }
+        settle_memory(&mut built.plant, &mut built.state);
         Ok(())
     }
 

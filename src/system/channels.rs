@@ -1,9 +1,11 @@
 //! Channels of a running scene: what each output column reads.
 
+use crate::effects::{Effect, SensorHistory};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
-use super::axis::Axis;
+use super::axis::{Axis, AxisFriction, AxisNumbers};
+use super::twin::sensor;
 use super::plant::Drive;
 use super::{Simulation, SystemError};
 
@@ -22,7 +24,7 @@ enum Reader {
         axis: usize,
         frame: Option<usize>,
     },
-    Axis(Axis),
+    Axis(Axis, AxisFriction<f64>),
     /// Elongation of a displacement model: the pseudo-input that carries it.
     Displacement(usize),
 }
@@ -32,7 +34,7 @@ enum Reader {
 pub(super) struct Channels {
     /// Of each input: SI units in one of its unit.
     input_factors: Vec<f64>,
-    readers: Vec<(Reader, f64)>,
+    readers: Vec<(Reader, f64, Vec<SensorHistory<f64>>)>,
     pub names: Vec<String>,
 }
 
@@ -48,26 +50,30 @@ impl Channels {
         }
         let mut readers = Vec::new();
         for output in &scene.file.output {
-            readers.push((reader(simulation, output)?, parse_column(&output.channel)?.unit.factor));
+            let sensors = sensors(scene, &output.channel);
+            readers.push((reader(simulation, output)?, parse_column(&output.channel)?.unit.factor, sensors));
             names.push(output.channel.clone());
         }
         Ok(Self { input_factors, readers, names })
     }
 
     /// Values of all columns now, inputs first, each in its own unit.
-    pub(super) fn read(&self, simulation: &Simulation, out: &mut Vec<f64>) {
+    ///
+    /// Instants must come in order: sensors and frictions remember.
+    pub(super) fn read(&mut self, simulation: &Simulation, out: &mut Vec<f64>) {
         out.clear();
         for (input, factor) in simulation.inputs.iter().zip(&self.input_factors) {
             out.push(input.value(simulation.time_s) / factor);
         }
-        for (reader, factor) in &self.readers {
-            out.push(reader.value_si(simulation) / factor);
+        for (reader, factor, sensors) in &mut self.readers {
+            let value = reader.value_si(simulation) / *factor;
+            out.push(sensors.iter_mut().fold(value, |value, s| s.show(simulation.time_s, value)));
         }
     }
 }
 
 impl Reader {
-    fn value_si(&self, simulation: &Simulation) -> f64 {
+    fn value_si(&mut self, simulation: &Simulation) -> f64 {
         let (plant, state) = (&simulation.built.plant, &simulation.built.state);
         let spans = &simulation.end_spans();
         match self {
@@ -79,13 +85,17 @@ impl Reader {
                 Drive::Pressure { .. } => plant.muscle_pressure(*m, state, spans, 0.0),
             },
             Self::Tension(c) => plant.cable(*c, state, spans, 0.0).2,
-            Self::Joints(joints, constant) => constant + joints.iter().map(|&j| state.y[j]).sum::<f64>(),
+            Self::Joints(joints, constant) => *constant + joints.iter().map(|&j| state.y[j]).sum::<f64>(),
             Self::Body { body, axis, frame } => simulation.mechanism.as_ref().map_or(f64::NAN, |mechanism| {
                 let poses = mechanism.link_poses();
                 let position = poses[*body].translation_m;
                 frame.map_or(position, |f| poses[f].to_local(position))[*axis]
             }),
-            Self::Axis(axis) => axis.force_n(&simulation.inputs, simulation.time_s),
+            Self::Axis(axis, friction) => {
+                let motion = axis.motion_at(|i, t| simulation.inputs[i].value(t), simulation.time_s);
+                let numbers: AxisNumbers<f64> = axis.numbers();
+                numbers.force_n(&motion) + friction.force_n(&motion)
+            }
             Self::Displacement(input) => spans[*input].value,
         }
     }
@@ -121,11 +131,24 @@ fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
         Quantity::BodyX => body(simulation, output, 0)?,
         Quantity::BodyY => body(simulation, output, 1)?,
         Quantity::BodyZ => body(simulation, output, 2)?,
-        Quantity::AxisForce => Reader::Axis(axis(scene).ok_or_else(|| no_such(scene, output, "an [axis]"))?),
+        Quantity::AxisForce => {
+            let axis = axis(scene).ok_or_else(|| no_such(scene, output, "an [axis]"))?;
+            Reader::Axis(axis, AxisFriction::of(&effects(scene)))
+        }
     })
 }
 
-fn axis(scene: &Scene) -> Option<Axis> {
+/// Effects of a scene; it has been checked that each table is one.
+fn effects(scene: &Scene) -> Vec<Effect<f64>> {
+    scene.file.effect.iter().filter_map(|t| t.effect().ok()).collect()
+}
+
+fn sensors(scene: &Scene, channel: &str) -> Vec<SensorHistory<f64>> {
+    let own = effects(scene).into_iter().filter(|e| e.channel.as_deref() == Some(channel));
+    own.filter_map(|e| sensor(&e)).map(SensorHistory::new).collect()
+}
+
+pub(super) fn axis(scene: &Scene) -> Option<Axis> {
     let spec = scene.file.axis.clone()?;
     let input = |name: &str| scene.file.input.iter().position(|i| i.channel == name);
     let position = input(&spec.position_input)?;

@@ -1,5 +1,6 @@
 //! The conservative part of a muscle: what it pulls with at an elongation and a pressure.
 
+use crate::effects::Mullins;
 use crate::muscle::{Coil, Wall, WallCondition};
 use crate::scalar::Scalar;
 
@@ -55,6 +56,27 @@ impl<D: Scalar> Elastic<D> {
                 area_m2: -*pressure_gain_m2,
                 compliance_m3_pa: D::constant(0.0),
             },
+        }
+    }
+
+    /// The law with the wall softened by its first stretch; `greatest_j` is the greatest energy it had, J.
+    ///
+    /// A wall off its coil and a muscle known by its stiffness alone are softened as a whole.
+    pub fn softened(&self, e: D, p: D, mullins: Option<&Mullins<D>>, greatest_j: D) -> ElasticPoint<D> {
+        let mut point = self.at(e, p);
+        let (Some(law), Self::Tube { wall, .. }) = (mullins, self) else { return point };
+        let (pull, stiffness) = wall.pull_and_stiffness(e);
+        let (factor, slope) = law.factor(wall.energy_j(e), greatest_j);
+        point.pull_n += pull * (factor - 1.0);
+        point.stiffness_n_m += stiffness * (factor - 1.0) + pull * pull * slope;
+        point
+    }
+
+    /// Elastic energy of the wall alone, J; zero for a muscle without one.
+    pub fn wall_energy_j(&self, e: D) -> D {
+        match self {
+            Self::Tube { wall, .. } => wall.energy_j(e),
+            Self::Linear { .. } => D::constant(0.0),
         }
     }
 

@@ -40,7 +40,7 @@ impl Simulation {
     }
 
     /// The present instant.
-    pub(super) fn frame(&self, channels: &Channels, events: Vec<String>) -> Frame {
+    pub(super) fn frame(&self, channels: &mut Channels, events: Vec<String>) -> Frame {
         let mut values = Vec::new();
         channels.read(self, &mut values);
         let joints = self.mechanism.as_ref().map_or(0, |m| m.coordinates().len());

@@ -11,19 +11,27 @@ mod energy;
 mod error;
 mod events;
 mod expect;
+mod extras;
 mod graph;
 mod inputs;
+mod install;
 mod ldl;
+mod lift;
 pub mod observe;
 mod plant;
 mod rosenbrock;
 mod run;
 mod simulation;
+mod twin;
 
+pub use axis::AxisNumber;
 pub use elastic::{Elastic, ElasticPoint};
 pub use energy::EnergyBook;
 pub use error::SystemError;
 pub use events::Warnings;
+pub use extras::{
+    AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras,
+};
 pub use expect::{Verdict, judge};
 pub use inputs::InputSource;
 pub use plant::{
@@ -33,3 +41,4 @@ pub use plant::{
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;
+pub use twin::{Twin, TwinParameter, TwinRun, TwinSetting};

@@ -10,6 +10,7 @@ use crate::muscle::{Friction, Stop};
 use crate::scalar::Scalar;
 
 use super::elastic::Elastic;
+use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
 
 /// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
 #[derive(Clone, Debug)]
@@ -95,6 +96,9 @@ pub struct MusclePlant<D> {
     /// `d elongation / d y`; elongation is `elongation_0 + jacobian . y`.
     pub jacobian: Vec<f64>,
     pub elongation_0_m: f64,
+    /// What effects add, and where its slow states begin in [`PlantState::slow`].
+    pub extras: MuscleExtras<D>,
+    pub slow_at: usize,
 }
 
 /// A cable that pulls when stretched: `stretch = stretch_0 + jacobian . y + drive(t)`.
@@ -106,6 +110,7 @@ pub struct CablePlant<D> {
     pub jacobian: Vec<f64>,
     /// An input that pulls at the cable's near end, and how much stretch one unit of it makes, m per input unit.
     pub drive: Option<(usize, f64)>,
+    pub friction: Option<CableFriction<D>>,
 }
 
 /// The whole system.
@@ -114,6 +119,7 @@ pub struct Plant<D> {
     pub coordinates: Coordinates<D>,
     pub muscles: Vec<MusclePlant<D>>,
     pub cables: Vec<CablePlant<D>>,
+    pub mechanism: MechanismExtras<D>,
 }
 
 /// State of a [`Plant`].
@@ -126,6 +132,13 @@ pub struct PlantState<D> {
     pub chains: Vec<ChainState<D>>,
     /// Friction state of each muscle, -1..=1 for the stock law.
     pub z: Vec<D>,
+    /// Frictions of the mechanism, then the sliding state of each cable.
+    pub joint_z: Vec<D>,
+    /// Slow states of all muscles' effects, m.
+    pub slow: Vec<D>,
+    /// Of each muscle: the greatest energy of its wall so far, J, and how far its piston is ahead of the plunger, m.
+    pub greatest_j: Vec<D>,
+    pub piston_ahead_m: Vec<D>,
 }
 
 /// Inputs over one fine step: their value at its start and the (constant) slope, SI.
@@ -164,9 +177,25 @@ impl<D: Scalar> MuscleForces<D> {
 
 impl<D: Scalar> MusclePlant<D> {
     /// The forces at elongation, speed, pressure and friction state.
-    pub fn forces(&self, elongation_m: D, speed_m_s: D, pressure_pa: D, z: D) -> MuscleForces<D> {
-        let law = self.elastic.at(elongation_m, pressure_pa);
+    ///
+    /// `slow` are the muscle's slow states, `greatest_j` the greatest energy of its wall so far.
+    pub fn forces(
+        &self,
+        elongation_m: D,
+        speed_m_s: D,
+        pressure_pa: D,
+        z: D,
+        slow: &[D],
+        greatest_j: D,
+    ) -> MuscleForces<D> {
         let zero = D::constant(0.0);
+        let (law, (extra_n, extra_k)) = if self.has_extras() {
+            let seen = elongation_m - self.extras.set_m(slow);
+            let law = self.elastic.softened(seen, pressure_pa, self.extras.mullins.as_ref(), greatest_j);
+            (law, self.extras.pull_and_stiffness(elongation_m, slow))
+        } else {
+            (self.elastic.at(elongation_m, pressure_pa), (zero, zero))
+        };
         let friction_n = self.friction.as_ref().map_or(zero, |f| f.force_n(z, pressure_pa));
         let stop = self.stop.as_ref().map(|s| s.push(elongation_m, speed_m_s));
         let (stop_n, stop_k) = stop.map_or((zero, zero), |s| (s.push_n, -s.dpush_de));
@@ -174,14 +203,35 @@ impl<D: Scalar> MusclePlant<D> {
             elongation_m,
             speed_m_s,
             pressure_pa,
-            elastic_n: law.pull_n,
+            elastic_n: law.pull_n + extra_n,
             friction_n,
             damping_n: self.damping_n_s_m * speed_m_s,
             stop_n,
-            stiffness_n_m: law.stiffness_n_m + stop_k,
+            stiffness_n_m: law.stiffness_n_m + stop_k + extra_k,
             area_m2: law.area_m2,
-            port: Port { outflow_m3_s: law.area_m2 * speed_m_s, compliance_m3_pa: law.compliance_m3_pa },
+            port: self.port(&law, speed_m_s, pressure_pa),
         }
+    }
+
+    fn has_extras(&self) -> bool {
+        let x = &self.extras;
+        !x.branches.is_empty() || x.mullins.is_some() || x.preload.is_some() || x.plastic.is_some()
+    }
+
+    fn port(&self, law: &super::ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
+        let (mut outflow_m3_s, mut compliance_m3_pa) = (law.area_m2 * speed_m_s, law.compliance_m3_pa);
+        let x = &self.extras;
+        if x.air.is_some() || x.leak_m3_s_pa.is_some() || x.growth_m3_s.is_some() {
+            let (compliance, flow) = x.line_load(pressure_pa);
+            compliance_m3_pa += compliance;
+            outflow_m3_s += flow;
+        }
+        Port { outflow_m3_s, compliance_m3_pa }
+    }
+
+    /// The muscle's part of [`PlantState::slow`].
+    pub(super) fn slow<'a>(&self, state: &'a PlantState<D>) -> &'a [D] {
+        &state.slow[self.slow_at..self.slow_at + self.extras.slow_states()]
     }
 }
 
@@ -210,7 +260,8 @@ impl<D: Scalar> Plant<D> {
         let m = &self.muscles[muscle];
         let pressure = self.muscle_pressure(muscle, state, inputs, elapsed_s);
         let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;
-        m.forces(elongation, dot(&m.jacobian, &state.w), pressure, state.z[muscle])
+        let speed = dot(&m.jacobian, &state.w);
+        m.forces(elongation, speed, pressure, state.z[muscle], m.slow(state), state.greatest_j[muscle])
     }
 
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.

@@ -16,8 +16,10 @@
 //! friction states are local, so what remains is a symmetric matrix of the size of the mechanism.
 
 use crate::hydraulics::{ChainRates, ChainSolver, ChainState};
+use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
+use super::extras::CableFriction;
 use super::ldl::Ldl;
 use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
 
@@ -34,6 +36,16 @@ struct Rates<D> {
     w: Vec<D>,
     chains: Vec<ChainRates<D>>,
     z: Vec<D>,
+    joint_z: Vec<D>,
+    slow: Vec<D>,
+}
+
+/// Tangent of one dry friction of the mechanism or along a cable.
+#[derive(Clone, Copy, Debug)]
+struct FrictionTangent<D> {
+    force_per_z: D,
+    rate_per_z: D,
+    rate_per_v: D,
 }
 
 /// Tangent of one muscle, frozen for both stages.
@@ -62,6 +74,9 @@ pub struct Stepper<D> {
     k2: Rates<D>,
     solvers: Vec<ChainSolver<D>>,
     tangents: Vec<MuscleTangent<D>>,
+    frictions: Vec<FrictionTangent<D>>,
+    /// Speed of each piston over the step, m/s: that of the plunger unless there is play.
+    piston_m_s: Vec<D>,
     /// Which cables pull, and which stops are met, where the tangents were taken.
     taut: Vec<bool>,
     met: Vec<bool>,
@@ -86,7 +101,10 @@ impl<D: Scalar> Stepper<D> {
             w: vec![zero; n],
             chains: state.chains.iter().map(ChainState::zero_rates).collect(),
             z: vec![zero; state.z.len()],
+            joint_z: vec![zero; state.joint_z.len()],
+            slow: vec![zero; state.slow.len()],
         };
+        let friction = FrictionTangent { force_per_z: zero, rate_per_z: zero, rate_per_v: zero };
         let tangent = MuscleTangent {
             stiffness: zero,
             damping: zero,
@@ -104,6 +122,8 @@ impl<D: Scalar> Stepper<D> {
             k2: rates,
             solvers: state.chains.iter().map(|c| ChainSolver::new(c.flow_m3_s.len())).collect(),
             tangents: vec![tangent; plant.muscles.len()],
+            frictions: vec![friction; state.joint_z.len()],
+            piston_m_s: vec![zero; plant.muscles.len()],
             taut: vec![false; plant.cables.len()],
             met: vec![false; plant.coordinates.stops.len()],
             touching: false,
@@ -125,7 +145,8 @@ impl<D: Scalar> Stepper<D> {
     /// Advances `state` by `h` seconds; `inputs` start at the step's beginning.
     pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
         let g = GAMMA * h;
-        let switches = rates(plant, state, inputs, 0.0, &mut self.r);
+        self.move_pistons(plant, state, inputs, h);
+        let switches = rates(plant, state, inputs, &self.piston_m_s, 0.0, &mut self.r);
         if switches != self.switches || self.age >= KEEP || h != self.tangent_step_s {
             self.linearise(plant, state, inputs, g);
             (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
@@ -133,7 +154,7 @@ impl<D: Scalar> Stepper<D> {
         self.age += 1;
         self.solve(plant, state, g, Stage::First);
         move_to(&mut self.middle, state, &self.k1, h);
-        rates(plant, &self.middle, inputs, h, &mut self.r);
+        rates(plant, &self.middle, inputs, &self.piston_m_s, h, &mut self.r);
         self.subtract_first_stage(plant);
         self.solve(plant, state, g, Stage::Second);
         advance(state, &self.k1, 1.5 * h);
@@ -142,6 +163,23 @@ impl<D: Scalar> Stepper<D> {
             if let Drive::Hydraulic { chain, .. } = &muscle.drive {
                 chain.settle_vapour(chain_state);
             }
+        }
+        remember_greatest(plant, state);
+    }
+
+    /// Where the pistons are at the end of the step, and how fast they go there.
+    fn move_pistons(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
+        for (i, muscle) in plant.muscles.iter().enumerate() {
+            let Drive::Hydraulic { plunger, .. } = &muscle.drive else { continue };
+            let span = inputs[*plunger];
+            let Some(play) = &muscle.extras.backlash else {
+                self.piston_m_s[i] = D::constant(span.slope);
+                continue;
+            };
+            let before = state.piston_ahead_m[i];
+            let after = play.follow(before, h * span.slope);
+            self.piston_m_s[i] = (after - before) / h + span.slope;
+            state.piston_ahead_m[i] = after;
         }
     }
 
@@ -158,12 +196,23 @@ impl<D: Scalar> Stepper<D> {
         for i in 0..plant.muscles.len() {
             self.tangents[i] = tangent(plant, i, state, inputs, &mut self.solvers[i], g);
         }
-        self.assemble(plant, g);
+        for (i, friction) in plant.mechanism.frictions.iter().enumerate() {
+            let speed = dot(&friction.direction, &state.w);
+            self.frictions[i] = friction_tangent(&friction.law, state.joint_z[i], speed);
+        }
+        let first = plant.mechanism.frictions.len();
+        for (i, cable) in plant.cables.iter().enumerate() {
+            if let Some(friction) = &cable.friction {
+                let tension = plant.cable(i, state, inputs, 0.0).2;
+                self.frictions[first + i] = sliding_tangent(friction, state, state.joint_z[first + i], tension);
+            }
+        }
+        self.assemble(plant, state, g);
         self.ldl.factorise(&self.matrix);
     }
 
     /// `M + g D + g² K`, with cables and muscles as rank-one terms.
-    fn assemble(&mut self, plant: &Plant<D>, g: f64) {
+    fn assemble(&mut self, plant: &Plant<D>, state: &PlantState<D>, g: f64) {
         let c = &plant.coordinates;
         let n = plant.dim();
         self.matrix.copy_from_slice(&c.inertia);
@@ -187,6 +236,15 @@ impl<D: Scalar> Stepper<D> {
             let pressure = t.pull_per_pressure * t.sigma * t.area * g;
             let friction = t.pull_per_z * t.rate_per_v * (g * g) / (-(t.rate_per_z * g) + 1.0);
             add_outer(&mut self.matrix, &muscle.jacobian, t.damping * g + t.stiffness * (g * g) + pressure + friction);
+        }
+        for w in &plant.mechanism.walls {
+            if w.wall.is_met(dot(&w.direction, &state.y)) {
+                add_outer(&mut self.matrix, &w.direction, w.wall.stiffness_n_m_rad * (g * g));
+            }
+        }
+        for (direction, t) in dry_frictions(plant).zip(&self.frictions) {
+            let scale = t.force_per_z * t.rate_per_v * (g * g) / (-(t.rate_per_z * g) + 1.0);
+            add_outer(&mut self.matrix, direction, scale);
         }
     }
 
@@ -219,6 +277,16 @@ impl<D: Scalar> Stepper<D> {
             let along = (t.pull_per_pressure * self.rho[i] - spring - friction) * g;
             add_scaled(&mut self.right, &muscle.jacobian, along);
         }
+        for w in &plant.mechanism.walls {
+            if w.wall.is_met(dot(&w.direction, &state.y)) {
+                let along = dot(&w.direction, &r.y) * w.wall.stiffness_n_m_rad * g;
+                add_scaled(&mut self.right, &w.direction, -along);
+            }
+        }
+        for (i, (direction, t)) in dry_frictions(plant).zip(&self.frictions).enumerate() {
+            let along = t.force_per_z * r.joint_z[i] / (-(t.rate_per_z * g) + 1.0) * g;
+            add_scaled(&mut self.right, direction, -along);
+        }
         k.w.copy_from_slice(&self.right);
         self.ldl.solve(&mut k.w);
         for i in 0..plant.dim() {
@@ -235,6 +303,12 @@ impl<D: Scalar> Stepper<D> {
                 &mut k.chains[i],
             );
         }
+        for (i, (direction, t)) in dry_frictions(plant).zip(&self.frictions).enumerate() {
+            let acceleration = dot(direction, &k.w);
+            k.joint_z[i] = (r.joint_z[i] + t.rate_per_v * acceleration * g) / (-(t.rate_per_z * g) + 1.0);
+        }
+        // Slow states act back only through the forces, which are evaluated in full: no tangent needed.
+        k.slow.copy_from_slice(&r.slow);
     }
 
     /// Turns `F(u + h k1)` into the right-hand side of the second stage.
@@ -250,6 +324,12 @@ impl<D: Scalar> Stepper<D> {
             r.subtract_twice(k);
         }
         for (r, &k) in self.r.z.iter_mut().zip(&self.k1.z) {
+            *r -= k * 2.0;
+        }
+        for (r, &k) in self.r.joint_z.iter_mut().zip(&self.k1.joint_z) {
+            *r -= k * 2.0;
+        }
+        for (r, &k) in self.r.slow.iter_mut().zip(&self.k1.slow) {
             *r -= k * 2.0;
         }
     }
@@ -304,6 +384,7 @@ fn rates<D: Scalar>(
     plant: &Plant<D>,
     state: &PlantState<D>,
     inputs: &[InputSpan],
+    piston_m_s: &[D],
     elapsed_s: f64,
     out: &mut Rates<D>,
 ) -> Switches {
@@ -327,6 +408,16 @@ fn rates<D: Scalar>(
         let (_, _, tension) = plant.cable(i, state, inputs, elapsed_s);
         switches.note(tension.value() > 0.0);
         add_scaled(&mut out.w, &cable.jacobian, -tension);
+        if let Some(friction) = &cable.friction {
+            let at = plant.mechanism.frictions.len() + i;
+            let sliding = state.joint_z[at];
+            // What has been taken along the whole cable above, corrected to what arrives.
+            friction.shares(&state.y, sliding, |j, share| out.w[j] -= tension * (share - 1.0) * friction.far[j]);
+            out.joint_z[at] = friction.law.rate_1_s(sliding, friction.sliding_m_s(&state.w));
+        }
+        for coupling in plant.mechanism.couplings.iter().filter(|c| c.cable == i) {
+            add_scaled(&mut out.w, &coupling.direction, coupling.lever_m * tension);
+        }
     }
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let forces = plant.muscle_forces(i, state, inputs, elapsed_s);
@@ -335,13 +426,75 @@ fn rates<D: Scalar>(
         if let Some(friction) = &muscle.friction {
             out.z[i] = friction.rate(state.z[i], forces.speed_m_s);
         }
-        if let Drive::Hydraulic { chain, syringe_area_m2, plunger } = &muscle.drive {
-            let inflow = D::constant(syringe_area_m2 * inputs[*plunger].slope);
+        if let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive {
+            let inflow = piston_m_s[i] * *syringe_area_m2;
             chain.rates(&state.chains[i], inflow, forces.port, &mut out.chains[i]);
             state.chains[i].boiling.iter().for_each(|b| switches.note(*b));
         }
+        let slow = muscle.slow_at..muscle.slow_at + muscle.extras.slow_states();
+        if !slow.is_empty() {
+            muscle.extras.slow_rates(forces.elongation_m, &state.slow[slow.clone()], &mut out.slow[slow]);
+        }
     }
+    mechanism_rates(plant, state, out, &mut switches);
     switches
+}
+
+/// Dry frictions, walls and loads of the mechanism.
+fn mechanism_rates<D: Scalar>(plant: &Plant<D>, state: &PlantState<D>, out: &mut Rates<D>, switches: &mut Switches) {
+    let extras = &plant.mechanism;
+    for (i, friction) in extras.frictions.iter().enumerate() {
+        let zero = D::constant(0.0);
+        add_scaled(&mut out.w, &friction.direction, -friction.law.force_n(state.joint_z[i], zero));
+        out.joint_z[i] = friction.law.rate(state.joint_z[i], dot(&friction.direction, &state.w));
+    }
+    for w in &extras.walls {
+        let angle = dot(&w.direction, &state.y);
+        switches.note(w.wall.is_met(angle) && w.wall.stiffness_n_m_rad.value() != 0.0);
+        add_scaled(&mut out.w, &w.direction, w.wall.torque_n_m(angle));
+    }
+    for load in &extras.loads {
+        add_scaled(&mut out.w, &load.direction, load.force);
+    }
+}
+
+/// Directions of the dry frictions, in the order of [`PlantState::joint_z`].
+fn dry_frictions<D>(plant: &Plant<D>) -> impl Iterator<Item = &[f64]> {
+    let joints = plant.mechanism.frictions.iter().map(|f| f.direction.as_slice());
+    joints.chain(plant.cables.iter().map(|c| c.friction.as_ref().map_or(&[][..], |f| f.far.as_slice())))
+}
+
+fn friction_tangent<D: Scalar>(law: &Friction<D>, z: D, speed: D) -> FrictionTangent<D> {
+    let slopes = law.rate_jacobian(z, speed);
+    FrictionTangent { force_per_z: law.m0_n, rate_per_z: slopes.drate_dz, rate_per_v: slopes.drate_dv }
+}
+
+/// The sliding state grows as the far end is drawn in, against the levers' sign: two signs that cancel.
+fn sliding_tangent<D: Scalar>(
+    friction: &CableFriction<D>,
+    state: &PlantState<D>,
+    sliding: D,
+    tension: D,
+) -> FrictionTangent<D> {
+    let speed = friction.sliding_m_s(&state.w);
+    let pace = speed.abs() / friction.law.presliding_m;
+    let along = if speed.value() < 0.0 { sliding + 1.0 } else { -sliding + 1.0 };
+    FrictionTangent {
+        force_per_z: -friction.slope_n(&state.y, tension),
+        rate_per_z: -pace,
+        rate_per_v: -(along / friction.law.presliding_m),
+    }
+}
+
+/// Keeps the greatest energy of walls that soften.
+fn remember_greatest<D: Scalar>(plant: &Plant<D>, state: &mut PlantState<D>) {
+    for (i, muscle) in plant.muscles.iter().enumerate().filter(|(_, m)| m.extras.mullins.is_some()) {
+        let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+        let energy = muscle.elastic.wall_energy_j(elongation - muscle.extras.set_m(muscle.slow(state)));
+        if energy.value() > state.greatest_j[i].value() {
+            state.greatest_j[i] = energy;
+        }
+    }
 }
 
 /// Which of the plant's one-sided elements act, as one number (a collision only delays new tangents).
@@ -358,6 +511,9 @@ fn move_to<D: Scalar>(to: &mut PlantState<D>, from: &PlantState<D>, k: &Rates<D>
     to.y.copy_from_slice(&from.y);
     to.w.copy_from_slice(&from.w);
     to.z.copy_from_slice(&from.z);
+    to.joint_z.copy_from_slice(&from.joint_z);
+    to.slow.copy_from_slice(&from.slow);
+    to.greatest_j.copy_from_slice(&from.greatest_j);
     for (t, f) in to.chains.iter_mut().zip(&from.chains) {
         t.copy_from(f);
     }
@@ -372,6 +528,12 @@ fn advance<D: Scalar>(state: &mut PlantState<D>, k: &Rates<D>, h: f64) {
         *x += k * h;
     }
     for (x, &k) in state.z.iter_mut().zip(&k.z) {
+        *x += k * h;
+    }
+    for (x, &k) in state.joint_z.iter_mut().zip(&k.joint_z) {
+        *x += k * h;
+    }
+    for (x, &k) in state.slow.iter_mut().zip(&k.slow) {
         *x += k * h;
     }
     for (x, k) in state.chains.iter_mut().zip(&k.chains) {

@@ -45,7 +45,7 @@ pub fn run<O: Observer>(
 where
     O::Error: std::error::Error + 'static,
 {
-    let channels = Channels::new(simulation)?;
+    let mut channels = Channels::new(simulation)?;
     let mut warnings = Warnings::default();
     if let Some(&first) = schedule.0.first() {
         simulation.start_at(first);
@@ -59,14 +59,14 @@ where
             simulation.advance_to(time)?;
         }
         let events = warnings.look(simulation);
-        observer.frame(&simulation.frame(&channels, events)).map_err(RunError::Observer)?;
+        observer.frame(&simulation.frame(&mut channels, events)).map_err(RunError::Observer)?;
     }
     Ok(warnings)
 }
 
 /// Runs over the schedule and returns the recording: inputs first, then outputs, in their columns' units.
 pub fn record(simulation: &mut Simulation, schedule: &Schedule) -> Result<Recording, SystemError> {
-    let channels = Channels::new(simulation)?;
+    let mut channels = Channels::new(simulation)?;
     if let Some(&first) = schedule.0.first() {
         simulation.start_at(first);
     }

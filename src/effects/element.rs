@@ -1,0 +1,91 @@
+//! Elements of the chain, by the names that scenes and diagnoses use.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A link of the chain from the plunger to what is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ElementKind {
+    Syringe,
+    Line,
+    Muscle,
+    Cable,
+    Mechanism,
+    Sensor,
+}
+
+impl ElementKind {
+    /// All, along the chain.
+    pub const ALL: [Self; 6] =
+        [Self::Syringe, Self::Line, Self::Muscle, Self::Cable, Self::Mechanism, Self::Sensor];
+
+    /// Its name in scenes and answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Syringe => "syringe",
+            Self::Line => "line",
+            Self::Muscle => "muscle",
+            Self::Cable => "cable",
+            Self::Mechanism => "mechanism",
+            Self::Sensor => "sensor",
+        }
+    }
+
+    /// Whether a rig with two muscles has one for each.
+    pub fn is_numbered(self) -> bool {
+        matches!(self, Self::Syringe | Self::Line | Self::Muscle | Self::Cable)
+    }
+}
+
+/// An element of one rig: `line` where there is one, `line_1`, `line_2` where there are two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Element {
+    pub kind: ElementKind,
+    /// Counts from 0.
+    pub index: usize,
+    /// Whether the name carries the number.
+    pub is_numbered: bool,
+}
+
+impl Element {
+    /// Element `index` of `count` of its kind.
+    pub fn of(kind: ElementKind, index: usize, count: usize) -> Self {
+        Self { kind, index, is_numbered: count > 1 && kind.is_numbered() }
+    }
+
+    /// Reads `line`, `line_2`; `None` for anything else.
+    pub fn parse(text: &str) -> Option<Self> {
+        let plain = |name: &str| ElementKind::ALL.into_iter().find(|k| k.name() == name);
+        if let Some(kind) = plain(text) {
+            return Some(Self { kind, index: 0, is_numbered: false });
+        }
+        let (name, number) = text.rsplit_once('_')?;
+        let kind = plain(name).filter(|k| k.is_numbered())?;
+        let number: usize = number.parse().ok().filter(|n| *n >= 1)?;
+        Some(Self { kind, index: number - 1, is_numbered: true })
+    }
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.kind.name())?;
+        if self.is_numbered { write!(f, "_{}", self.index + 1) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_go_there_and_back() {
+        for name in ["syringe", "line_1", "muscle_2", "cable", "mechanism", "sensor"] {
+            assert_eq!(Element::parse(name).map(|e| e.to_string()).as_deref(), Some(name));
+        }
+        for wrong in ["", "line_0", "mechanism_1", "muscles", "line_x"] {
+            assert_eq!(Element::parse(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What a line may hold besides incompressible fluid.
+
+use crate::scalar::Scalar;
+
+/// Atmospheric pressure, Pa.
+const ATMOSPHERE_PA: f64 = 101_325.0;
+/// Where the law is cut off, as a share of the atmosphere above vacuum: the volume stays finite.
+const VACUUM_SHARE: f64 = 0.02;
+
+/// Air in the line, a polytropic gas of volume `V0` at `p = 0` gauge:
+///
+/// `V = V0 (p_atm/(p_atm + p))^(1/kappa)`, so `-dV/dp = V0/(kappa p_atm) (p_atm/(p_atm + p))^(1/kappa + 1)`.
+///
+/// `V0` m³, `kappa` 1 (isothermal) to 1.4 (adiabatic). Range: `p > -0.98 p_atm`; below, the compliance stays that
+/// of the bound. Source: ideal gas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrappedAir<D> {
+    pub free_volume_m3: D,
+    pub kappa: D,
+}
+
+impl<D: Scalar> TrappedAir<D> {
+    /// `-dV/dp`, m³/Pa.
+    pub fn compliance_m3_pa(&self, pressure_pa: D) -> D {
+        let absolute = pressure_pa / ATMOSPHERE_PA + 1.0;
+        let absolute = if absolute.value() > VACUUM_SHARE { absolute } else { D::constant(VACUUM_SHARE) };
+        // The isothermal law needs no power; its derivative to kappa is not carried, as kappa is then not fitted.
+        let share = if self.kappa.value() == 1.0 {
+            (absolute * absolute).recip()
+        } else {
+            (-(absolute.ln() * (self.kappa.recip() + 1.0))).exp()
+        };
+        self.free_volume_m3 / (self.kappa * ATMOSPHERE_PA) * share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compliance_is_the_slope_of_the_volume() {
+        for kappa in [1.0, 1.2, 1.4] {
+            let air = TrappedAir { free_volume_m3: 2e-9, kappa };
+            let volume = |p: f64| 2e-9 * (ATMOSPHERE_PA / (ATMOSPHERE_PA + p)).powf(1.0 / kappa);
+            for p in [-5e4, 0.0, 3e5, 2e6] {
+                let slope = (volume(p - 1.0) - volume(p + 1.0)) / 2.0;
+                assert!((air.compliance_m3_pa(p) / slope - 1.0).abs() < 1e-5, "kappa {kappa}, p {p}");
+            }
+        }
+    }
+}

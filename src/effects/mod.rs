@@ -1,0 +1,34 @@
+//! Physics that a scene may leave out: the catalogue, and each law in a file of its own.
+//!
+//! A scene switches an effect on with one table,
+//! `[[effect]] name = "trapped_air" element = "line" free_volume_m3 = 1e-9`; a diagnosis answers with the same names.
+//! Laws are pure and generic over [`crate::scalar::Scalar`]; `system` puts them into the equations. An effect of zero
+//! size gives the same bytes as one that is absent.
+
+mod backlash;
+mod catalogue;
+mod contact;
+mod element;
+mod line;
+mod mullins;
+mod plastic;
+mod preload;
+mod sensor;
+mod spec;
+mod table;
+mod tendon;
+mod viscoelasticity;
+
+pub use backlash::Backlash;
+pub use catalogue::{CATALOGUE, find};
+pub use contact::Wall;
+pub use element::{Element, ElementKind};
+pub use line::TrappedAir;
+pub use mullins::Mullins;
+pub use plastic::PlasticSet;
+pub use preload::CoilPreload;
+pub use sensor::{Sensor, SensorHistory};
+pub use spec::{EffectSpec, Kind, ParameterSpec, Range};
+pub use table::{Effect, EffectError, EffectTable};
+pub use tendon::TendonFriction;
+pub use viscoelasticity::MaxwellBranch;

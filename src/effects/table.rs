@@ -1,0 +1,158 @@
+//! An effect as a table of a scene file.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
+use crate::scalar::Scalar;
+
+/// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EffectTable {
+    pub name: String,
+    pub element: String,
+    /// Column of the sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<String>,
+    /// Whatever else stands in the table; must be the law's parameters.
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, f64>,
+}
+
+/// What is wrong with an [`EffectTable`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct EffectError {
+    pub message: String,
+    pub remedy: String,
+}
+
+/// An effect with its numbers, ready for the equations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect<D> {
+    pub kind: Kind,
+    pub element: Element,
+    /// Column of the sensor.
+    pub channel: Option<String>,
+    /// In the order of the catalogue's parameters.
+    pub values: Vec<D>,
+}
+
+impl<D: Scalar> Effect<D> {
+    /// The catalogue's entry.
+    pub fn spec(&self) -> &'static EffectSpec {
+        super::find(self.kind)
+    }
+}
+
+impl Effect<f64> {
+    /// As a table of a scene file.
+    pub fn table(&self) -> EffectTable {
+        let spec = self.spec();
+        EffectTable {
+            name: spec.name.to_owned(),
+            element: self.element.to_string(),
+            channel: self.channel.clone(),
+            parameters: spec.parameters.iter().zip(&self.values).map(|(p, v)| (p.key.to_owned(), *v)).collect(),
+        }
+    }
+}
+
+fn refuse(message: String, remedy: impl Into<String>) -> EffectError {
+    EffectError { message, remedy: remedy.into() }
+}
+
+impl EffectTable {
+    /// Looks the law up and checks element and numbers.
+    ///
+    /// # Errors
+    /// Unknown name, element, key; a number missing or out of range; a sensor without channel.
+    pub fn effect(&self) -> Result<Effect<f64>, EffectError> {
+        let spec = self.spec()?;
+        let element = Element::parse(&self.element).filter(|e| is_element_of(spec, e.kind)).ok_or_else(|| {
+            refuse(
+                format!("element = \"{}\" cannot have {}", self.element, self.name),
+                format!("write element = \"{}\", with its number where there are two of them", spec.element.name()),
+            )
+        })?;
+        if (element.kind == ElementKind::Sensor) != self.channel.is_some() {
+            return Err(match self.channel {
+                None => refuse("channel is missing".to_owned(), "name the output column: channel = \"angle_deg\""),
+                Some(_) => refuse("channel = ... is for sensors only".to_owned(), "remove it"),
+            });
+        }
+        let keys: Vec<&str> = spec.parameters.iter().map(|p| p.key).collect();
+        if let Some(odd) = self.parameters.keys().find(|k| !keys.contains(&k.as_str())) {
+            return Err(refuse(
+                format!("key `{odd}` is unknown to {}", self.name),
+                format!("its parameters are {}", keys.join(", ")),
+            ));
+        }
+        let values = spec.parameters.iter().map(|p| self.value(p)).collect::<Result<_, _>>()?;
+        Ok(Effect { kind: spec.kind, element, channel: self.channel.clone(), values })
+    }
+
+    /// The law of this name; where two share it, the one whose first parameter is given.
+    fn spec(&self) -> Result<&'static EffectSpec, EffectError> {
+        let named: Vec<&EffectSpec> = CATALOGUE.iter().filter(|s| s.name == self.name).collect();
+        let given = |s: &&&EffectSpec| self.parameters.contains_key(s.parameters[0].key);
+        named.iter().find(given).or(named.first()).copied().ok_or_else(|| {
+            let mut known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
+            known.dedup();
+            refuse(format!("name = \"{}\" is no effect", self.name), format!("the effects are {}", known.join(", ")))
+        })
+    }
+
+    fn value(&self, p: &super::ParameterSpec) -> Result<f64, EffectError> {
+        let value = self.parameters.get(p.key).copied().or(p.default).ok_or_else(|| {
+            refuse(format!("key `{}` is missing", p.key), format!("give it a number, for example {}", p.typical))
+        })?;
+        if value >= p.range.min && value <= p.range.max {
+            return Ok(value);
+        }
+        Err(refuse(
+            format!("{} = {value} is out of range", p.key),
+            format!("use {} to {} (SI units)", p.range.min, p.range.max),
+        ))
+    }
+}
+
+/// Where an effect may sit. A constant force may act on a muscle as well as on the mechanism.
+fn is_element_of(spec: &EffectSpec, kind: ElementKind) -> bool {
+    spec.element == kind || (spec.kind == Kind::GravityLoad && kind == ElementKind::Muscle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Result<Effect<f64>, EffectError> {
+        toml::from_str::<EffectTable>(text).expect("TOML").effect()
+    }
+
+    #[test]
+    fn tables_go_there_and_back() {
+        let air = parsed("name = \"trapped_air\"\nelement = \"line_2\"\nfree_volume_m3 = 1e-9").expect("right");
+        assert_eq!((air.kind, air.element.index, air.values.as_slice()), (Kind::TrappedAir, 1, &[1e-9, 1.0][..]));
+        assert_eq!(air.table().effect(), Ok(air));
+        let delay = parsed("name = \"sensor_lag\"\nelement = \"sensor\"\nchannel = \"angle_deg\"\ndelay_s = 0.02");
+        assert_eq!(delay.expect("right").kind, Kind::SensorDelay);
+    }
+
+    #[test]
+    fn errors_name_key_and_remedy() {
+        let cases = [
+            ("name = \"air\"\nelement = \"line\"", "is no effect", "trapped_air"),
+            ("name = \"leak\"\nelement = \"muscle\"\nconductance_m3_s_pa = 0", "cannot have leak", "\"line\""),
+            ("name = \"leak\"\nelement = \"line\"", "conductance_m3_s_pa", "number"),
+            ("name = \"leak\"\nelement = \"line\"\nconductance_m3_s_pa = -1", "out of range", "0 to"),
+            ("name = \"leak\"\nelement = \"line\"\nconductance_m3_s_pa = 0\nx = 1", "`x` is unknown", "parameters are"),
+            ("name = \"sensor_gain\"\nelement = \"sensor\"\ngain_error = 0", "channel is missing", "output column"),
+        ];
+        for (text, message, remedy) in cases {
+            let error = parsed(text).expect_err(text);
+            assert!(error.message.contains(message) && error.remedy.contains(remedy), "{text}: {error:?}");
+        }
+    }
+}

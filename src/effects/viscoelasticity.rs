@@ -1,0 +1,24 @@
+//! Relaxation of the silicone.
+
+use crate::scalar::Scalar;
+
+/// A Maxwell branch beside the muscle: pull `E (e - e_i)`, `tau de_i/dt = e - e_i`; relaxed at the start.
+///
+/// `E` N/m, `tau` s > 0. Several branches make a spectrum. Source: generalised Maxwell (Wiechert) solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaxwellBranch<D> {
+    pub stiffness_n_m: D,
+    pub relaxation_time_s: D,
+}
+
+impl<D: Scalar> MaxwellBranch<D> {
+    /// Pull at elongation `e` with the dashpot at `e_i`, N.
+    pub fn pull_n(&self, elongation_m: D, dashpot_m: D) -> D {
+        self.stiffness_n_m * (elongation_m - dashpot_m)
+    }
+
+    /// `de_i/dt`, m/s.
+    pub fn rate_m_s(&self, elongation_m: D, dashpot_m: D) -> D {
+        (elongation_m - dashpot_m) / self.relaxation_time_s
+    }
+}

@@ -1,0 +1,160 @@
+//! Effects into the equations.
+
+use crate::effects::{
+    Backlash, CoilPreload, Effect, ElementKind, Kind, MaxwellBranch, Mullins, PlasticSet, TendonFriction, TrappedAir,
+    Wall,
+};
+use crate::muscle::Friction;
+use crate::scalar::Scalar;
+
+use super::extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction};
+use super::plant::{Drive, Plant, PlantState, dot};
+
+/// What the effects of the mechanism act on: the joints that the first cable bends, else the first muscle's joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Site {
+    /// 1 for each coordinate whose sum is the bending angle (or the slider's position).
+    pub direction: Vec<f64>,
+    /// How many equal hinges in series each coordinate stands for.
+    pub hinges: Vec<usize>,
+    /// Lever of a weight: the cable's, m; 1 on a slider.
+    pub lever: f64,
+    /// Number of the mechanism's coordinates; muscle ends follow.
+    pub joints: usize,
+    /// Wrap of each cable that does not move with the joints, rad.
+    pub fixed_wrap_rad: Vec<f64>,
+}
+
+impl Site {
+    /// Finds the site in a plant.
+    pub fn of<D: Scalar>(plant: &Plant<D>, joints: usize, hinges: Vec<usize>, fixed_wrap_rad: Vec<f64>) -> Self {
+        let levers = match (plant.cables.first(), plant.muscles.first()) {
+            (Some(cable), _) => cable.jacobian.clone(),
+            (None, Some(muscle)) => muscle.jacobian.clone(),
+            (None, None) => Vec::new(),
+        };
+        let direction = levers.iter().enumerate().map(|(i, l)| f64::from(u8::from(i < joints && *l != 0.0))).collect();
+        let lever = levers.iter().take(joints).find(|l| **l != 0.0).map_or(0.0, |l| l.abs());
+        Self { direction, hinges, lever, joints, fixed_wrap_rad }
+    }
+
+    /// The coordinates of the site, each with its number of hinges.
+    fn coordinates(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..self.direction.len()).filter(|&i| self.direction[i] != 0.0).map(|i| (i, self.hinges[i]))
+    }
+
+    fn unit(&self, coordinate: usize) -> Vec<f64> {
+        let mut direction = vec![0.0; self.direction.len()];
+        direction[coordinate] = 1.0;
+        direction
+    }
+}
+
+/// Puts an effect into a plant. Sensors, and seals of an axis, are none of the plant's: nothing happens then.
+///
+/// The element must exist in the plant; scenes are checked for it.
+pub(super) fn install<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
+    match effect.element.kind {
+        ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => on_muscle(plant, effect),
+        ElementKind::Cable => on_cable(plant, site, effect),
+        ElementKind::Mechanism => on_mechanism(plant, site, effect),
+        ElementKind::Sensor => {}
+    }
+}
+
+fn on_muscle<D: Scalar>(plant: &mut Plant<D>, effect: &Effect<D>) {
+    let v = &effect.values;
+    let muscle = &mut plant.muscles[effect.element.index];
+    let extras = &mut muscle.extras;
+    match effect.kind {
+        Kind::PlungerBacklash => extras.backlash = Some(Backlash { width_m: v[0] }),
+        Kind::TrappedAir => extras.air = Some(TrappedAir { free_volume_m3: v[0], kappa: v[1] }),
+        Kind::Leak => extras.leak_m3_s_pa = Some(v[0]),
+        Kind::ThermalExpansion => extras.growth_m3_s = Some(v[0]),
+        Kind::LineRestriction => {
+            if let Drive::Hydraulic { chain, .. } = &mut muscle.drive {
+                chain.resistance_pa_s_m3 += chain.resistance_pa_s_m3 * v[0];
+                chain.quadratic_pa_s2_m6 += v[1] / chain.segments() as f64;
+            }
+        }
+        Kind::Viscoelasticity => {
+            extras.branches.push(MaxwellBranch { stiffness_n_m: v[0], relaxation_time_s: v[1] });
+        }
+        Kind::MullinsSoftening => extras.mullins = Some(Mullins { softening_ratio: v[0], energy_scale_j: v[1] }),
+        Kind::CoilPreload => extras.preload = Some(CoilPreload { preload_n: v[0] }),
+        Kind::PlasticSet => extras.plastic = Some(PlasticSet { set_rate_1_s: v[0], threshold_m: v[1] }),
+        Kind::PressureFriction => {
+            if let Some(friction) = &mut muscle.friction {
+                friction.m1_n_pa += v[0];
+            }
+        }
+        Kind::GravityLoad => {
+            plant.mechanism.loads.push(ConstantLoad { direction: muscle.jacobian.clone(), force: v[0] });
+        }
+        _ => {}
+    }
+}
+
+fn on_cable<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
+    let v = &effect.values;
+    let index = effect.element.index;
+    let cable = &mut plant.cables[index];
+    match effect.kind {
+        Kind::CableSlack => cable.stretch_0_m -= v[0],
+        Kind::TendonFriction => {
+            let mut far = cable.jacobian.clone();
+            far[site.joints..].fill(0.0);
+            let fixed_wrap_rad = site.fixed_wrap_rad[index];
+            let law = TendonFriction { friction_coefficient: v[0], fixed_wrap_rad, presliding_m: v[1] };
+            cable.friction = Some(CableFriction { law, far, hinges: site.hinges.clone() });
+        }
+        _ => {}
+    }
+}
+
+fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
+    let v = &effect.values;
+    let extras = &mut plant.mechanism;
+    let direction = site.direction.clone();
+    match effect.kind {
+        Kind::GravityLoad => extras.loads.push(ConstantLoad { direction, force: v[0] * site.lever }),
+        Kind::TendonCoupling => extras.couplings.push(Coupling { cable: 1, direction, lever_m: v[0] }),
+        Kind::ExternalContact => {
+            extras.walls.push(AngleWall { direction, wall: Wall { stiffness_n_m_rad: v[0], angle_rad: v[1] } });
+        }
+        Kind::NotchClosure => {
+            for (i, hinges) in site.coordinates() {
+                let n = hinges as f64;
+                let wall = Wall { stiffness_n_m_rad: v[0] / n, angle_rad: v[1] * n };
+                extras.walls.push(AngleWall { direction: site.unit(i), wall });
+            }
+        }
+        Kind::BearingFriction => {
+            let total: usize = site.coordinates().map(|(_, n)| n).sum();
+            for (i, hinges) in site.coordinates() {
+                let law = Friction::dahl(v[0], D::constant(0.0), v[1] * (hinges as f64 / total as f64));
+                extras.frictions.push(JointFriction { direction: site.unit(i), law });
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Gives a state the memory that the plant's effects need: branches relaxed, pistons centred.
+pub(super) fn settle_memory<D: Scalar>(plant: &mut Plant<D>, state: &mut PlantState<D>) {
+    let zero = D::constant(0.0);
+    state.slow.clear();
+    state.greatest_j = vec![zero; plant.muscles.len()];
+    state.piston_ahead_m = vec![zero; plant.muscles.len()];
+    for (i, muscle) in plant.muscles.iter_mut().enumerate() {
+        let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+        muscle.slow_at = state.slow.len();
+        state.slow.extend(std::iter::repeat_n(elongation, muscle.extras.branches.len()));
+        state.slow.extend(muscle.extras.plastic.as_ref().map(|_| zero));
+        if muscle.extras.mullins.is_some() {
+            state.greatest_j[i] = muscle.elastic.wall_energy_j(elongation);
+        }
+    }
+    let sliding = if plant.cables.iter().any(|c| c.friction.is_some()) { plant.cables.len() } else { 0 };
+    state.joint_z = vec![zero; plant.mechanism.frictions.len() + sliding];
+}

@@ -1,0 +1,185 @@
+//! The fast model of a scene: the same elements on a mechanism reduced to its few coordinates.
+//!
+//! Hinges in series with equal lever, spring and damper become one coordinate, their sum; inertia is that of the start
+//! pose. Everything else - line, muscles, cables, effects, the integrator - is the code of the full scene, so the two
+//! differ only by what the engine adds: pose-dependent inertia and contacts. Generic over [`Scalar`], so that
+//! sensitivities to calibrated parameters and effects are exact.
+
+mod lump;
+mod output;
+mod parameter;
+
+use crate::effects::Effect;
+use crate::mechanism::Mechanism;
+use crate::scalar::Scalar;
+use crate::scene::Scene;
+
+use super::build::build;
+use super::install::{Site, install, settle_memory};
+use super::plant::{Drive, InputSpan, Plant, PlantState, dot};
+use super::{Stepper, SystemError};
+
+pub(super) use output::sensor;
+use output::{Sensors, TwinOutput};
+pub use parameter::TwinParameter;
+
+/// What drives a [`Twin`]: times (s, increasing) and each input of the scene there, SI, straight between samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TwinRun {
+    pub times_s: Vec<f64>,
+    pub inputs: Vec<Vec<f64>>,
+}
+
+/// Parameters that differ from the scene's, and the effects.
+#[derive(Clone, Debug, Default)]
+pub struct TwinSetting<D> {
+    pub parameters: Vec<(TwinParameter, D)>,
+    pub effects: Vec<Effect<D>>,
+}
+
+/// The fast model of one scene (with one set of known conditions).
+#[derive(Clone, Debug)]
+pub struct Twin {
+    plant: Plant<f64>,
+    state: PlantState<f64>,
+    site: Site,
+    outputs: Vec<TwinOutput>,
+    /// Of each joint coordinate: the scene's [[mechanism.joint]] table that sets its spring.
+    spring_table: Vec<Option<usize>>,
+    cable_names: Vec<String>,
+    pretension_n: Vec<f64>,
+    initial_load_n: f64,
+    axis: Option<super::axis::Axis>,
+    /// Greatest step, s.
+    pub step_s: f64,
+}
+
+/// Steps are this much shorter over the first moments, where what was let go at once still rings.
+const RINGING_S: f64 = 0.5;
+const RINGING_STEPS: f64 = 4.0;
+
+impl Twin {
+    /// The fast model of a scene.
+    ///
+    /// # Errors
+    /// Scenes that have none: free bodies (their contacts need the engine), via-point routes, displacement models.
+    pub fn new(scene: &Scene) -> Result<Self, SystemError> {
+        let mut bare = scene.clone();
+        bare.file.effect.clear();
+        let mechanism = match &bare.file.mechanism {
+            Some(spec) => {
+                let loaded = Mechanism::load(spec, bare.folder());
+                Some(loaded.map_err(|source| SystemError::Mechanism { file: bare.path.clone(), source })?)
+            }
+            None => None,
+        };
+        let built = build(&bare, mechanism.as_ref())?;
+        lump::refuse_what_has_none(&bare, &built)?;
+        let lumped = lump::lump(&bare, mechanism.as_ref(), built)?;
+        let wraps = bare.file.cable.iter().map(|c| c.sheath_angle_rad).collect();
+        let site = Site::of(&lumped.plant, lumped.joints, lumped.hinges.clone(), wraps);
+        let outputs = bare.file.output.iter().map(|o| output::resolve(&bare, o, &lumped)).collect::<Result<_, _>>()?;
+        Ok(Self {
+            site,
+            outputs,
+            spring_table: lumped.spring_table,
+            cable_names: bare.file.cable.iter().map(|c| c.name.clone()).collect(),
+            pretension_n: bare.file.cable.iter().map(|c| c.pretension_n).collect(),
+            initial_load_n: bare.file.muscles.as_ref().map_or(0.0, |m| m.initial_load_n),
+            axis: super::channels::axis(&bare),
+            plant: lumped.plant,
+            state: lumped.state,
+            step_s: 1.0e-3,
+        })
+    }
+
+    /// Columns of the outputs, in order.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.outputs.iter().map(|o| o.column.as_str())
+    }
+
+    /// The parameter behind a scene key; `None` when the fast model cannot vary it.
+    pub fn parameter(&self, key: &str) -> Option<TwinParameter> {
+        parameter::resolve(self, crate::scene::calibration_key(key))
+    }
+
+    /// Simulates; returns each output at the run's times, in the unit of its column. `None` when it diverges.
+    pub fn simulate<D: Scalar>(&self, run: &TwinRun, setting: &TwinSetting<D>) -> Option<Vec<Vec<D>>> {
+        if let Some(axis) = &self.axis {
+            return Some(output::axis_series(axis, &self.outputs, run, setting));
+        }
+        let (plant, mut state) = self.prepare(setting);
+        let mut stepper = Stepper::new(&plant, &state);
+        let mut sensors = Sensors::new(&self.outputs, &setting.effects);
+        let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
+        let mut spans: Vec<InputSpan> =
+            run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        for (k, &time) in run.times_s.iter().enumerate() {
+            if k > 0 {
+                self.advance(&plant, &mut state, &mut stepper, &mut spans, run, k);
+                if !state.y.iter().all(|y| y.value().is_finite()) {
+                    return None;
+                }
+            }
+            for (output, series) in self.outputs.iter().zip(&mut series) {
+                series.push(sensors.show(output, time, output.read(&plant, &state, &spans)));
+            }
+        }
+        Some(series)
+    }
+
+    fn advance<D: Scalar>(
+        &self,
+        plant: &Plant<D>,
+        state: &mut PlantState<D>,
+        stepper: &mut Stepper<D>,
+        spans: &mut [InputSpan],
+        run: &TwinRun,
+        k: usize,
+    ) {
+        let (from, to) = (run.times_s[k - 1], run.times_s[k]);
+        let shorter = if from - run.times_s[0] < RINGING_S { RINGING_STEPS } else { 1.0 };
+        let steps = ((to - from) * shorter / self.step_s - 1e-6).ceil().max(1.0);
+        let h = (to - from) / steps;
+        for (span, values) in spans.iter_mut().zip(&run.inputs) {
+            *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
+        }
+        for _ in 0..steps as usize {
+            stepper.step(plant, state, spans, h);
+            spans.iter_mut().for_each(|s| s.value += h * s.slope);
+        }
+        for (span, values) in spans.iter_mut().zip(&run.inputs) {
+            span.value = values[k];
+        }
+    }
+
+    /// The plant with its parameters and effects, at its start.
+    fn prepare<D: Scalar>(&self, setting: &TwinSetting<D>) -> (Plant<D>, PlantState<D>) {
+        let mut plant: Plant<D> = self.plant.lift();
+        let mut state: PlantState<D> = self.state.lift();
+        for (parameter, value) in &setting.parameters {
+            parameter.put(*value, &mut plant);
+        }
+        self.settle_start(&mut plant, &mut state);
+        for effect in &setting.effects {
+            install(&mut plant, &self.site, effect);
+        }
+        settle_memory(&mut plant, &mut state);
+        (plant, state)
+    }
+
+    /// Pressures that hold the start elongations, and cables at their pretension, with the parameters as they are.
+    fn settle_start<D: Scalar>(&self, plant: &mut Plant<D>, state: &mut PlantState<D>) {
+        for (muscle, chain) in plant.muscles.iter().zip(&mut state.chains) {
+            if let Drive::Hydraulic { .. } = muscle.drive {
+                let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+                let pressure = muscle.elastic.holding_pressure_pa(elongation, D::constant(self.initial_load_n));
+                chain.pressure_pa.fill(pressure);
+            }
+        }
+        for (i, cable) in plant.cables.iter_mut().enumerate() {
+            let stretch = dot(&cable.jacobian, &state.y);
+            cable.stretch_0_m = cable.stiffness_n_m.recip() * self.pretension_n[i] - stretch;
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Equal hinges in series as one coordinate: their sum.
+
+use nalgebra::DMatrix;
+
+use crate::mechanism::{Mechanism, Route};
+use crate::scene::Scene;
+use crate::system::SystemError;
+use crate::system::build::Built;
+use crate::system::plant::{CoordinateStop, Coordinates, Plant, PlantState};
+
+/// A plant on few coordinates.
+pub(super) struct Lumped {
+    pub plant: Plant<f64>,
+    pub state: PlantState<f64>,
+    pub joints: usize,
+    /// Of each coordinate (muscle ends too): how many hinges it stands for.
+    pub hinges: Vec<usize>,
+    /// Names of the joints of each joint coordinate.
+    pub names: Vec<Vec<String>>,
+    pub spring_table: Vec<Option<usize>>,
+}
+
+/// Refuses scenes whose mechanism cannot be reduced.
+pub(super) fn refuse_what_has_none(scene: &Scene, built: &Built) -> Result<(), SystemError> {
+    let refuse = |table: &str, message: &str| {
+        Err(SystemError::Name {
+            file: scene.path.clone(),
+            table: table.to_owned(),
+            message: format!("{message}: there is no fast model of this scene"),
+            remedy: "diagnose a recording of a scene without it".to_owned(),
+        })
+    };
+    if scene.file.mechanism.as_ref().is_some_and(|m| !m.body.is_empty()) {
+        return refuse("[[mechanism.body]]", "free bodies need the rigid-body engine");
+    }
+    if built.routes.iter().any(|r| matches!(r, Route::Via(_))) {
+        return refuse("[[cable]]", "a route through via points has levers that change with the pose");
+    }
+    if !built.displacements.is_empty() {
+        return refuse("[muscles.displacement]", "a displacement model has no forces");
+    }
+    Ok(())
+}
+
+/// Joins equal hinges and takes the inertia of the start pose.
+pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -> Result<Lumped, SystemError> {
+    let full = &built.plant;
+    let joints = mechanism.map_or(0, |m| m.coordinates().len());
+    let mut inertia = DMatrix::zeros(joints, joints);
+    let mut force = vec![0.0; joints];
+    let mut names = Vec::new();
+    if let (Some(mechanism), true) = (mechanism, joints > 0) {
+        mechanism.mass_matrix(&mut inertia);
+        mechanism.weight(&mut force);
+        names = mechanism.coordinates().iter().map(|c| c.name.clone()).collect();
+    }
+    for load in &scene.file.load {
+        if let Some(i) = names.iter().position(|n| *n == load.joint) {
+            force[i] += load.force_n.or(load.torque_n_m).unwrap_or(0.0);
+        }
+    }
+    let groups = groups(full, joints, &built.state, &inertia);
+    let dim = groups.len() + full.dim() - joints;
+    // Each old coordinate: its new one and its share of it.
+    let mut place = vec![(0, 0.0); full.dim()];
+    for (new, group) in groups.iter().enumerate() {
+        group.iter().for_each(|&old| place[old] = (new, 1.0 / group.len() as f64));
+    }
+    (joints..full.dim()).for_each(|old| place[old] = (groups.len() + old - joints, 1.0));
+    let spread = |values: &[f64]| {
+        let mut sum = vec![0.0; dim];
+        values.iter().zip(&place).for_each(|(v, (new, share))| sum[*new] += v * share);
+        sum
+    };
+    let squared = |values: &[f64]| {
+        let mut sum = vec![0.0; dim];
+        values.iter().zip(&place).for_each(|(v, (new, share))| sum[*new] += v * share * share);
+        sum
+    };
+    let mut matrix = vec![0.0; dim * dim];
+    for (i, (a, share_a)) in place.iter().enumerate() {
+        for (j, (b, share_b)) in place.iter().enumerate() {
+            let m = if i < joints && j < joints { inertia[(i, j)] } else { full.coordinates.inertia[i * full.dim() + j] };
+            matrix[a * dim + b] += m * share_a * share_b;
+        }
+    }
+    let total = |values: &[f64]| {
+        let mut sum = vec![0.0; dim];
+        values.iter().zip(&place).for_each(|(v, (new, _))| sum[*new] += v);
+        sum
+    };
+    let mut generalised = spread(&force);
+    generalised.resize(dim, 0.0);
+    let coordinates = Coordinates {
+        inertia: matrix,
+        damping: squared(&full.coordinates.damping),
+        stiffness: squared(&full.coordinates.stiffness),
+        rest: total(&full.coordinates.rest),
+        force: generalised,
+        stops: groups.iter().enumerate().flat_map(|(new, group)| lumped_stops(full, new, group)).collect(),
+        contact: None,
+    };
+    let mut plant = Plant { coordinates, ..full.clone() };
+    plant.muscles.iter_mut().for_each(|m| m.jacobian = spread(&m.jacobian));
+    plant.cables.iter_mut().for_each(|c| c.jacobian = spread(&c.jacobian));
+    let state = PlantState { y: total(&built.state.y), w: vec![0.0; dim], ..built.state.clone() };
+    let mut hinges: Vec<usize> = groups.iter().map(Vec::len).collect();
+    hinges.resize(dim, 1);
+    let group_names: Vec<Vec<String>> =
+        groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
+    let tables = scene.file.mechanism.as_ref().map_or(&[][..], |m| &m.joint);
+    let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
+    Ok(Lumped { joints: groups.len(), plant, state, hinges, names: group_names, spring_table })
+}
+
+/// Joints that may be joined: equal in lever, spring, damper, rest, start and stops, and without a muscle on them.
+fn groups(plant: &Plant<f64>, joints: usize, state: &PlantState<f64>, inertia: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let c = &plant.coordinates;
+    let stops = |i: usize| -> Vec<CoordinateStop> {
+        c.stops.iter().filter(|s| s.coordinate == i).map(|s| CoordinateStop { coordinate: 0, ..*s }).collect()
+    };
+    let bears_muscle = |i: usize| plant.muscles.iter().any(|m| m.jacobian[i] != 0.0);
+    let alike = |a: usize, b: usize| {
+        plant.cables.iter().all(|cable| cable.jacobian[a] == cable.jacobian[b] && cable.jacobian[a] != 0.0 || {
+            cable.jacobian[a] == 0.0 && cable.jacobian[b] == 0.0
+        }) && c.damping[a] == c.damping[b]
+            && c.stiffness[a] == c.stiffness[b]
+            && c.rest[a] == c.rest[b]
+            && state.y[a] == state.y[b]
+            && stops(a) == stops(b)
+            && inertia[(a, b)] != 0.0
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for i in 0..joints {
+        let home = groups.iter_mut().find(|g| !bears_muscle(i) && !bears_muscle(g[0]) && alike(g[0], i));
+        match home {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
+    }
+    groups
+}
+
+/// Stops of a group: met by all its hinges together.
+fn lumped_stops(plant: &Plant<f64>, new: usize, group: &[usize]) -> Vec<CoordinateStop> {
+    let n = group.len() as f64;
+    let own = plant.coordinates.stops.iter().filter(|s| s.coordinate == group[0]);
+    own.map(|s| CoordinateStop {
+        coordinate: new,
+        position: s.position * n,
+        side: s.side,
+        stiffness: s.stiffness / n,
+        damping: s.damping / n,
+    })
+    .collect()
+}

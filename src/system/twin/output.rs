@@ -1,0 +1,140 @@
+//! Output channels of the fast model.
+
+use crate::effects::{Effect, Kind, Sensor, SensorHistory};
+use crate::recording::parse_column;
+use crate::scalar::Scalar;
+use crate::scene::{OutputSpec, Quantity, Scene};
+use crate::system::SystemError;
+use crate::system::axis::{Axis, AxisFriction, AxisNumbers};
+use crate::system::plant::{Drive, InputSpan, Plant, PlantState};
+
+use super::lump::Lumped;
+use super::{TwinParameter, TwinRun, TwinSetting};
+
+/// What a channel reads.
+#[derive(Clone, Debug)]
+enum Reader {
+    Elongation(usize),
+    SyringePressure(usize),
+    MusclePressure(usize),
+    Pull(usize),
+    Tension(usize),
+    /// Coordinates and the share of each that is asked for.
+    Joints(Vec<(usize, f64)>),
+    Axis,
+}
+
+/// A channel with the SI units in one of its unit.
+#[derive(Clone, Debug)]
+pub(super) struct TwinOutput {
+    pub column: String,
+    reader: Reader,
+    factor: f64,
+}
+
+impl TwinOutput {
+    /// The value in the channel's unit.
+    pub fn read<D: Scalar>(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> D {
+        let value = match &self.reader {
+            Reader::Elongation(m) => plant.muscle_forces(*m, state, inputs, 0.0).elongation_m,
+            Reader::Pull(m) => plant.muscle_forces(*m, state, inputs, 0.0).pull_n(),
+            Reader::MusclePressure(m) => plant.muscle_pressure(*m, state, inputs, 0.0),
+            Reader::SyringePressure(m) => match plant.muscles[*m].drive {
+                Drive::Hydraulic { .. } => state.chains[*m].pressure_pa[0],
+                Drive::Pressure { .. } => plant.muscle_pressure(*m, state, inputs, 0.0),
+            },
+            Reader::Tension(c) => plant.cable(*c, state, inputs, 0.0).2,
+            Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y[*i] * *share).sum(),
+            Reader::Axis => D::constant(f64::NAN),
+        };
+        value / self.factor
+    }
+}
+
+/// Finds what an output of the scene reads.
+pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Result<TwinOutput, SystemError> {
+    let of = spec.of.first().map_or("", String::as_str);
+    let muscle = scene.file.muscle.iter().position(|m| m.name == of);
+    let reader = match spec.quantity {
+        Quantity::Elongation => muscle.map(Reader::Elongation),
+        Quantity::SyringePressure => muscle.map(Reader::SyringePressure),
+        Quantity::MusclePressure => muscle.map(Reader::MusclePressure),
+        Quantity::Pull => muscle.map(Reader::Pull),
+        Quantity::Tension => scene.file.cable.iter().position(|c| c.name == of).map(Reader::Tension),
+        Quantity::JointPosition => Some(Reader::Joints(joints(spec, lumped))),
+        Quantity::AxisForce => Some(Reader::Axis),
+        Quantity::BodyX | Quantity::BodyY | Quantity::BodyZ => None,
+    };
+    let reader = reader.ok_or_else(|| SystemError::Name {
+        file: scene.path.clone(),
+        table: format!("[[output]] \"{}\"", spec.channel),
+        message: format!("the fast model has no {:?} of {of:?}", spec.quantity),
+        remedy: "leave this channel out of the recordings".to_owned(),
+    })?;
+    Ok(TwinOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor })
+}
+
+fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
+    let part = |(i, names): (usize, &Vec<String>)| {
+        let asked = spec.of.iter().filter(|n| names.contains(n)).count();
+        (asked > 0).then(|| (i, asked as f64 / names.len() as f64))
+    };
+    lumped.names.iter().enumerate().filter_map(part).collect()
+}
+
+/// Sensor effects on the channels.
+pub(super) struct Sensors<D>(Vec<(String, SensorHistory<D>)>);
+
+impl<D: Scalar> Sensors<D> {
+    pub fn new(outputs: &[TwinOutput], effects: &[Effect<D>]) -> Self {
+        let sensors = effects.iter().filter_map(|e| {
+            let channel = e.channel.clone().filter(|c| outputs.iter().any(|o| o.column == *c))?;
+            sensor(e).map(|s| (channel, SensorHistory::new(s)))
+        });
+        Self(sensors.collect())
+    }
+
+    /// The value as the channel's sensors show it.
+    pub fn show(&mut self, output: &TwinOutput, time_s: f64, value: D) -> D {
+        let own = self.0.iter_mut().filter(|(c, _)| *c == output.column);
+        own.fold(value, |value, (_, sensor)| sensor.show(time_s, value))
+    }
+}
+
+/// The sensor law of an effect, if it is one.
+pub(in crate::system) fn sensor<D: Scalar>(effect: &Effect<D>) -> Option<Sensor<D>> {
+    let size = *effect.values.first()?;
+    Some(match effect.kind {
+        Kind::SensorLag => Sensor::Lag { time_constant_s: size },
+        Kind::SensorDelay => Sensor::Delay { delay_s: size },
+        Kind::SensorDrift => Sensor::Drift { rate_per_s: size },
+        Kind::SensorGain => Sensor::Gain { gain_error: size },
+        _ => return None,
+    })
+}
+
+/// An axis answers algebraically but for its friction.
+pub(super) fn axis_series<D: Scalar>(
+    axis: &Axis,
+    outputs: &[TwinOutput],
+    run: &TwinRun,
+    setting: &TwinSetting<D>,
+) -> Vec<Vec<D>> {
+    let mut numbers: AxisNumbers<D> = axis.numbers();
+    for (parameter, value) in &setting.parameters {
+        if let TwinParameter::Axis(which) = parameter {
+            numbers.put(*which, *value);
+        }
+    }
+    let mut friction = AxisFriction::of(&setting.effects);
+    let mut sensors = Sensors::new(outputs, &setting.effects);
+    let motion = axis.motion(&run.times_s, &run.inputs);
+    let mut series = vec![Vec::with_capacity(run.times_s.len()); outputs.len()];
+    for (k, &time) in run.times_s.iter().enumerate() {
+        let force = numbers.force_n(&motion[k]) + friction.force_n(&motion[k]);
+        for (output, series) in outputs.iter().zip(&mut series) {
+            series.push(sensors.show(output, time, force / output.factor));
+        }
+    }
+    series
+}

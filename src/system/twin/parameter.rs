@@ -1,0 +1,108 @@
+//! Calibrated parameters of the fast model, by scene key.
+
+use crate::muscle::Material;
+use crate::scalar::Scalar;
+use crate::system::plant::{Drive, MusclePlant, Plant};
+use crate::system::{AxisNumber, Elastic};
+
+use super::Twin;
+
+/// A number of the scene that the fast model can vary, with derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TwinParameter {
+    TubeC1,
+    CoilStiffness,
+    UpstreamCompliance,
+    DownstreamCompliance,
+    FrictionM0,
+    FrictionM1,
+    Presliding,
+    Damping,
+    LinearStiffness,
+    PressureGain,
+    CableStiffness(usize),
+    /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
+    JointStiffness(Vec<(usize, f64)>),
+    Axis(AxisNumber),
+}
+
+/// The parameter of a full scene key.
+pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
+    use TwinParameter as P;
+    Some(match key {
+        "muscles.tube.material.c1_pa" => P::TubeC1,
+        "muscles.tube.coil.stiffness_n_m" => P::CoilStiffness,
+        "hydraulics.upstream_compliance_m3_pa" => P::UpstreamCompliance,
+        "hydraulics.downstream_compliance_m3_pa" => P::DownstreamCompliance,
+        "muscles.friction.m0_n" => P::FrictionM0,
+        "muscles.friction.m1_n_pa" => P::FrictionM1,
+        "muscles.friction.presliding_length_m" => P::Presliding,
+        "muscles.damping_n_s_m" => P::Damping,
+        "muscles.linear.stiffness_n_m" => P::LinearStiffness,
+        "muscles.linear.pressure_gain_m2" => P::PressureGain,
+        "axis.piston_area_m2" => P::Axis(AxisNumber::PistonArea),
+        "axis.damping_n_s_m" => P::Axis(AxisNumber::Damping),
+        "axis.offset_n" => P::Axis(AxisNumber::Offset),
+        "axis.mass_kg" => P::Axis(AxisNumber::Mass),
+        _ => return resolve_named(twin, key),
+    })
+}
+
+/// Keys with a name or a number in them: cables, joint springs.
+fn resolve_named(twin: &Twin, key: &str) -> Option<TwinParameter> {
+    let words: Vec<&str> = key.split('.').collect();
+    match words.as_slice() {
+        ["cable", name, "stiffness_n_m"] => {
+            let by_name = twin.cable_names.iter().position(|n| n == name);
+            Some(TwinParameter::CableStiffness(by_name.or(name.parse().ok())?))
+        }
+        ["mechanism", "joint", number, "stiffness_n_m_rad" | "stiffness_n_m"] => {
+            let number: usize = number.parse().ok()?;
+            let springs = twin.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
+            Some(TwinParameter::JointStiffness(
+                springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect(),
+            ))
+        }
+        _ => None,
+    }
+}
+
+impl TwinParameter {
+    /// Puts a value into a plant.
+    pub(super) fn put<D: Scalar>(&self, value: D, plant: &mut Plant<D>) {
+        match self {
+            Self::CableStiffness(i) => plant.cables[*i].stiffness_n_m = value,
+            Self::JointStiffness(springs) => {
+                springs.iter().for_each(|(i, share)| plant.coordinates.stiffness[*i] = value * *share);
+            }
+            Self::Axis(_) => {}
+            _ => plant.muscles.iter_mut().for_each(|m| self.put_in_muscle(value, m)),
+        }
+    }
+
+    fn put_in_muscle<D: Scalar>(&self, value: D, muscle: &mut MusclePlant<D>) {
+        match (self, &mut muscle.elastic, &mut muscle.friction, &mut muscle.drive) {
+            (Self::TubeC1, Elastic::Tube { wall, .. }, _, _) => {
+                let material = match *wall.material() {
+                    Material::NeoHookean { .. } => Material::NeoHookean { c1_pa: value },
+                    Material::Yeoh { c2_pa, c3_pa, .. } => Material::Yeoh { c1_pa: value, c2_pa, c3_pa },
+                    other => other,
+                };
+                *wall = wall.with_material(material);
+            }
+            (Self::CoilStiffness, Elastic::Tube { coil, .. }, _, _) => coil.stiffness_n_m = value,
+            (Self::LinearStiffness, Elastic::Linear { stiffness_n_m, .. }, _, _) => *stiffness_n_m = value,
+            (Self::PressureGain, Elastic::Linear { pressure_gain_m2, .. }, _, _) => *pressure_gain_m2 = value,
+            (Self::FrictionM0, _, Some(friction), _) => friction.m0_n = value,
+            (Self::FrictionM1, _, Some(friction), _) => friction.m1_n_pa = value,
+            (Self::Presliding, _, Some(friction), _) => friction.presliding_length_m = value,
+            (Self::Damping, ..) => muscle.damping_n_s_m = value,
+            (Self::UpstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => chain.compliance_m3_pa[0] = value,
+            (Self::DownstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => {
+                let last = chain.segments();
+                chain.compliance_m3_pa[last] = value;
+            }
+            _ => {}
+        }
+    }
+}

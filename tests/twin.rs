@@ -1,0 +1,94 @@
+//! Contract of the fast model: it answers like the full scene, with and without effects, and its derivatives are exact.
+
+use smam::effects::{CATALOGUE, Effect, EffectTable, ElementKind};
+use smam::recording::Recording;
+use smam::scene::Scene;
+use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+
+/// The full scene over its stock programme, and the fast model driven by the same inputs.
+fn both(scene: &Scene, duration_s: f64) -> (Recording, Vec<Vec<f64>>, Vec<String>) {
+    let schedule = Schedule::even(duration_s, 0.01);
+    let mut simulation = Simulation::new(scene.clone()).unwrap_or_else(|e| panic!("{e}"));
+    let full = record(&mut simulation, &schedule).unwrap_or_else(|e| panic!("{e}"));
+    let inputs = scene.file.input.iter().map(|i| full.si(&i.channel).expect("an input")).collect();
+    let run = TwinRun { times_s: schedule.0, inputs };
+    let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
+    let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
+    let fast = twin.simulate(&run, &TwinSetting { parameters: Vec::new(), effects }).expect("finite");
+    let columns = twin.columns().map(str::to_owned).collect();
+    (full, fast, columns)
+}
+
+/// Root mean square difference of a column in percent of its range, after the start has rung out.
+fn difference(full: &[f64], fast: &[f64]) -> f64 {
+    let (low, high) = full.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+    let squares: f64 = full[50..].iter().zip(&fast[50..]).map(|(a, b)| (a - b).powi(2)).sum();
+    100.0 * (squares / (full.len() - 50) as f64).sqrt() / (high - low).max(1e-9)
+}
+
+const STOCK: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_catheter"];
+
+#[test]
+fn val_twin_meets_the_full_scene() {
+    for name in STOCK {
+        let scene = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let (full, fast, columns) = both(&scene, 12.0);
+        for (column, fast) in columns.iter().zip(&fast) {
+            let percent = difference(&full.find(column).expect("a channel").values, fast);
+            println!("{name} {column}: {percent:.4} %");
+            assert!(percent < 0.1, "{name}: {column} differs by {percent:.4} % of its range");
+        }
+    }
+}
+
+/// The effects of the catalogue that can sit on a scene, at their typical size: one scene text each.
+fn with_each_effect(name: &str) -> Vec<(String, Scene)> {
+    let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut scenes = Vec::new();
+    for spec in CATALOGUE {
+        for element in [spec.element.name().to_owned(), format!("{}_1", spec.element.name())] {
+            let mut scene = stock.clone();
+            let channel = (spec.element == ElementKind::Sensor).then(|| stock.file.output[0].channel.clone());
+            let parameters = spec.parameters.iter().zip(spec.typical()).map(|(p, v)| (p.key.to_owned(), v)).collect();
+            scene.file.effect = vec![EffectTable { name: spec.name.to_owned(), element, channel, parameters }];
+            if let Ok(scene) = Scene::from_file(scene.file, &scene.path) {
+                scenes.push((format!("{name} with {}", spec.parameters[0].key), scene));
+            }
+        }
+    }
+    scenes
+}
+
+#[test]
+fn val_twin_meets_the_full_scene_with_every_effect() {
+    for name in STOCK {
+        let plain = both(&Scene::load(name, &[]).expect("stock"), 8.0).1;
+        for (title, scene) in with_each_effect(name) {
+            let (full, fast, columns) = both(&scene, 8.0);
+            // Notches close beyond what the stock programme reaches.
+            let is_reached = !(name == "bending_catheter" && title.ends_with("stiffness_n_m_rad"));
+            assert!(!is_reached || fast != plain, "{title}: the effect does nothing");
+            for (column, fast) in columns.iter().zip(&fast) {
+                let percent = difference(&full.find(column).expect("a channel").values, fast);
+                println!("{title}: {column} {percent:.4} %");
+                assert!(percent < 0.2, "{title}: {column} differs by {percent:.4} % of its range");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_effect_of_zero_size_is_absent_to_the_bit() {
+    for name in STOCK {
+        let stock = Scene::load(name, &[]).expect("stock");
+        let (full, fast, _) = both(&stock, 3.0);
+        for (title, mut scene) in with_each_effect(name) {
+            let key = title.rsplit(' ').next().expect("a key").to_owned();
+            scene.file.effect[0].parameters.insert(key, 0.0);
+            let scene = Scene::from_file(scene.file, &scene.path).unwrap_or_else(|e| panic!("{e}"));
+            let (full_zero, fast_zero, _) = both(&scene, 3.0);
+            assert!(full == full_zero, "{title}: the full scene changes");
+            assert!(fast == fast_zero, "{title}: the fast model changes");
+        }
+    }
+}
