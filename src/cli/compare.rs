@@ -12,6 +12,7 @@ use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
+use super::files::write;
 
 /// Arguments of `smam compare`.
 #[derive(Args)]
@@ -90,17 +91,6 @@ fn default_out(dir: &Path) -> PathBuf {
     Path::new("out").join(format!("compare_{}", name.unwrap_or_else(|| "recordings".to_owned())))
 }
 
-fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    let failed = |source| CliError::Write { file: path.to_owned(), source };
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(failed)?;
-    }
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let temporary = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
-    std::fs::write(temporary.path(), text).map_err(failed)?;
-    temporary.persist(path).map_err(|e| failed(e.error))?;
-    Ok(())
-}
 
 fn say_fit(report: &FitReport) {
     for p in &report.parameters {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use smam::diagnose::DiagnoseError;
 use smam::identify::IdentifyError;
 use smam::mechanism::MechanismError;
 use smam::recording::RecordingError;
@@ -18,6 +19,8 @@ pub enum CliError {
     System(#[from] SystemError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Diagnose(#[from] DiagnoseError),
     #[error(transparent)]
     Identify(#[from] IdentifyError),
     #[error("{0}")]

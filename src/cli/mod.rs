@@ -2,7 +2,9 @@
 
 mod check;
 mod compare;
+mod diagnose;
 mod error;
+mod files;
 mod interrupt;
 mod junit;
 mod model;
@@ -36,6 +38,8 @@ enum Command {
     Run(run::RunArguments),
     /// Simulate what was recorded and show measured against simulated
     Compare(compare::CompareArguments),
+    /// Find the physics that recordings show and the scene lacks
+    Diagnose(diagnose::DiagnoseArguments),
     /// Read a scene and say whether it is right
     Check(check::CheckArguments),
     /// List the scenes that come with the program
@@ -53,6 +57,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         }
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),
         Some(Command::Model(arguments)) => model::model(&arguments),

@@ -6,4 +6,4 @@ mod replay;
 
 pub use fit::{FitReport, FittedParameter, fit_rig_parameters};
 pub use levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise};
-pub use replay::{IdentifyError, RecordedRun, condition_overrides, load_runs, replay};
+pub use replay::{IdentifyError, RecordedRun, check_channels, condition_overrides, load_runs, replay};

@@ -105,7 +105,7 @@ fn begin_where_recorded(
 }
 
 /// Checks that every declared output is a channel of the scene and every input of the scene was recorded.
-pub(super) fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
+pub fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
     let outputs: Vec<&str> = scene.file.output.iter().map(|o| o.channel.as_str()).collect();
     let refuse = |message: String, remedy: String| IdentifyError::Mismatch {
         file: "recordings.toml".to_owned(),

@@ -31,10 +31,16 @@ pub struct TwinRun {
 }
 
 /// Parameters that differ from the scene's, and the effects.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct TwinSetting<D> {
     pub parameters: Vec<(TwinParameter, D)>,
     pub effects: Vec<Effect<D>>,
+}
+
+impl<D> Default for TwinSetting<D> {
+    fn default() -> Self {
+        Self { parameters: Vec::new(), effects: Vec::new() }
+    }
 }
 
 /// The fast model of one scene (with one set of known conditions).

@@ -1,0 +1,92 @@
+//! `smam diagnose`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use smam::diagnose::{Case, Diagnosis, Options, Outcome, Verdict, diagnose as run_diagnosis};
+use smam::scene::Override;
+
+use super::CliError;
+use super::files::write;
+
+/// Arguments of `smam diagnose`.
+#[derive(Args)]
+pub struct DiagnoseArguments {
+    /// Folders with a recordings.toml, all of one rig
+    #[arg(required = true)]
+    dirs: Vec<PathBuf>,
+    /// Use this scene instead of the one that recordings.toml names
+    #[arg(long)]
+    scene: Option<String>,
+    /// Change a key of the scene; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Where to write diagnosis.json, report.html and scene.toml [default: out/diagnose_DIR]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Of the bootstrap's draws; the same seed gives the same answer
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all cores]; the answer does not depend on it
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// Runs the command. Exit code 0 whatever the verdict, but 1 when the recordings cannot be diagnosed.
+pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|e| CliError::Usage(format!("--threads {threads}: {e}")))?;
+    }
+    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let folders: Vec<&Path> = arguments.dirs.iter().map(PathBuf::as_path).collect();
+    let case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
+    let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
+    write_outcome(&outcome, &out)?;
+    print_diagnosis(&outcome.diagnosis);
+    eprintln!("written: {}", out.display());
+    let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
+    Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+fn default_out(folder: &Path) -> PathBuf {
+    let name = folder.canonicalize().ok().and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
+    Path::new("out").join(format!("diagnose_{}", name.unwrap_or_else(|| "recordings".to_owned())))
+}
+
+fn write_outcome(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
+    let json = serde_json::to_string_pretty(&outcome.diagnosis)
+        .map_err(|e| CliError::Failed(format!("the answer cannot be written as JSON: {e}")))?;
+    write(&out.join("diagnosis.json"), &format!("{json}\n"))?;
+    if let Some(scene) = outcome.scene_text() {
+        write(&out.join("scene.toml"), &scene?)?;
+    }
+    Ok(())
+}
+
+fn print_diagnosis(d: &Diagnosis) {
+    println!("{}", d.summary);
+    for e in &d.effects {
+        let on = e.channel.as_ref().map_or(String::new(), |c| format!(" ({c})"));
+        println!("  {:.3}  {} in {}{on}: {}", e.probability, e.name, e.element, e.law);
+        for (key, p) in &e.parameters {
+            println!("           {key} = {:.4e}  [{:.4e}, {:.4e}]", p.value, p.ci95[0], p.ci95[1]);
+        }
+    }
+    println!(
+        "  misfit per sample {:.4} -> {:.4} of the noise's variance",
+        d.detection.excess_chi2_per_sample, d.detection.excess_chi2_per_sample_corrected
+    );
+    for (channel, p) in &d.fit.channels {
+        println!(
+            "  sealed {}: {channel} rmse {:.4} -> {:.4} (noise {:.4})",
+            d.fit.holdout.join(", "),
+            p.rmse_baseline,
+            p.rmse_corrected,
+            p.noise_sd
+        );
+    }
+    d.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+}

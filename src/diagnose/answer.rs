@@ -1,0 +1,115 @@
+//! What a diagnosis answers: the keys of diagnosis.json.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// The whole answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    pub format: u32,
+    pub scene: String,
+    pub recordings: Vec<String>,
+    pub verdict: Verdict,
+    /// The verdict in two sentences.
+    pub summary: String,
+    pub detection: Detection,
+    pub location: Location,
+    pub effects: Vec<NamedEffect>,
+    /// Values of the calibrated parameters with the effects in place, SI.
+    pub calibration: BTreeMap<String, Estimate>,
+    pub fit: Proof,
+    pub next_experiment: NextExperiment,
+    pub warnings: Vec<String>,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    Adequate,
+    MissingPhysics,
+    Ambiguous,
+    UnknownPhysics,
+    UnusableData,
+}
+
+/// Step 2: is there more than noise?
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Detection {
+    /// Misfit of the refitted baseline, in units of the noise's variance.
+    pub excess_chi2_per_sample: f64,
+    /// The same with the effects found in place.
+    pub excess_chi2_per_sample_corrected: f64,
+    pub p_value: f64,
+    pub noise_sd: BTreeMap<String, f64>,
+    /// Ratio of slow noise to white noise of the same deviation.
+    pub noise_inflation: BTreeMap<String, f64>,
+    /// The smallest size of each effect that would have been named.
+    pub smallest_detectable: BTreeMap<String, f64>,
+}
+
+/// Step 3: where.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Location {
+    pub element: Option<String>,
+    pub ranked: Vec<(String, f64)>,
+    /// File, from, to.
+    pub time_windows_s: Vec<(String, f64, f64)>,
+    pub state_region: String,
+    /// Elements that the recorded channels cannot tell apart here.
+    pub indistinguishable: Vec<Vec<String>>,
+}
+
+/// Step 4 and 5: what.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedEffect {
+    pub name: String,
+    pub element: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channel: Option<String>,
+    pub probability: f64,
+    pub rivals: Vec<String>,
+    pub parameters: BTreeMap<String, Estimate>,
+    pub law: String,
+    pub hypothetical: bool,
+}
+
+/// A number with its interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    pub value: f64,
+    pub ci95: [f64; 2],
+}
+
+/// Step 7: how much better on sealed data.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Proof {
+    pub holdout: Vec<String>,
+    pub channels: BTreeMap<String, ChannelProof>,
+    /// Share of the gap between baseline and noise that the effects close on sealed data.
+    pub gap_closed: f64,
+    pub gain_ci95: [f64; 2],
+    /// What wrong effects gained through the same door.
+    pub placebo_gap_closed: Vec<(String, f64)>,
+}
+
+/// One channel of the sealed runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelProof {
+    pub rmse_baseline: f64,
+    pub rmse_corrected: f64,
+    pub noise_sd: f64,
+}
+
+/// Step 8: what to record next.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NextExperiment {
+    pub why: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    pub separation_sigma: f64,
+    /// A sensor that would settle it, if one would.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
+}

@@ -1,0 +1,66 @@
+//! Step 1: the scene's own calibration, refitted, and the noise that it leaves.
+
+use super::DiagnoseError;
+use super::case::Case;
+use super::fit::{Fit, Problem};
+use super::model::Model;
+use super::noise::{Noise, estimate};
+
+/// Baseline on the open runs, with the noise estimated from what it leaves.
+pub(super) struct Baseline {
+    pub fit: Fit,
+    pub noise: Vec<Noise>,
+    pub warnings: Vec<String>,
+}
+
+/// Fits the calibration from the scene's values and from the middle of the ranges; widens a bound that is met, once.
+pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
+    let mut noise = first_noise(case);
+    let mut warnings = Vec::new();
+    let mut fit = fit(case, &noise, None)?;
+    if !fit.on_bound.is_empty() {
+        for &i in &fit.on_bound {
+            let p = &mut case.parameters[i];
+            let half = (p.max - p.min) / 2.0;
+            (p.min, p.max) = ((p.min - half).max(p.min * 0.1), p.max + half);
+            warnings.push(format!("{} met the end of its range, which was widened to {:.3e} .. {:.3e}", p.key, p.min, p.max));
+        }
+        fit = self::fit(case, &noise, Some(&fit.x))?;
+    }
+    let residuals = problem(case, &noise).residuals(&fit.model, &fit.x).ok_or_else(diverges)?;
+    noise = estimate(case, &residuals);
+    let fit = self::fit(case, &noise, Some(&fit.x))?;
+    Ok(Baseline { fit, noise, warnings })
+}
+
+fn diverges() -> DiagnoseError {
+    DiagnoseError::Simulation("it diverges".to_owned())
+}
+
+fn problem<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
+    Problem { case, runs: case.subset(super::case::Sealed::Open), noise }
+}
+
+fn fit(case: &Case, noise: &[Noise], near: Option<&[f64]>) -> Result<Fit, DiagnoseError> {
+    let problem = problem(case, noise);
+    let model = Model::baseline();
+    let from_here = problem.fit(&model, &problem.start(&model, near));
+    if near.is_some() {
+        return from_here.ok_or_else(diverges);
+    }
+    let middle: Vec<f64> = case.parameters.iter().map(|p| (p.min + p.max) / 2.0).collect();
+    let from_middle = problem.fit(&model, &middle);
+    let best = [from_here, from_middle].into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost));
+    best.ok_or_else(diverges)
+}
+
+/// Stated noise, else that of the recording's fastest changes.
+fn first_noise(case: &Case) -> Vec<Noise> {
+    let of = |c: usize| {
+        let found = case.runs.iter().filter_map(|r| crate::recording::noise_sd(r.times_s(), &r.measured[c]));
+        let smallest = found.fold(f64::INFINITY, f64::min);
+        let sd = case.channels[c].stated_sd.unwrap_or(if smallest.is_finite() { smallest } else { 1.0 });
+        Noise { sd, inflation: 1.0 }
+    };
+    (0..case.channels.len()).map(of).collect()
+}

@@ -1,0 +1,98 @@
+//! Which effects a rig could have, and with which numbers each is first tried.
+
+use crate::effects::{CATALOGUE, EffectSpec, EffectTable, Element, ElementKind, Kind};
+use crate::scene::Scene;
+
+use super::case::Case;
+use super::model::Placed;
+
+/// An effect with numbers to start from; the size is the first of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    pub placed: Placed,
+    pub values: Vec<f64>,
+}
+
+/// Every effect that can sit on the case's scene, each in the variants it is first tried in.
+pub fn variants(case: &Case) -> Vec<Variant> {
+    let mut all = Vec::new();
+    for spec in CATALOGUE {
+        for placed in places(case, spec) {
+            let tried = starts(case, &placed).into_iter().filter(|v| fits_scene(case, &placed, v));
+            all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
+        }
+    }
+    all
+}
+
+fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
+    let file = &case.scene.file;
+    let on = |kind: ElementKind, index: usize, count: usize, channel: Option<&str>| Placed {
+        kind: spec.kind,
+        element: Element::of(kind, index, count),
+        channel: channel.map(str::to_owned),
+    };
+    let count = match spec.element {
+        ElementKind::Sensor => {
+            return case.channels.iter().map(|c| on(ElementKind::Sensor, 0, 1, Some(&c.column))).collect();
+        }
+        ElementKind::Mechanism | ElementKind::Syringe if file.axis.is_some() => 1,
+        ElementKind::Mechanism => 1,
+        ElementKind::Cable => file.cable.len(),
+        _ => file.muscle.len(),
+    };
+    let mut placed: Vec<Placed> = (0..count).map(|i| on(spec.element, i, count, None)).collect();
+    if spec.kind == Kind::GravityLoad && file.cable.is_empty() {
+        // On a bench the weight hangs on the muscle.
+        placed = (0..file.muscle.len()).map(|i| on(ElementKind::Muscle, i, file.muscle.len(), None)).collect();
+    }
+    placed
+}
+
+/// Whether the scene takes the effect: the checks of a scene file decide.
+fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
+    // A scene that already has friction growing with pressure calibrates it.
+    if placed.kind == Kind::PressureFriction && case.parameters.iter().any(|p| p.key.contains("m1_n_pa")) {
+        return false;
+    }
+    let mut file = case.scene.file.clone();
+    let table: EffectTable = placed.with(values).table();
+    file.effect.push(table);
+    Scene::from_file(file, &case.scene.path).is_ok()
+}
+
+/// Starting numbers. Where a second number bends the law (a time, a threshold), several are tried.
+fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
+    let typical = placed.spec().typical();
+    let with = |seconds: &[f64]| -> Vec<Vec<f64>> {
+        seconds
+            .iter()
+            .map(|&s| {
+                let mut values = typical.clone();
+                values[1] = s;
+                values
+            })
+            .collect()
+    };
+    match placed.kind {
+        Kind::Viscoelasticity => with(&[0.4, 4.0, 40.0]),
+        Kind::PlasticSet => with(&levels(case, "elongation", 1e-3).unwrap_or_else(|| vec![0.012, 0.018, 0.03])),
+        Kind::ExternalContact => with(&levels(case, "", std::f64::consts::PI / 180.0).unwrap_or_else(|| vec![0.6])),
+        Kind::NotchClosure => with(&[0.15, 0.25, 0.35]),
+        Kind::BearingFriction => with(&[0.01, 0.05]),
+        _ => vec![typical],
+    }
+}
+
+/// Levels of the first recorded channel of a kind at which something could begin, SI: between its middle and its ends.
+fn levels(case: &Case, name: &str, unit: f64) -> Option<Vec<f64>> {
+    let suffix = if name.is_empty() { "_deg" } else { "_mm" };
+    let channel = case.channels.iter().position(|c| c.column.ends_with(suffix) && c.column.contains(name))?;
+    let mut values: Vec<f64> =
+        case.runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values.get((share * (values.len().max(1) - 1) as f64) as usize).copied();
+    let shares: &[f64] = if name.is_empty() { &[0.03, 0.2, 0.6, 0.85, 0.97] } else { &[0.6, 0.9] };
+    let found: Vec<f64> = shares.iter().filter_map(|&s| at(s)).map(|v| v * unit).collect();
+    (!found.is_empty()).then_some(found)
+}

@@ -1,0 +1,34 @@
+//! Why a diagnosis cannot begin.
+
+use std::path::PathBuf;
+
+use crate::identify::IdentifyError;
+use crate::recording::RecordingError;
+use crate::scene::SceneError;
+use crate::system::SystemError;
+
+/// Anything that keeps recordings from being diagnosed.
+#[derive(Debug, thiserror::Error)]
+pub enum DiagnoseError {
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    System(#[from] SystemError),
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
+    #[error("there is no run to look at\n  remedy: list runs as [[run]] file = \"...\" in recordings.toml")]
+    Nothing,
+    #[error(
+        "{first} and {other} are not of one rig: scene or channels differ\n  remedy: diagnose them one after the other"
+    )]
+    Mixed { first: PathBuf, other: PathBuf },
+    #[error(
+        "{file}: [[calibrate]] key = \"{key}\": the fast model cannot vary it\n  \
+         remedy: calibrate a number of tube, coil, friction, compliance, linear muscle, cable, joint spring or axis"
+    )]
+    Parameter { file: PathBuf, key: String },
+    #[error("the scene cannot be simulated with what was recorded: {0}\n  remedy: try `smam compare` on the folder")]
+    Simulation(String),
+}

@@ -1,0 +1,97 @@
+//! Step 3: where the baseline's misfit sits in time and state.
+
+use super::case::{Case, CaseRun};
+use super::noise::Noise;
+
+/// Length of the pieces that time is cut into, s.
+const PIECE_S: f64 = 1.0;
+/// A piece counts when its mean square stands this many standard errors above that of noise.
+const SIGMA: f64 = 6.0;
+
+/// Stretches (file, from, to) in which the residual is more than noise.
+pub fn time_windows(runs: &[&CaseRun], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> Vec<(String, f64, f64)> {
+    let mut windows = Vec::new();
+    for (run, residuals) in runs.iter().zip(residuals) {
+        let times = run.times_s();
+        let mut open: Option<(f64, f64)> = None;
+        let mut from = 0;
+        while from < times.len() {
+            let to = times.partition_point(|t| *t < times[from] + PIECE_S).max(from + 1);
+            if is_loud(residuals, noise, from..to) {
+                let end = times[to - 1];
+                open = Some(open.map_or((times[from], end), |(start, _)| (start, end)));
+            } else if let Some((start, end)) = open.take() {
+                windows.push((run.file.clone(), start, end));
+            }
+            from = to;
+        }
+        windows.extend(open.map(|(start, end)| (run.file.clone(), start, end)));
+    }
+    windows
+}
+
+fn is_loud(residuals: &[Vec<f64>], noise: &[Noise], piece: std::ops::Range<usize>) -> bool {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (channel, noise) in residuals.iter().zip(noise) {
+        for r in channel[piece.clone()].iter().filter(|r| r.is_finite()) {
+            sum += (r / noise.sd).powi(2) / noise.inflation;
+            count += 1.0;
+        }
+    }
+    count > 10.0 && sum / count > 1.0 / noise.iter().map(|n| n.inflation).fold(1.0, f64::max)
+        + SIGMA * (2.0 / count).sqrt()
+}
+
+/// Number of levels that each state is cut into.
+const LEVELS: usize = 4;
+
+/// The part of state space where the misfit is greatest: a level of one recorded channel, and the direction of the first
+/// input. In words, `pressure_kpa 1200 .. 2100 while unloading`.
+pub fn state_region(case: &Case, runs: &[&CaseRun], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> String {
+    let mut best: Option<(f64, String)> = None;
+    for (c, channel) in case.channels.iter().enumerate() {
+        let Some((low, high)) = range(runs, c) else { continue };
+        let width = (high - low) / LEVELS as f64;
+        let mut sums = [[(0.0, 0.0); 2]; LEVELS];
+        for (run, residuals) in runs.iter().zip(residuals) {
+            for (i, &value) in run.measured[c].iter().enumerate().filter(|(_, v)| v.is_finite()) {
+                let level = (((value - low) / width) as usize).min(LEVELS - 1);
+                let Some(direction) = direction(run, i) else { continue };
+                let excess: f64 = residuals
+                    .iter()
+                    .zip(noise)
+                    .filter(|(r, _)| r[i].is_finite())
+                    .map(|(r, n)| (r[i] / n.sd).powi(2) - 1.0)
+                    .sum();
+                sums[level][direction].0 += excess;
+                sums[level][direction].1 += 1.0;
+            }
+        }
+        for (level, by_direction) in sums.iter().enumerate() {
+            for (direction, (sum, count)) in by_direction.iter().enumerate().filter(|(_, s)| s.1 > 50.0) {
+                let mean = sum / count;
+                if best.as_ref().is_none_or(|(b, _)| mean > *b) {
+                    let from = low + width * level as f64;
+                    let way = ["while unloading", "while loading"][direction];
+                    best = Some((mean, format!("{} {:.4} .. {:.4} {way}", channel.column, from, from + width)));
+                }
+            }
+        }
+    }
+    best.map_or_else(String::new, |(_, words)| words)
+}
+
+/// 1 where the first input rises, 0 where it falls, none where it rests.
+fn direction(run: &CaseRun, sample: usize) -> Option<usize> {
+    let input = run.drive.inputs.first()?;
+    let at = run.lead_in + sample;
+    let before = input[at.saturating_sub(1)];
+    let after = input[(at + 1).min(input.len() - 1)];
+    if after == before { None } else { Some(usize::from(after > before)) }
+}
+
+fn range(runs: &[&CaseRun], channel: usize) -> Option<(f64, f64)> {
+    let finite = runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    (high > low).then_some((low, high))
+}

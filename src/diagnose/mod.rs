@@ -1,0 +1,272 @@
+//! What a recording shows and the simulation lacks: locate, name, model, prove, and say what to record next.
+//!
+//! [`diagnose`] goes through the steps one by one, each a module of its own: [`preflight`], [`baseline`], detection in
+//! [`noise`], [`locate`], [`search`], [`verdict`], [`prove`]. It works on the fast model of the scene
+//! ([`crate::system::Twin`]); what it finds is written as a scene.
+
+mod answer;
+mod baseline;
+mod candidates;
+mod case;
+mod corrected;
+mod error;
+mod fit;
+mod locate;
+mod model;
+mod noise;
+mod preflight;
+mod prove;
+mod search;
+mod verdict;
+
+use std::collections::BTreeMap;
+
+pub use answer::{
+    ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict,
+};
+pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Sealed};
+pub use error::DiagnoseError;
+pub use fit::Fit;
+pub use model::{Model, Placed};
+pub use noise::Noise;
+pub use search::title;
+
+use fit::Problem;
+use search::Found;
+use verdict::Excess;
+
+/// What a diagnosis is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Of the bootstrap's draws.
+    pub seed: u64,
+}
+
+/// A diagnosis with what its report and its scene are made of.
+pub struct Outcome {
+    pub diagnosis: Diagnosis,
+    pub case: Case,
+    /// The calibration alone and with the effects, both fitted to the open runs.
+    pub baseline: Option<Fit>,
+    pub corrected: Option<Fit>,
+    /// The corrected fit renewed on all runs: what the scene gets.
+    pub complete: Option<Fit>,
+    /// Measured minus simulated of all runs: baseline, corrected.
+    pub residuals: Option<[Vec<Vec<Vec<f64>>>; 2]>,
+    pub noise: Vec<Noise>,
+    /// Models that were refitted and lost, with their chi².
+    pub rivals: Vec<(String, f64)>,
+}
+
+impl Outcome {
+    /// The corrected scene as text.
+    ///
+    /// # Errors
+    /// As [`corrected::corrected_scene`].
+    pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
+        let fit = self.complete.as_ref()?;
+        Some(corrected::corrected_scene(&self.case, fit, &self.diagnosis.summary))
+    }
+}
+
+/// Diagnoses a case; `say` hears of progress.
+///
+/// # Errors
+/// When the scene cannot be simulated at all. Recordings that cannot carry a diagnosis are an answer, not an error.
+pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
+    let preflight = {
+        let noise: Vec<Noise> = case.channels.iter().map(|_| Noise { sd: 1.0, inflation: 1.0 }).collect();
+        preflight::preflight(&case, &Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise })
+    };
+    if !preflight.unusable.is_empty() {
+        return Ok(unusable(case, preflight));
+    }
+    say("baseline".to_owned());
+    let base = baseline::baseline(&mut case)?;
+    let variants = candidates::variants(&case);
+    let open = Problem { case: &case, runs: case.subset(Sealed::Open), noise: &base.noise };
+    let found = search::search(&open, base.fit.clone(), &variants, say);
+    let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
+    let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
+    let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &base.noise };
+    say("sealed runs".to_owned());
+    let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
+    let found = confirm(found, &proof, &mut warnings);
+    let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
+    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &base.noise };
+    let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
+    let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
+    let after = whole.residuals(&found.best.model, &found.best.x).ok_or_else(diverges)?;
+    let (baseline_excess, error) = noise::structured_excess(&before, &base.noise);
+    let (best_excess, _) = noise::structured_excess(&after, &base.noise);
+    let excess = Excess { baseline: baseline_excess, best: best_excess, error };
+    let effects = verdict::named(&found, &complete);
+    let verdict = verdict::verdict(&found, &effects, excess);
+    let location = location(&case, &found, &effects, &whole, &before, verdict);
+    let rivals = found.rivals.iter().flatten().map(|f| (title(&f.model), f.cost)).collect();
+    let mut diagnosis = Diagnosis {
+        format: 1,
+        scene: case.scene_name.clone(),
+        recordings: case.folders.clone(),
+        verdict,
+        summary: String::new(),
+        detection: detection(&case, &base.noise, &found, excess),
+        location,
+        effects,
+        calibration: calibration(&case, &complete),
+        fit: proof,
+        next_experiment: NextExperiment::default(),
+        warnings,
+    };
+    diagnosis.summary = summary(&diagnosis);
+    let noise = base.noise.clone();
+    Ok(Outcome {
+        diagnosis,
+        baseline: Some(found.baseline),
+        corrected: Some(found.best),
+        complete: Some(complete),
+        residuals: Some([before, after]),
+        noise,
+        rivals,
+        case,
+    })
+}
+
+/// Takes back what does not hold on the sealed runs.
+fn confirm(mut found: Found, proof: &Proof, warnings: &mut Vec<String>) -> Found {
+    if !found.best.model.effects.is_empty() && proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5 {
+        warnings.push(format!(
+            "{} fitted the open runs but not the sealed ones, and was dropped",
+            title(&found.best.model)
+        ));
+        found.best = found.baseline.clone();
+        found.rivals.clear();
+    }
+    found
+}
+
+fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
+    let diagnosis = Diagnosis {
+        format: 1,
+        scene: case.scene_name.clone(),
+        recordings: case.folders.clone(),
+        verdict: Verdict::UnusableData,
+        summary: format!("The recordings cannot be diagnosed: {}.", preflight.unusable.join("; ")),
+        detection: Detection::default(),
+        location: Location::default(),
+        effects: Vec::new(),
+        calibration: BTreeMap::new(),
+        fit: Proof::default(),
+        next_experiment: NextExperiment::default(),
+        warnings: [preflight.unusable, preflight.warnings, case.notes.clone()].concat(),
+    };
+    Outcome {
+        diagnosis,
+        case,
+        baseline: None,
+        corrected: None,
+        complete: None,
+        residuals: None,
+        noise: Vec::new(),
+        rivals: Vec::new(),
+    }
+}
+
+fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Detection {
+    let by_channel = |f: fn(&Noise) -> f64| -> BTreeMap<String, f64> {
+        case.channels.iter().zip(noise).map(|(c, n)| (c.column.clone(), f(n))).collect()
+    };
+    let mut smallest = BTreeMap::new();
+    for s in &found.screened {
+        let size: &mut f64 = smallest.entry(s.variant.placed.title()).or_insert(f64::INFINITY);
+        *size = size.min(s.least_size);
+    }
+    smallest.retain(|_, size| size.is_finite());
+    let z = excess.baseline / excess.error;
+    let gain = found.baseline.cost - found.best.cost;
+    Detection {
+        excess_chi2_per_sample: excess.baseline,
+        excess_chi2_per_sample_corrected: excess.best,
+        p_value: (-0.5 * z.max(0.0).powi(2)).exp().min((-0.5 * gain.max(0.0)).exp()),
+        noise_sd: by_channel(|n| n.sd),
+        noise_inflation: by_channel(|n| n.inflation),
+        smallest_detectable: smallest,
+    }
+}
+
+fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> {
+    let estimate = |i: usize| {
+        let (value, half) = (fit.x[i], fit.half_width(i));
+        Estimate { value, ci95: [value - half, value + half] }
+    };
+    case.parameters.iter().enumerate().map(|(i, p)| (p.key.clone(), estimate(i))).collect()
+}
+
+fn location(
+    case: &Case,
+    found: &Found,
+    effects: &[NamedEffect],
+    whole: &Problem,
+    before: &[Vec<Vec<f64>>],
+    verdict: Verdict,
+) -> Location {
+    if verdict == Verdict::Adequate {
+        return Location::default();
+    }
+    let mut shares: BTreeMap<String, f64> = BTreeMap::new();
+    for e in effects {
+        *shares.entry(e.element.clone()).or_default() += e.probability;
+    }
+    if shares.is_empty() {
+        // Nothing of the catalogue: where the signatures promise most.
+        for s in &found.screened {
+            let share = shares.entry(s.variant.placed.element.to_string()).or_default();
+            *share = share.max(s.gain);
+        }
+    }
+    let sum: f64 = shares.values().sum();
+    let mut ranked: Vec<(String, f64)> = shares.into_iter().map(|(e, s)| (e, s / sum.max(f64::MIN_POSITIVE))).collect();
+    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    Location {
+        element: ranked.first().map(|(e, _)| e.clone()),
+        ranked,
+        time_windows_s: locate::time_windows(&whole.runs, before, whole.noise),
+        state_region: locate::state_region(case, &whole.runs, before, whole.noise),
+        indistinguishable: Vec::new(),
+    }
+}
+
+/// The verdict in two sentences.
+fn summary(d: &Diagnosis) -> String {
+    let effects: Vec<String> = d
+        .effects
+        .iter()
+        .map(|e| match &e.channel {
+            Some(channel) => format!("{} on {channel}", e.name),
+            None => format!("{} in {}", e.name, e.element),
+        })
+        .collect();
+    let closed = format!(
+        "On the sealed runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
+        100.0 * d.fit.gap_closed
+    );
+    match d.verdict {
+        Verdict::Adequate => format!(
+            "The calibrated scene explains the recordings down to their noise: nothing is missing that they could show. \
+             What is left is {:.4} of the noise's variance.",
+            d.detection.excess_chi2_per_sample.max(0.0)
+        ),
+        Verdict::MissingPhysics => format!("The scene lacks {}. {closed}", effects.join(" and ")),
+        Verdict::Ambiguous => format!("The scene lacks one of these: {}. {closed}", effects.join(", ")),
+        Verdict::UnknownPhysics => format!(
+            "Something is missing that is not in the catalogue{}. {}",
+            d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
+            if effects.is_empty() {
+                "No known effect explains any of it.".to_owned()
+            } else {
+                format!("The nearest known effect, {}, leaves a part of it.", effects.join(" with "))
+            }
+        ),
+        Verdict::UnusableData => d.summary.clone(),
+    }
+}

@@ -1,0 +1,146 @@
+//! Step 0: whether the recordings can carry a diagnosis.
+
+use super::case::{Case, CaseRun};
+use super::fit::Problem;
+use super::model::Model;
+
+/// Fewer samples than this say nothing.
+const LEAST_SAMPLES: usize = 200;
+/// Share of samples at one end value that makes a channel saturated.
+const SATURATED_SHARE: f64 = 0.2;
+
+/// Reasons why nothing can be said, and things the reader should know.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preflight {
+    pub unusable: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+/// Looks at the recordings alone and at how the uncalibrated scene compares in scale.
+pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
+    let mut found = Preflight::default();
+    let samples = problem.samples();
+    if samples < LEAST_SAMPLES {
+        found.unusable.push(format!("only {samples} samples: record at least some ten seconds at 50 Hz"));
+    }
+    inputs(case, &mut found);
+    channels(case, &mut found);
+    if found.unusable.is_empty() {
+        scales(case, problem, &mut found);
+    }
+    found
+}
+
+fn inputs(case: &Case, found: &mut Preflight) {
+    let moves = |run: &CaseRun| {
+        run.drive.inputs.iter().any(|x| {
+            let (low, high) = ends(x);
+            high > low
+        })
+    };
+    if !case.runs.iter().any(moves) {
+        found.unusable.push("no input ever moves: record a programme that uses most of the stroke".to_owned());
+    }
+    for (i, input) in case.scene.file.input.iter().enumerate() {
+        let stroke = case.runs.iter().map(|r| ends(&r.drive.inputs[i])).fold(0.0f64, |m, (l, h)| m.max(h - l));
+        let is_plunger = input.channel.contains("plunger");
+        if is_plunger && stroke > 0.2 {
+            found.unusable.push(format!(
+                "{} moves by {stroke:.2} m: its unit is wrong by a factor of 1000 (the name must end in the unit that the numbers are in)",
+                input.channel
+            ));
+        } else if is_plunger && stroke > 0.0 && stroke < 2e-5 {
+            found.unusable.push(format!(
+                "{} moves by {:.4} mm only: a wrong unit, or too quiet a programme",
+                input.channel,
+                stroke * 1e3
+            ));
+        }
+    }
+}
+
+fn channels(case: &Case, found: &mut Preflight) {
+    for (c, channel) in case.channels.iter().enumerate() {
+        let values: Vec<f64> =
+            case.runs.iter().flat_map(|r| r.measured[c].iter().copied()).filter(|v| v.is_finite()).collect();
+        let (low, high) = ends(&values);
+        if values.is_empty() {
+            found.unusable.push(format!("{}: no value was recorded", channel.column));
+        } else if high <= low {
+            found.unusable.push(format!("{}: constant at {low}; the sensor was off or saturated", channel.column));
+        } else {
+            let at = |end: f64| values.iter().filter(|v| **v == end).count() as f64 / values.len() as f64;
+            if at(low).max(at(high)) > SATURATED_SHARE {
+                found.warnings.push(format!(
+                    "{}: {:.0} % of its samples stand at one end value: saturated?",
+                    channel.column,
+                    100.0 * at(low).max(at(high))
+                ));
+            }
+        }
+    }
+}
+
+/// Factors by which a channel is typically wrong, with their names.
+const FACTORS: [(f64, &str); 4] = [
+    (1000.0, "1000 (a prefix: milli, kilo)"),
+    (1.0e-3, "1/1000 (a prefix: milli, kilo)"),
+    (std::f64::consts::PI / 180.0, "pi/180 (degrees and radians)"),
+    (180.0 / std::f64::consts::PI, "180/pi (degrees and radians)"),
+];
+
+/// Compares each channel's spread with that of the scene as it stands.
+fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
+    let model = Model::baseline();
+    let start = problem.start(&model, None);
+    let Some(residuals) = problem.residuals(&model, &start) else {
+        found.unusable.push("the scene cannot follow the recorded inputs: it diverges".to_owned());
+        return;
+    };
+    for (c, channel) in case.channels.iter().enumerate() {
+        let mut measured = Vec::new();
+        let mut simulated = Vec::new();
+        for (run, residual) in problem.runs.iter().zip(&residuals) {
+            for (m, r) in run.measured[c].iter().zip(&residual[c]).filter(|(m, r)| m.is_finite() && r.is_finite()) {
+                measured.push(*m);
+                simulated.push(m - r);
+            }
+        }
+        let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);
+        let named = FACTORS.iter().find(|(f, _)| (ratio / f).ln().abs() < 0.7f64.min(f.ln().abs() / 3.0));
+        if let Some((_, words)) = named.filter(|_| !(0.05..=20.0).contains(&ratio)) {
+            found.unusable.push(format!(
+                "{}: moves {ratio:.3e} times as far as the scene does: a factor of {words}; mend the unit in the column's name",
+                channel.column
+            ));
+        }
+        let correlation = correlation(&measured, &simulated);
+        if correlation < -0.8 {
+            found.unusable.push(format!("{}: runs against the scene: sign or channel swapped?", channel.column));
+        } else if correlation < 0.3 {
+            found.warnings.push(format!(
+                "{}: hardly follows the scene (correlation {correlation:.2}): channels swapped?",
+                channel.column
+            ));
+        }
+    }
+}
+
+fn ends(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let m = mean(values);
+    (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (ma, mb) = (mean(a), mean(b));
+    let product: f64 = a.iter().zip(b).map(|(x, y)| (x - ma) * (y - mb)).sum::<f64>() / a.len().max(1) as f64;
+    product / (spread(a) * spread(b)).max(f64::MIN_POSITIVE)
+}

@@ -1,0 +1,224 @@
+//! Which effects explain the recordings: screening by signature, joint refits, additions, swaps, deletions.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::candidates::Variant;
+use super::fit::{Fit, Problem};
+use super::model::{Model, Placed};
+
+/// At most this many effects in one answer.
+const MOST_EFFECTS: usize = 4;
+/// Candidates that are refitted in full at every stage.
+const REFITTED: usize = 10;
+/// Share of an effect in chi² per sample below which it is not called missing physics.
+const LEAST_SHARE: f64 = 2e-3;
+/// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
+const LEAST_GAIN: f64 = 35.0;
+
+/// A candidate with what it would gain, by its signature alone.
+#[derive(Clone, Debug)]
+pub struct Screened {
+    pub variant: Variant,
+    /// Fall of chi² that the signature promises, colour of the noise allowed for.
+    pub gain: f64,
+    /// Size at which the promise is met.
+    pub size: f64,
+    /// Size that would gain [`least_gain`]: what could just be seen.
+    pub least_size: f64,
+    /// The signature orthogonal to what is fitted already, of unit length.
+    pub signature: DVector<f64>,
+}
+
+/// Fall of chi² that makes an effect worth naming, for so many samples.
+pub fn least_gain(samples: usize) -> f64 {
+    LEAST_GAIN.max(LEAST_SHARE * samples as f64)
+}
+
+/// Signatures of all variants at a fit, best first. Their sizes are taken as small: all are present at zero at once.
+pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Screened> {
+    let fresh: Vec<&Variant> = variants.iter().filter(|v| !fit.model.effects.contains(&v.placed)).collect();
+    let Some(known) = problem.tangent(&fit.model, &fit.x) else { return Vec::new() };
+    let basis = known.slopes.clone().qr().q();
+    let left = orthogonal(&basis, &known.residual);
+    let samples = known.residual.len();
+    let groups: Vec<&[&Variant]> = fresh.chunks(super::model::LANES).collect();
+    let mut screened: Vec<Screened> = groups
+        .par_iter()
+        .flat_map_iter(|group| signatures(problem, fit, group))
+        .map(|(variant, raw)| {
+            let signature = orthogonal(&basis, &raw);
+            let length = signature.norm();
+            let scale = variant.placed.spec().parameters[0].typical.abs();
+            let amplitude = if length > 1e-9 * raw.norm() { signature.dot(&left) / length } else { 0.0 };
+            let range = variant.placed.spec().parameters[0].range;
+            let feasible = (amplitude > 0.0 && range.max > 0.0) || (amplitude < 0.0 && range.min < 0.0);
+            Screened {
+                gain: if feasible { amplitude * amplitude } else { 0.0 },
+                size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
+                least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
+                signature: signature / length.max(f64::MIN_POSITIVE),
+                variant,
+            }
+        })
+        .collect();
+    screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    screened
+}
+
+/// Derivative of the residuals to the size of each variant at zero, in units of the typical size.
+fn signatures(problem: &Problem, fit: &Fit, group: &[&Variant]) -> Vec<(Variant, DVector<f64>)> {
+    let mut model = fit.model.clone();
+    let mut x = fit.x.clone();
+    for variant in group {
+        let mut values = variant.values.clone();
+        values[0] = 0.0;
+        model.effects.push(variant.placed.clone());
+        model.values.push(values);
+        model.fitted.push(vec![0]);
+        x.push(0.0);
+    }
+    // Several thresholds of one law cannot stand in one plant: the last would win. They go alone.
+    let mut seen: Vec<&Placed> = Vec::new();
+    for variant in group {
+        if seen.contains(&&variant.placed) && group.len() > 1 {
+            return group.iter().flat_map(|v| signatures(problem, fit, &[v])).collect();
+        }
+        seen.push(&variant.placed);
+    }
+    let columns = problem.columns(&model, &x, fit.x.len()..x.len());
+    let Some(columns) = columns else { return Vec::new() };
+    group.iter().map(|v| (*v).clone()).zip(columns.column_iter().map(|c| c.into_owned())).collect()
+}
+
+fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
+    v - basis * basis.tr_mul(v)
+}
+
+/// A model with the rivals that were refitted beside it.
+#[derive(Clone, Debug)]
+pub struct Found {
+    pub baseline: Fit,
+    pub best: Fit,
+    /// For each effect of the best: the other effects tried in its place, refitted jointly; cheapest first.
+    pub rivals: Vec<Vec<Fit>>,
+    /// What the baseline's residual promised of every effect.
+    pub screened: Vec<Screened>,
+    /// What the final residual still promises.
+    pub left: Vec<Screened>,
+    pub samples: usize,
+}
+
+/// Searches from a baseline.
+pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    let samples = problem.samples();
+    let least = least_gain(samples);
+    let mut best = baseline.clone();
+    let mut first_screened = Vec::new();
+    let mut left;
+    let mut rivals: Vec<Vec<Fit>> = Vec::new();
+    loop {
+        left = screen(problem, &best, variants);
+        if first_screened.is_empty() {
+            first_screened = left.clone();
+        }
+        if best.model.effects.len() >= MOST_EFFECTS {
+            break;
+        }
+        let refits = refit(problem, &best, &pick(&left, least));
+        let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
+        say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
+        rivals.push(refits[1..].to_vec());
+        best = winner.clone();
+        if best.model.effects.len() > 1 {
+            best = swap(problem, best, variants, &mut rivals, least, say);
+        }
+    }
+    Found { baseline, best, rivals, screened: first_screened, left, samples }
+}
+
+/// The candidates worth a full refit: the most promising of every effect.
+fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
+    let mut picked: Vec<Screened> = Vec::new();
+    for s in screened {
+        // A signature at zero size says little of laws with a threshold: they get the benefit of the doubt.
+        let promising = s.gain > 0.2 * least;
+        if promising && picked.iter().filter(|p| p.variant.placed == s.variant.placed).count() < 2 {
+            picked.push(s.clone());
+        }
+        if picked.len() >= REFITTED {
+            break;
+        }
+    }
+    picked
+}
+
+/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better.
+fn refit(problem: &Problem, from: &Fit, candidates: &[Screened]) -> Vec<Fit> {
+    let fits: Vec<Option<Fit>> =
+        candidates.par_iter().map(|s| add(problem, from, &s.variant.placed, &start_values(s))).collect();
+    let mut fits: Vec<Fit> = fits.into_iter().flatten().collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut seen: Vec<Placed> = Vec::new();
+    fits.retain(|f| {
+        let last = f.model.effects.last().cloned();
+        let is_new = last.as_ref().is_some_and(|l| !seen.contains(l));
+        seen.extend(last);
+        is_new
+    });
+    fits
+}
+
+/// Numbers to start a refit from: the size that the signature promises, kept within reason.
+fn start_values(s: &Screened) -> Vec<f64> {
+    let mut values = s.variant.values.clone();
+    let p = &s.variant.placed.spec().parameters[0];
+    let largest = 30.0 * p.typical.abs();
+    let size = s.size.clamp(-largest, largest).clamp(p.range.min, p.range.max);
+    values[0] = if size == 0.0 { p.typical } else { size };
+    values
+}
+
+fn add(problem: &Problem, from: &Fit, placed: &Placed, values: &[f64]) -> Option<Fit> {
+    let model = from.model.plus(placed, values);
+    let mut start = from.x.clone();
+    start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
+    problem.fit(&model, &start)
+}
+
+/// Tries to leave each effect out, and others in its place.
+fn swap(
+    problem: &Problem,
+    mut best: Fit,
+    variants: &[Variant],
+    rivals: &mut [Vec<Fit>],
+    least: f64,
+    say: &dyn Fn(String),
+) -> Fit {
+    for index in 0..best.model.effects.len() {
+        let fewer = best.model.without(index);
+        let start: Vec<f64> = problem.start_without(&best, index);
+        let Some(reduced) = problem.fit(&fewer, &start) else { continue };
+        let screened = screen(problem, &reduced, variants);
+        let others: Vec<Screened> =
+            pick(&screened, least).into_iter().filter(|s| s.variant.placed != best.model.effects[index]).collect();
+        let refits = refit(problem, &reduced, &others);
+        if let Some(better) = refits.first().filter(|f| f.cost < best.cost - 1.0) {
+            say(format!("swapped for {}: chi2 {:.0} -> {:.0}", title(&better.model), best.cost, better.cost));
+            let mut model_order = better.clone();
+            std::mem::swap(&mut best, &mut model_order);
+            rivals[index] = vec![model_order];
+            return best;
+        }
+        rivals[index] = refits;
+    }
+    best
+}
+
+/// Effects of a model in words.
+pub fn title(model: &Model) -> String {
+    if model.effects.is_empty() {
+        return "calibration alone".to_owned();
+    }
+    model.effects.iter().map(Placed::title).collect::<Vec<_>>().join(" + ")
+}

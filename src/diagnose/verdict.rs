@@ -1,0 +1,119 @@
+//! Steps 4 to 6: which effects are named, with what probability, and when none is.
+
+use std::collections::BTreeMap;
+
+use super::answer::{Estimate, NamedEffect, Verdict};
+use super::fit::Fit;
+use super::model::Placed;
+use super::search::Found;
+
+/// Rivals with less probability than this are not in the set.
+const LEAST_PROBABILITY: f64 = 0.05;
+/// An answer is one answer from this probability on.
+const SURE: f64 = 0.9;
+/// Share of the baseline's misfit that may be left when the answer is complete: laws are idealisations.
+const LEFT_SHARE: f64 = 0.12;
+/// Misfit per sample below which nothing is called unknown, in units of the noise's variance.
+const LEFT_LEAST: f64 = 0.015;
+
+/// Misfit of baseline and best, per sample, and the standard error of such a number.
+#[derive(Clone, Copy, Debug)]
+pub struct Excess {
+    pub baseline: f64,
+    pub best: f64,
+    pub error: f64,
+}
+
+/// What the search and what is left amount to.
+pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess) -> Verdict {
+    let loud = |e: f64| e > 5.0 * excess.error && e > LEFT_LEAST;
+    if found.best.model.effects.is_empty() {
+        return if loud(excess.baseline) { Verdict::UnknownPhysics } else { Verdict::Adequate };
+    }
+    if loud(excess.best) && excess.best > LEFT_SHARE * excess.baseline {
+        return Verdict::UnknownPhysics;
+    }
+    let ambiguous = found.best.model.effects.iter().any(|placed| {
+        let own = effects.iter().find(|e| e.name == placed.spec().name && e.element == placed.element.to_string());
+        own.is_some_and(|e| e.probability < SURE)
+    });
+    if ambiguous { Verdict::Ambiguous } else { Verdict::MissingPhysics }
+}
+
+/// The effects of the best model with those rivals that the data leave standing.
+pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
+    let mut effects = Vec::new();
+    for (index, placed) in found.best.model.effects.iter().enumerate() {
+        let standing = standing(found, index, placed);
+        let rivals = |own: &Placed| {
+            standing.iter().filter(|(p, _, _)| !p.says_the_same(own)).map(|(p, _, _)| p.title()).collect::<Vec<_>>()
+        };
+        for (rival, probability, fit) in &standing {
+            if effects.iter().any(|e: &NamedEffect| is_said(e, rival)) {
+                continue;
+            }
+            let is_best = rival.says_the_same(placed);
+            let (source, at) = if is_best { (final_fit, index) } else { (*fit, fit.model.effects.len() - 1) };
+            effects.push(NamedEffect {
+                name: rival.spec().name.to_owned(),
+                element: rival.element.to_string(),
+                channel: rival.channel.clone(),
+                probability: *probability,
+                rivals: rivals(rival),
+                parameters: parameters(source, at),
+                law: rival.spec().law.to_owned(),
+                hypothetical: false,
+            });
+        }
+    }
+    effects
+}
+
+fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
+    effect.name == placed.spec().name
+        && effect.element == placed.element.to_string()
+        && effect.channel == placed.channel
+}
+
+/// The effect and its rivals with their probabilities, best first; the same words are counted once.
+fn standing<'a>(found: &'a Found, index: usize, placed: &Placed) -> Vec<(Placed, f64, &'a Fit)> {
+    let best = &found.best;
+    let rivals = found.rivals.get(index).map_or(&[][..], Vec::as_slice);
+    let worst = found.baseline.cost - best.cost;
+    // Between idealised laws a difference counts in proportion to what they explain, not to the number of samples.
+    let unit = (0.005 * worst / best.model.effects.len() as f64).max(1.0);
+    let mut all: Vec<(Placed, f64, &Fit)> = vec![(placed.clone(), 1.0, best)];
+    for rival in rivals {
+        let Some(own) = rival.model.effects.last() else { continue };
+        if all.iter().any(|(p, _, _)| p.says_the_same(own)) {
+            continue;
+        }
+        all.push((own.clone(), (-(rival.cost - best.cost).max(0.0) / (2.0 * unit)).exp(), rival));
+    }
+    let sum: f64 = all.iter().map(|(_, w, _)| w).sum();
+    all.iter_mut().for_each(|(_, w, _)| *w /= sum);
+    all.retain(|(p, w, _)| *w >= LEAST_PROBABILITY || p == placed);
+    all
+}
+
+/// Numbers of one effect of a fit, with intervals for those that were fitted.
+fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
+    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let spec = fit.model.effects[effect].spec();
+    let mut numbers = BTreeMap::new();
+    for (i, p) in spec.parameters.iter().enumerate() {
+        let place = fit.model.places().iter().position(|&at| at == (effect, i));
+        let estimate = match place {
+            Some(k) => {
+                let (value, half) = (fit.x[calibration + k], fit.half_width(calibration + k));
+                Estimate { value, ci95: [value - half, value + half] }
+            }
+            None => {
+                let value = fit.model.values[effect][i];
+                Estimate { value, ci95: [value, value] }
+            }
+        };
+        numbers.insert(p.key.to_owned(), estimate);
+    }
+    numbers
+}
