@@ -1,5 +1,7 @@
 //! Contract of the fast model: it answers like the full scene, with and without effects, and its derivatives are exact.
 
+use nalgebra::Const;
+use num_dual::DualSVec64;
 use smam::effects::{CATALOGUE, Effect, EffectTable, ElementKind};
 use smam::recording::Recording;
 use smam::scene::Scene;
@@ -89,6 +91,37 @@ fn an_effect_of_zero_size_is_absent_to_the_bit() {
             let (full_zero, fast_zero, _) = both(&scene, 3.0);
             assert!(full == full_zero, "{title}: the full scene changes");
             assert!(fast == fast_zero, "{title}: the fast model changes");
+        }
+    }
+}
+
+#[test]
+fn sensitivities_are_those_of_finite_differences() {
+    for name in STOCK {
+        let scene = Scene::load(name, &[]).expect("stock");
+        let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+        let times_s = Schedule::even(12.0, 0.01).0;
+        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
+        let run = TwinRun { times_s, inputs };
+        for spec in &scene.file.calibrate {
+            let parameter = twin.parameter(&spec.key).expect("calibrated");
+            let middle = (spec.min + spec.max) / 2.0;
+            let at = |x: f64| {
+                let parameters = vec![(parameter.clone(), x)];
+                twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite")
+            };
+            let h = 1e-4 * middle;
+            let (above, below) = (at(middle + h), at(middle - h));
+            let parameters = vec![(parameter.clone(), DualSVec64::<1>::from_re(middle).derivative(0))];
+            let dual = twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite");
+            for (c, column) in twin.columns().enumerate() {
+                let exact: Vec<f64> = dual[c].iter().map(|d| d.eps.unwrap_generic(Const::<1>, Const::<1>)[0]).collect();
+                let differences = (0..exact.len()).map(|i| (above[c][i] - below[c][i]) / (2.0 * h) - exact[i]);
+                let rms = |x: &mut dyn Iterator<Item = f64>| (x.map(|v| v * v).sum::<f64>() / exact.len() as f64).sqrt();
+                let (error, size) = (rms(&mut differences.into_iter()), rms(&mut exact.iter().copied()));
+                println!("{name} {column} to {}: {:.5} of {size:.3e}", spec.key, error / size);
+                assert!(error < 0.05 * size, "{name}: {column} to {}", spec.key);
+            }
         }
     }
 }

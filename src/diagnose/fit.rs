@@ -134,7 +134,8 @@ impl<'a> Problem<'a> {
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         let numbers = self.numbers(model);
         let mut x: Vec<f64> = start.iter().zip(&numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect();
-        let mut damping = 1e-4;
+        // Undamped at first: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
+        let mut damping = 1e-10;
         let (mut matrix, mut gradient, mut cost) = self.normal(model, &numbers, &x)?;
         for _ in 0..ITERATIONS {
             let Some((next, next_cost)) = self.improve(model, &numbers, &x, &matrix, &gradient, cost, &mut damping)
@@ -176,10 +177,10 @@ impl<'a> Problem<'a> {
                 x.iter().zip(numbers).zip(step.iter()).map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max)).collect();
             let there = self.residuals(model, &next).map(|r| self.cost(&r) + self.prior_cost(numbers, &next));
             if let Some(there) = there.filter(|t| *t < cost) {
-                *damping = (*damping / 6.0).max(1e-9);
+                *damping = (*damping / 10.0).max(1e-10);
                 return Some((next, there));
             }
-            *damping = (*damping * 8.0).max(1e-6);
+            *damping *= 100.0;
         }
         None
     }
@@ -276,7 +277,7 @@ fn bounded_step(
         let mut right = gradient.clone();
         let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
         for i in 0..x.len() {
-            damped[(i, i)] += damping * matrix[(i, i)] + 1e-12 * largest;
+            damped[(i, i)] += damping * matrix[(i, i)] + 1e-14 * largest;
             if held[i] {
                 damped.row_mut(i).fill(0.0);
                 damped.column_mut(i).fill(0.0);
