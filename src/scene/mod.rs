@@ -5,6 +5,7 @@
 //! value and remedy.
 
 mod check;
+mod check_muscles;
 mod error;
 mod file;
 mod load;
