@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use smam::recording::{Recording, read_csv, survey};
+use smam::recording::{Recording, read_csv, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
 
@@ -250,7 +250,7 @@ fn check(arguments: &RunArguments, simulation: &Simulation, recording: &Recordin
     }
     if let Some(path) = &arguments.junit {
         let text = junit::report(&scene.file.name, &verdicts);
-        std::fs::write(path, text).map_err(|source| CliError::Write { file: path.clone(), source })?;
+        write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?;
     }
     let failed = verdicts.iter().filter(|v| !v.passed).count();
     println!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);
