@@ -151,6 +151,8 @@ fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) 
         csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
         recorder: arguments.check.then(Recorder::default),
         progress: Some(Progress::new(end_s)),
+        #[cfg(feature = "viz")]
+        viewers: Vec::new(),
     };
     add_viewers(arguments, name, view, &mut observers)?;
     Ok(observers)
