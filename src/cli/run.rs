@@ -79,8 +79,10 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if let Some(book) = simulation.energy_book() {
         print_energy(book);
     }
+    // Ctrl-C is how serving ends: only one that came before cut the run short.
+    let cut_short = interrupted();
     hold_server(arguments);
-    if interrupted() {
+    if cut_short {
         eprintln!("interrupted at {reached_s:.3} s: what was computed is written");
         return Ok(ExitCode::from(1));
     }
