@@ -34,7 +34,7 @@ impl<W: Write> RowWriter<W> {
         Ok(Self { target, column_count: columns.len(), line })
     }
 
-    /// Writes one row: the time [s] and one value per column, in the column's unit.
+    /// Writes one row: the time (s) and one value per column, in the column's unit.
     ///
     /// # Errors
     /// What the target says; another number of values than columns.
@@ -112,7 +112,7 @@ impl CsvWriter {
         Ok(Self { path: path.to_owned(), rows: start().map_err(|source| write_error(path, source))? })
     }
 
-    /// Writes one row: the time [s] and one value per column, in the column's unit.
+    /// Writes one row: the time (s) and one value per column, in the column's unit.
     ///
     /// # Errors
     /// The file cannot be written, or the number of values is not that of the columns.

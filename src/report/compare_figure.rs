@@ -19,7 +19,7 @@ const EDGE: f64 = 10.0;
 pub struct ComparedRun {
     /// Its name, in the titles.
     pub name: String,
-    /// Sample times [s].
+    /// Sample times, s.
     pub time_s: Vec<f64>,
     /// Its output channels.
     pub channels: Vec<ComparedChannel>,
