@@ -77,7 +77,7 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     let text = notched_tube_urdf(&tube)?;
     match &a.output {
         Some(path) => write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
-        None => print!("{text}"),
+        None => super::print_text(&text)?,
     }
     eprintln!("for the scene file, per notch:");
     eprintln!("  stiffness_n_m_rad = {:.6e}", notch.stiffness_n_m_rad(a.youngs_modulus_pa));

@@ -188,7 +188,10 @@ fn add_viewers(
     };
     for sink in sinks {
         let viewer = Viewer::open(&sink, options.clone())?;
-        eprintln!("{}", viewer.announcement());
+        // A file is named when it is complete.
+        if !matches!(sink, ViewSink::File(_)) {
+            eprintln!("{}", viewer.announcement());
+        }
         observers.viewers.push(viewer);
     }
     Ok(())
