@@ -26,9 +26,8 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
     let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
     let scene = Scene::load(&arguments.scene, &overrides)?;
     if arguments.keys {
-        for (key, value) in scene.keys() {
-            println!("{key} = {value}");
-        }
+        let lines: String = scene.keys().iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
+        super::print_text(&lines)?;
         return Ok(ExitCode::SUCCESS);
     }
     let path = scene.path.display().to_string();

@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use smam::identify::{FitReport, RecordedRun, fit_rig_parameters, load_runs, replay};
-use smam::recording::{ChannelFit, Recording, RecordingSet, Role, Run, compare as compare_channels};
+use smam::recording::{
+    ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels,
+};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
@@ -44,24 +47,32 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         Some(file) => load_runs(&set, &[chosen_run(&set, file)], &mut |n| eprintln!("note: {n}"))?,
         None => declared.clone(),
     };
-    let report = fit_rig_parameters(&set, &scene_name, &overrides, &declared)?;
+    let may_fit: Vec<RecordedRun> = declared.into_iter().filter(|r| r.run.run_use != Some(RunUse::Holdout)).collect();
+    let report = fit_rig_parameters(&set, &scene_name, &overrides, &may_fit)?;
     say_fit(&report);
     overrides.extend(report.overrides());
-    let simulated: Vec<Recording> =
-        shown.iter().map(|run| replay(&scene_name, &overrides, run, 1)).collect::<Result<_, _>>()?;
+    let simulated = replay_all(&scene_name, &overrides, &shown)?;
     let fits: Vec<Vec<ChannelFit>> = shown
         .iter()
         .zip(&simulated)
         .map(|(run, is)| compare_channels(&run.recording, is, &set.channels))
         .collect::<Result<_, _>>()?;
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dir));
-    write(&out.join("compare.svg"), &compare_svg(&figure(&set, &shown, &simulated, &fits)))?;
-    let pooled = pool(&fits);
+    let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
+    let picture = compare_svg(&heading, &remark(&report), &figure(&set, &shown, &simulated, &fits));
+    write(&out.join("compare.svg"), &picture)?;
+    let pooled = pool(fits.iter());
     let json = to_json(&scene, &shown, &fits, &pooled, &report);
     write(&out.join("compare.json"), &format!("{json:#}\n"))?;
-    print_table(&shown, &fits, &pooled);
+    print_table(&shown, &fits);
     eprintln!("picture: {}    figures: {}", out.join("compare.svg").display(), out.join("compare.json").display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Every run simulated, side by side on the cores there are; the results stand in the order of the runs.
+fn replay_all(scene: &str, overrides: &[Override], runs: &[RecordedRun]) -> Result<Vec<Recording>, CliError> {
+    let replayed: Result<_, _> = runs.par_iter().map(|run| replay(scene, overrides, run, 1)).collect();
+    Ok(replayed?)
 }
 
 /// A stock name, or a path relative to the recordings.
@@ -87,10 +98,20 @@ fn chosen_run(set: &RecordingSet, file: &str) -> Run {
 }
 
 fn default_out(dir: &Path) -> PathBuf {
-    let name = dir.canonicalize().ok().and_then(|d| d.file_name().map(|n| n.to_string_lossy().into_owned()));
-    Path::new("out").join(format!("compare_{}", name.unwrap_or_else(|| "recordings".to_owned())))
+    Path::new("out").join(format!("compare_{}", set_name(dir)))
 }
 
+/// Name of the folder of recordings.
+fn set_name(dir: &Path) -> String {
+    let name = dir.canonicalize().ok().and_then(|d| d.file_name().map(|n| n.to_string_lossy().into_owned()));
+    name.unwrap_or_else(|| "recordings".to_owned())
+}
+
+/// What was fitted, in a line for the picture.
+fn remark(report: &FitReport) -> String {
+    let fitted: Vec<String> = report.parameters.iter().map(|p| format!("{} = {:.4e}", p.key, p.value)).collect();
+    if fitted.is_empty() { "nothing fitted".to_owned() } else { format!("fitted: {}", fitted.join(", ")) }
+}
 
 fn say_fit(report: &FitReport) {
     for p in &report.parameters {
@@ -106,9 +127,7 @@ fn figure(
     fits: &[Vec<ChannelFit>],
 ) -> Vec<ComparedRun> {
     let compared = runs.iter().zip(simulated).zip(fits).map(|((run, is), fits)| ComparedRun {
-        name: Path::new(&run.run.file)
-            .file_name()
-            .map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned()),
+        name: title(&run.run),
         time_s: run.recording.time_s().to_vec(),
         channels: set
             .of_role(Role::Output)
@@ -127,10 +146,20 @@ fn figure(
     compared.collect()
 }
 
-/// Each channel over all runs: squares weighted by samples.
-fn pool(fits: &[Vec<ChannelFit>]) -> Vec<ChannelFit> {
+/// Name of a run's file, and its use where recordings.toml states one.
+fn title(run: &Run) -> String {
+    let name = Path::new(&run.file).file_name().map_or(run.file.clone(), |n| n.to_string_lossy().into_owned());
+    match run.run_use {
+        Some(RunUse::Fit) => format!("{name} (fit)"),
+        Some(RunUse::Holdout) => format!("{name} (holdout)"),
+        None => name,
+    }
+}
+
+/// Each channel over several runs: squares weighted by samples.
+fn pool<'a>(fits: impl Iterator<Item = &'a Vec<ChannelFit>>) -> Vec<ChannelFit> {
     let mut pooled: Vec<ChannelFit> = Vec::new();
-    for fit in fits.iter().flatten() {
+    for fit in fits.flatten() {
         match pooled.iter_mut().find(|p| p.column == fit.column) {
             Some(p) => {
                 let (n, m) = (p.count as f64, fit.count as f64);
@@ -164,23 +193,43 @@ fn to_json(
     let per_run: serde_json::Map<_, _> =
         runs.iter().zip(fits).map(|(r, f)| (r.run.file.clone(), by_channel(f))).collect();
     let fitted: serde_json::Map<_, _> = report.parameters.iter().map(|p| (p.key.clone(), json!(p.value))).collect();
-    json!({ "format": 1, "scene": scene.file.name, "channels": by_channel(pooled), "runs": per_run, "fitted": fitted })
+    let holdout: Vec<&str> = runs.iter().filter(|r| is_holdout(r)).map(|r| r.run.file.as_str()).collect();
+    json!({
+        "format": 1,
+        "scene": scene.file.name,
+        "channels": by_channel(pooled),
+        "runs": per_run,
+        "holdout": holdout,
+        "fitted": fitted,
+    })
 }
 
-fn print_table(runs: &[RecordedRun], fits: &[Vec<ChannelFit>], pooled: &[ChannelFit]) {
+fn is_holdout(run: &RecordedRun) -> bool {
+    run.run.run_use == Some(RunUse::Holdout)
+}
+
+fn print_table(runs: &[RecordedRun], fits: &[Vec<ChannelFit>]) {
+    let names: Vec<String> = runs.iter().map(|r| title(&r.run)).collect();
+    let width = names.iter().map(|n| n.chars().count()).max().unwrap_or(0).max(12);
     let row = |name: &str, f: &ChannelFit| {
         let noise = f.noise_sd.map_or_else(|| format!("{:>12}", "?"), |n| format!("{n:>12.4}"));
         let ratio = f.rmse_over_noise().map_or_else(|| format!("{:>10}", "?"), |r| format!("{r:>10.2}"));
-        println!("{name:<28} {:<18} {:>12.4} {noise} {ratio} {:>12.4}", f.column, f.rmse, f.range);
+        println!("{name:<width$} {:<18} {:>12.4} {noise} {ratio} {:>12.4}", f.column, f.rmse, f.range);
     };
-    println!("{:<28} {:<18} {:>12} {:>12} {:>10} {:>12}", "run", "channel", "rmse", "noise sd", "rmse/noise", "range");
-    for (run, fits) in runs.iter().zip(fits) {
-        let name = Path::new(&run.run.file)
-            .file_name()
-            .map_or_else(|| run.run.file.clone(), |n| n.to_string_lossy().into_owned());
-        fits.iter().for_each(|f| row(&name, f));
+    println!(
+        "{:<width$} {:<18} {:>12} {:>12} {:>10} {:>12}",
+        "run", "channel", "rmse", "noise sd", "rmse/noise", "range"
+    );
+    for (name, fits) in names.iter().zip(fits) {
+        fits.iter().for_each(|f| row(name, f));
     }
-    if runs.len() > 1 {
-        pooled.iter().for_each(|f| row("all", f));
+    let of = |holdout: bool| pool(runs.iter().zip(fits).filter(|(r, _)| is_holdout(r) == holdout).map(|(_, f)| f));
+    let (fitted, held_out) = (of(false), of(true));
+    // What was fitted to a run says little about it: the two kinds are never pooled in one figure here.
+    if !fitted.is_empty() && !held_out.is_empty() {
+        fitted.iter().for_each(|f| row("all others", f));
+        held_out.iter().for_each(|f| row("all holdout", f));
+    } else if runs.len() > 1 {
+        fitted.iter().chain(&held_out).for_each(|f| row("all", f));
     }
 }

@@ -64,6 +64,17 @@ pub fn run() -> Result<ExitCode, CliError> {
     }
 }
 
+/// Prints a text; a reader that has seen enough (`| head`) is no failure.
+fn print_text(text: &str) -> Result<(), CliError> {
+    use std::io::{ErrorKind, Write};
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(CliError::Failed(format!("standard output: cannot be written: {e}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn first_words() -> String {
     format!(
         "smam simulates hydraulic soft microtubule artificial muscles and what they move.\n\n\

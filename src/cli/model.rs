@@ -6,6 +6,8 @@ use std::process::ExitCode;
 use clap::{Args, Subcommand};
 use smam::mechanism::{Forceps, NotchGeometry, NotchedTube, notched_tube_urdf};
 
+use smam::recording::write_whole;
+
 use super::CliError;
 
 /// Arguments of `smam model`.
@@ -74,8 +76,8 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     };
     let text = notched_tube_urdf(&tube)?;
     match &a.output {
-        Some(path) => std::fs::write(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
-        None => print!("{text}"),
+        Some(path) => write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
+        None => super::print_text(&text)?,
     }
     eprintln!("for the scene file, per notch:");
     eprintln!("  stiffness_n_m_rad = {:.6e}", notch.stiffness_n_m_rad(a.youngs_modulus_pa));

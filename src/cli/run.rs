@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use smam::recording::{Recording, read_csv, survey};
+use smam::recording::{Recording, read_csv, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
 
@@ -79,8 +79,10 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if let Some(book) = simulation.energy_book() {
         print_energy(book);
     }
+    // Ctrl-C is how serving ends: only one that came before cut the run short.
+    let cut_short = interrupted();
     hold_server(arguments);
-    if interrupted() {
+    if cut_short {
         eprintln!("interrupted at {reached_s:.3} s: what was computed is written");
         return Ok(ExitCode::from(1));
     }
@@ -151,6 +153,8 @@ fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) 
         csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
         recorder: arguments.check.then(Recorder::default),
         progress: Some(Progress::new(end_s)),
+        #[cfg(feature = "viz")]
+        viewers: Vec::new(),
     };
     add_viewers(arguments, name, view, &mut observers)?;
     Ok(observers)
@@ -184,7 +188,10 @@ fn add_viewers(
     };
     for sink in sinks {
         let viewer = Viewer::open(&sink, options.clone())?;
-        eprintln!("{}", viewer.announcement());
+        // A file is named when it is complete.
+        if !matches!(sink, ViewSink::File(_)) {
+            eprintln!("{}", viewer.announcement());
+        }
         observers.viewers.push(viewer);
     }
     Ok(())
@@ -250,7 +257,7 @@ fn check(arguments: &RunArguments, simulation: &Simulation, recording: &Recordin
     }
     if let Some(path) = &arguments.junit {
         let text = junit::report(&scene.file.name, &verdicts);
-        std::fs::write(path, text).map_err(|source| CliError::Write { file: path.clone(), source })?;
+        write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?;
     }
     let failed = verdicts.iter().filter(|v| !v.passed).count();
     println!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);

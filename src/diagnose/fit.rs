@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::case::{Case, CaseRun};
-use super::model::{Model, respond, simulate};
+use super::model::{Model, Probe, respond, simulate};
 use super::noise::Noise;
 
 /// A fitted model.
@@ -36,6 +36,23 @@ struct Number {
     /// Where the prior sits and its weight, one over standard deviations.
     prior: f64,
     prior_weight: f64,
+}
+
+/// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
+const CALIBRATION_STEP: f64 = 1e-3;
+const EFFECT_STEP: f64 = 2e-2;
+
+/// Steps to both sides are alike; away from a bound that is near.
+fn probes(numbers: &[Number], x: &[f64], which: std::ops::Range<usize>) -> Vec<Probe> {
+    which
+        .map(|number| {
+            let n = &numbers[number];
+            let share = if n.prior_weight > 0.0 { CALIBRATION_STEP } else { EFFECT_STEP };
+            // A number grown far beyond its scale is probed in proportion.
+            let size = (share * n.scale).max(1e-3 * x[number].abs());
+            Probe { number, step: if x[number] + size > n.max { -size } else { size } }
+        })
+        .collect()
 }
 
 /// The part of the data that is fitted, with its weights.
@@ -107,12 +124,12 @@ impl<'a> Problem<'a> {
     /// Normal matrix, gradient and cost at `x`, in scaled numbers.
     fn normal(&self, model: &Model, numbers: &[Number], x: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
         let count = x.len();
-        let wanted: Vec<usize> = (0..count).collect();
+        let probes = probes(numbers, x, 0..count);
         let mut matrix = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);
         let mut cost = 0.0;
         for run in &self.runs {
-            let response = respond(self.case, run, model, x, &wanted)?;
+            let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
             for (c, noise) in self.noise.iter().enumerate() {
                 let weight = 1.0 / noise.scale();
@@ -188,11 +205,11 @@ impl<'a> Problem<'a> {
     /// Fitted derivatives of the residuals to the calibration and the effects, and the residuals, all in units of the
     /// noise, one row per sample (missing ones left out).
     pub fn tangent(&self, model: &Model, x: &[f64]) -> Option<Rows> {
-        let wanted: Vec<usize> = (0..x.len()).collect();
         let numbers = self.numbers(model);
+        let probes = probes(&numbers, x, 0..x.len());
         let mut parts = Vec::new();
         for run in &self.runs {
-            let response = respond(self.case, run, model, x, &wanted)?;
+            let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
             for (c, noise) in self.noise.iter().enumerate() {
                 let weight = 1.0 / noise.scale();
@@ -318,22 +335,20 @@ impl Problem<'_> {
 
     /// Derivatives of the simulated channels to some of the numbers, in units of the noise and of each scale.
     pub fn columns(&self, model: &Model, x: &[f64], wanted: std::ops::Range<usize>) -> Option<DMatrix<f64>> {
-        let wanted: Vec<usize> = wanted.collect();
-        let numbers: Vec<Number> = {
-            let all = self.numbers(model);
-            wanted.iter().map(|&i| all[i]).collect()
-        };
+        let all = self.numbers(model);
+        let probes = probes(&all, x, wanted.clone());
+        let numbers = &all[wanted];
         let mut parts = Vec::new();
         for run in &self.runs {
-            let response = respond(self.case, run, model, x, &wanted)?;
+            let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
             for (c, noise) in self.noise.iter().enumerate() {
                 let weight = 1.0 / noise.scale();
-                parts.push(weighted_rows(self.case, run, c, &residuals[c], &response.slopes, &numbers, weight).slopes);
+                parts.push(weighted_rows(self.case, run, c, &residuals[c], &response.slopes, numbers, weight).slopes);
             }
         }
         let rows = parts.iter().map(DMatrix::nrows).sum();
-        let mut all = DMatrix::zeros(rows, wanted.len());
+        let mut all = DMatrix::zeros(rows, numbers.len());
         let mut at = 0;
         for part in parts {
             all.rows_mut(at, part.nrows()).copy_from(&part);

@@ -1,16 +1,11 @@
 //! What is compared with the recordings: calibrated parameters and a set of effects.
 
-use num_dual::DualSVec64;
+use rayon::prelude::*;
 
 use crate::effects::{Effect, EffectSpec, Element, Kind};
-use crate::scalar::Scalar;
 use crate::system::TwinSetting;
 
 use super::case::{Case, CaseRun};
-
-/// Derivatives that one simulation carries.
-pub(super) const LANES: usize = 8;
-type Dual = DualSVec64<LANES>;
 
 /// An effect on its element, without numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -92,23 +87,9 @@ impl Model {
 
     /// The effects with the fitted numbers at `x`, which follows the calibration in the vector of a fit.
     pub fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
-        self.setting_effects(x, |v, _| v)
-    }
-
-    fn setting_effects<D: Scalar>(&self, x: &[f64], lift: impl Fn(f64, usize) -> D) -> Vec<Effect<D>> {
-        let mut effects: Vec<Effect<D>> = self
-            .effects
-            .iter()
-            .zip(&self.values)
-            .map(|(placed, values)| Effect {
-                kind: placed.kind,
-                element: placed.element,
-                channel: placed.channel.clone(),
-                values: values.iter().map(|&v| D::constant(v)).collect(),
-            })
-            .collect();
-        for (k, (effect, index)) in self.places().into_iter().enumerate() {
-            effects[effect].values[index] = lift(x[k], k);
+        let mut effects: Vec<Effect<f64>> = self.effects.iter().zip(&self.values).map(|(p, v)| p.with(v)).collect();
+        for ((effect, index), value) in self.places().into_iter().zip(x) {
+            effects[effect].values[index] = *value;
         }
         effects
     }
@@ -129,37 +110,39 @@ pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> 
         parameters: case.parameters.iter().zip(x).map(|(p, &v)| (p.parameter.clone(), v)).collect(),
         effects: model.effects_at(&x[n..]),
     };
-    Some(pick(case, run, run.twin.simulate(&run.drive, &setting)?, |v| v))
+    let series = run.twin.simulate(&run.drive, &setting)?;
+    Some(case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect())
 }
 
-/// Simulates with derivatives to the numbers `wanted` of `x`.
-pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], wanted: &[usize]) -> Option<Response> {
-    let n = case.parameters.len();
-    let mut response = Response { values: Vec::new(), slopes: Vec::new() };
-    for lanes in wanted.chunks(LANES) {
-        let lift = |value: f64, number: usize| match lanes.iter().position(|&l| l == number) {
-            Some(lane) => Dual::from_re(value).derivative(lane),
-            None => Dual::from_re(value),
-        };
-        let parameters =
-            case.parameters.iter().enumerate().map(|(i, p)| (p.parameter.clone(), lift(x[i], i))).collect();
-        let effects = model.setting_effects(&x[n..], |v, k| lift(v, n + k));
-        let series = run.twin.simulate(&run.drive, &TwinSetting { parameters, effects })?;
-        let series = pick(case, run, series, |v| v);
-        for lane in 0..lanes.len() {
-            let slope = |d: &Dual| d.eps.unwrap_generic(nalgebra::Const::<LANES>, nalgebra::Const::<1>)[lane];
-            response.slopes.push(series.iter().map(|s| s.iter().map(slope).collect()).collect());
+/// A number of `x` and the step over which its derivative is taken.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe {
+    pub number: usize,
+    pub step: f64,
+}
+
+/// Simulates with derivatives, as differences over the probes' steps.
+///
+/// The exact derivatives that the fast model also has would cost the same. But where a cable hangs between taut and
+/// slack they are those of the branch taken at every step, and grow without bound; a finite step does not.
+pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], probes: &[Probe]) -> Option<Response> {
+    let jobs: Vec<Option<Probe>> = std::iter::once(None).chain(probes.iter().copied().map(Some)).collect();
+    let series: Vec<Option<Vec<Vec<f64>>>> = jobs
+        .par_iter()
+        .map(|job| {
+            let mut moved = x.to_vec();
+            if let Some(probe) = job {
+                moved[probe.number] += probe.step;
+            }
+            simulate(case, run, model, &moved)
+        })
+        .collect();
+    let mut series = series.into_iter().collect::<Option<Vec<_>>>()?;
+    let values = series.remove(0);
+    for (slopes, probe) in series.iter_mut().zip(probes) {
+        for (slope, value) in slopes.iter_mut().zip(&values) {
+            slope.iter_mut().zip(value).for_each(|(s, v)| *s = (*s - v) / probe.step);
         }
-        response.values = series.iter().map(|s| s.iter().map(|d| d.re).collect()).collect();
     }
-    if wanted.is_empty() {
-        response.values = simulate(case, run, model, x)?;
-    }
-    Some(response)
-}
-
-/// The recorded channels at the recorded instants.
-fn pick<D: Copy>(case: &Case, run: &CaseRun, series: Vec<Vec<D>>, read: impl Fn(D) -> D) -> Vec<Vec<D>> {
-    let picked = case.channels.iter().map(|c| series[c.output][run.lead_in..].iter().map(|&v| read(v)).collect());
-    picked.collect()
+    Some(Response { values, slopes: series })
 }

@@ -42,10 +42,9 @@ pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
-    let groups: Vec<&[&Variant]> = fresh.chunks(super::model::LANES).collect();
-    let mut screened: Vec<Screened> = groups
+    let mut screened: Vec<Screened> = fresh
         .par_iter()
-        .flat_map_iter(|group| signatures(problem, fit, group))
+        .filter_map(|variant| Some((*variant, signature(problem, fit, variant)?)))
         .map(|(variant, raw)| {
             let signature = orthogonal(&basis, &raw);
             let length = signature.norm();
@@ -58,7 +57,7 @@ pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<
                 size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
                 least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
                 signature: signature / length.max(f64::MIN_POSITIVE),
-                variant,
+                variant: variant.clone(),
             }
         })
         .collect();
@@ -66,29 +65,18 @@ pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<
     screened
 }
 
-/// Derivative of the residuals to the size of each variant at zero, in units of the typical size.
-fn signatures(problem: &Problem, fit: &Fit, group: &[&Variant]) -> Vec<(Variant, DVector<f64>)> {
+/// Derivative of the simulated channels to the size of a variant at zero, in units of the typical size.
+fn signature(problem: &Problem, fit: &Fit, variant: &Variant) -> Option<DVector<f64>> {
     let mut model = fit.model.clone();
+    let mut values = variant.values.clone();
+    values[0] = 0.0;
+    model.effects.push(variant.placed.clone());
+    model.values.push(values);
+    model.fitted.push(vec![0]);
     let mut x = fit.x.clone();
-    for variant in group {
-        let mut values = variant.values.clone();
-        values[0] = 0.0;
-        model.effects.push(variant.placed.clone());
-        model.values.push(values);
-        model.fitted.push(vec![0]);
-        x.push(0.0);
-    }
-    // Several thresholds of one law cannot stand in one plant: the last would win. They go alone.
-    let mut seen: Vec<&Placed> = Vec::new();
-    for variant in group {
-        if seen.contains(&&variant.placed) && group.len() > 1 {
-            return group.iter().flat_map(|v| signatures(problem, fit, &[v])).collect();
-        }
-        seen.push(&variant.placed);
-    }
-    let columns = problem.columns(&model, &x, fit.x.len()..x.len());
-    let Some(columns) = columns else { return Vec::new() };
-    group.iter().map(|v| (*v).clone()).zip(columns.column_iter().map(|c| c.into_owned())).collect()
+    x.push(0.0);
+    let columns = problem.columns(&model, &x, fit.x.len()..x.len())?;
+    Some(columns.column(0).into_owned())
 }
 
 fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {

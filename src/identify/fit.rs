@@ -9,8 +9,28 @@ use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
 use super::levenberg_marquardt::{Bounds, LmOptions, minimise};
 use super::replay::{IdentifyError, RecordedRun, check_channels, replay};
 
-/// At most this many samples of a run enter a fit.
-const SAMPLES_PER_RUN: usize = 1500;
+/// How finely the runs are replayed while parameters are searched.
+#[derive(Clone, Copy)]
+struct Grain {
+    /// At most this many samples of a run enter.
+    samples_per_run: usize,
+    /// Engine steps are this much longer than the scene's.
+    step_factor: f64,
+    options: LmOptions,
+}
+
+/// Nearly all of the search: cheap replays, so that a long valley can be followed to its end.
+const COARSE: Grain = Grain {
+    samples_per_run: 300,
+    step_factor: 10.0,
+    options: LmOptions { max_iterations: 60, relative_decrease: 1e-5, difference: 1e-5 },
+};
+/// Finishes at the scene's own steps, so that the answer does not depend on the coarse ones.
+const FINE: Grain = Grain {
+    samples_per_run: 1500,
+    step_factor: 1.0,
+    options: LmOptions { max_iterations: 10, relative_decrease: 1e-3, difference: 1e-5 },
+};
 
 /// One fitted parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,23 +76,28 @@ pub fn fit_rig_parameters(
     let start: Vec<f64> = free.iter().map(|c| start_value(&base, c)).collect();
     // A first replay, so that what is wrong with a run is said as such and not as a failed fit.
     runs.iter().try_for_each(|run| replay(scene, overrides, run, run.recording.sample_count()).map(|_| ()))?;
-    let residuals = |x: &[f64]| {
+    let residuals = |x: &[f64], grain: Grain| {
         let changed = free.iter().zip(x).map(|(c, x)| Override::number(&c.key, *x));
-        let all: Vec<Override> = overrides.iter().cloned().chain(changed).collect();
-        residuals(set, scene, &all, runs, &weights)
+        let step = Override::number("simulation.step_s", base.file.simulation.step_s * grain.step_factor);
+        let all: Vec<Override> = overrides.iter().cloned().chain(changed).chain([step]).collect();
+        residuals(set, scene, &all, runs, &weights, grain.samples_per_run)
     };
-    let result =
-        minimise(&residuals, &start, &bounds, LmOptions::default()).ok_or_else(|| IdentifyError::Mismatch {
-            file: base.path.display().to_string(),
-            message: "the scene cannot be simulated with its starting values".to_owned(),
-            remedy: "run it alone with `smam run` to see why".to_owned(),
-        })?;
+    let search = |start: &[f64], grain: Grain| minimise(&|x| residuals(x, grain), start, &bounds, grain.options);
+    let coarse = search(&start, COARSE);
+    // Steps that long may be too long for a scene: then the search starts where it would have without them.
+    let near = coarse.as_ref().map_or(&start, |found| &found.parameters);
+    let result = search(near, FINE).ok_or_else(|| IdentifyError::Mismatch {
+        file: base.path.display().to_string(),
+        message: "the scene cannot be simulated with its starting values".to_owned(),
+        remedy: "run it alone with `smam run` to see why".to_owned(),
+    })?;
     let parameters = free.iter().zip(&result.parameters).map(|(c, &value)| FittedParameter {
         key: c.key.clone(),
         value,
         on_bound: (value - c.min).min(c.max - value) < 1e-6 * (c.max - c.min),
     });
-    Ok(FitReport { parameters: parameters.collect(), evaluations: result.evaluations })
+    let evaluations = result.evaluations + coarse.map_or(0, |found| found.evaluations);
+    Ok(FitReport { parameters: parameters.collect(), evaluations })
 }
 
 /// The value in the scene, else the middle of the range.
@@ -99,11 +124,12 @@ fn residuals(
     overrides: &[Override],
     runs: &[RecordedRun],
     weights: &[f64],
+    samples_per_run: usize,
 ) -> Option<DVector<f64>> {
     let per_run: Option<Vec<Vec<f64>>> = runs
         .par_iter()
         .map(|run| {
-            let every = run.recording.sample_count().div_ceil(SAMPLES_PER_RUN);
+            let every = run.recording.sample_count().div_ceil(samples_per_run);
             let simulated = replay(scene, overrides, run, every).ok()?;
             let mut all = Vec::new();
             for (spec, weight) in set.of_role(Role::Output).zip(weights) {

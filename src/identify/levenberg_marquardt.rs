@@ -4,6 +4,7 @@
 //! the rest of the method, so it stands here on nalgebra's Cholesky.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Range of one parameter, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +43,7 @@ pub struct LmResult {
 /// `residuals` returns `None` where the model cannot be evaluated; such points are stepped back from. Returns `None`
 /// when the start itself cannot be evaluated.
 pub fn minimise(
-    residuals: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+    residuals: &(dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync),
     start: &[f64],
     bounds: &[Bounds],
     options: LmOptions,
@@ -50,10 +51,14 @@ pub fn minimise(
     let mut search = Search { residuals, bounds, evaluations: 0 };
     let mut u = search.to_unit(start);
     let mut r = search.evaluate(&u)?;
-    let mut damping = 1e-3;
+    // Nearly Gauss-Newton at first: more would creep along a valley in which two parameters trade off.
+    let mut damping = 1e-6;
     for _ in 0..options.max_iterations {
         let jacobian = search.jacobian(&u, &r, options.difference);
-        let Some((next_u, next_r, next_damping)) = search.step(&u, &r, &jacobian, damping) else { break };
+        let Some((next_u, next_r, next_damping)) = search.step(&u, &r, &jacobian, damping, options.relative_decrease)
+        else {
+            break;
+        };
         let decrease = 1.0 - next_r.norm_squared() / r.norm_squared();
         (u, r, damping) = (next_u, next_r, next_damping);
         if decrease < options.relative_decrease {
@@ -65,7 +70,7 @@ pub fn minimise(
 
 /// Parameters are searched as shares of their ranges, so that their units do not matter.
 struct Search<'a> {
-    residuals: &'a dyn Fn(&[f64]) -> Option<DVector<f64>>,
+    residuals: &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync),
     bounds: &'a [Bounds],
     evaluations: usize,
 }
@@ -82,30 +87,34 @@ impl Search<'_> {
 
     fn evaluate(&mut self, u: &DVector<f64>) -> Option<DVector<f64>> {
         self.evaluations += 1;
+        self.at(u)
+    }
+
+    fn at(&self, u: &DVector<f64>) -> Option<DVector<f64>> {
         (self.residuals)(&self.scaled_back(u)).filter(|r| r.iter().all(|x| x.is_finite()))
     }
 
     fn jacobian(&mut self, u: &DVector<f64>, r: &DVector<f64>, difference: f64) -> DMatrix<f64> {
-        let mut jacobian = DMatrix::zeros(r.len(), u.len());
-        for j in 0..u.len() {
+        self.evaluations += u.len();
+        let column = |j: usize| {
             // Away from the nearer bound.
             let h = if u[j] < 0.5 { difference } else { -difference };
             let mut moved = u.clone();
             moved[j] += h;
-            if let Some(there) = self.evaluate(&moved) {
-                jacobian.set_column(j, &((there - r) / h));
-            }
-        }
-        jacobian
+            self.at(&moved).map_or_else(|| DVector::zeros(r.len()), |there| (there - r) / h)
+        };
+        let columns: Vec<DVector<f64>> = (0..u.len()).into_par_iter().map(column).collect();
+        DMatrix::from_columns(&columns)
     }
 
-    /// A step that lowers the cost, or `None` when damping no longer finds one.
+    /// A step that lowers the cost, or `None` when damping finds none or the linear model promises too little.
     fn step(
         &mut self,
         u: &DVector<f64>,
         r: &DVector<f64>,
         jacobian: &DMatrix<f64>,
         mut damping: f64,
+        worth_while: f64,
     ) -> Option<(DVector<f64>, DVector<f64>, f64)> {
         let normal = jacobian.tr_mul(jacobian);
         let gradient = jacobian.tr_mul(r);
@@ -117,8 +126,12 @@ impl Search<'_> {
             }
             if let Some(cholesky) = damped.cholesky() {
                 let next = (u - cholesky.solve(&gradient)).map(|x| x.clamp(0.0, 1.0));
+                let promised = 1.0 - (r + jacobian * (&next - u)).norm_squared() / r.norm_squared();
+                if promised < worth_while {
+                    return None;
+                }
                 if let Some(there) = self.evaluate(&next).filter(|t| t.norm_squared() < r.norm_squared()) {
-                    return Some((next, there, (damping / 5.0).max(1e-12)));
+                    return Some((next, there, (damping / 10.0).max(1e-12)));
                 }
             }
             damping = (damping * 4.0).max(1e-9);

@@ -50,7 +50,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording of sample times [s] and channels.
+    /// A recording of sample times (s) and channels.
     ///
     /// # Errors
     /// Times not finite and increasing, a channel of another length, a column twice.
@@ -81,7 +81,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Sample times [s].
+    /// Sample times, s.
     pub fn time_s(&self) -> &[f64] {
         &self.time_s
     }

@@ -1,8 +1,8 @@
 //! Writing recordings as CSV, row by row.
 
+use super::whole_file::{put_in_place, temporary_beside};
 use super::{Recording, RecordingError, TIME_COLUMN};
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -34,7 +34,7 @@ impl<W: Write> RowWriter<W> {
         Ok(Self { target, column_count: columns.len(), line })
     }
 
-    /// Writes one row: the time [s] and one value per column, in the column's unit.
+    /// Writes one row: the time (s) and one value per column, in the column's unit.
     ///
     /// # Errors
     /// What the target says; another number of values than columns.
@@ -112,7 +112,7 @@ impl CsvWriter {
         Ok(Self { path: path.to_owned(), rows: start().map_err(|source| write_error(path, source))? })
     }
 
-    /// Writes one row: the time [s] and one value per column, in the column's unit.
+    /// Writes one row: the time (s) and one value per column, in the column's unit.
     ///
     /// # Errors
     /// The file cannot be written, or the number of values is not that of the columns.
@@ -146,27 +146,7 @@ impl Recording {
 
 fn place(rows: RowWriter<BufWriter<NamedTempFile>>, path: &Path) -> io::Result<()> {
     let file = rows.finish()?.into_inner().map_err(|e| e.into_error())?;
-    // On the disk before it gets its name: a crash never leaves a named file without its rows.
-    File::sync_all(file.as_file())?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
-}
-
-fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
-    // The parent of a bare file name is the empty path.
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".smam-").suffix(".partial");
-    #[cfg(unix)]
-    {
-        // Temporary files are private by default; a result gets the permissions any new file has.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    put_in_place(file, path)
 }
 
 fn write_error(path: &Path, source: io::Error) -> RecordingError {

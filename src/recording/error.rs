@@ -104,9 +104,9 @@ pub enum RecordingError {
     Time {
         /// Index of the sample, from 0.
         index: usize,
-        /// Its time [s].
+        /// Its time, s.
         time_s: f64,
-        /// The time before it [s].
+        /// The time before it, s.
         previous_s: f64,
     },
     /// A channel with no usable value.

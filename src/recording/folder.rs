@@ -80,9 +80,9 @@ impl RecordingSet {
     /// # Errors
     /// File, table, key and remedy of the first thing that is wrong.
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
-        let file = match path.is_dir() {
-            true => path.join(SET_FILE_NAME),
-            false => path.to_owned(),
+        let file = match path.is_file() {
+            true => path.to_owned(),
+            false => path.join(SET_FILE_NAME),
         };
         let text =
             std::fs::read_to_string(&file).map_err(|source| RecordingError::Read { file: file.clone(), source })?;
@@ -131,17 +131,16 @@ impl RecordingSet {
                 found: recording.columns().join(", "),
             });
         }
-        let notes = self.undeclared_note(run, &recording).into_iter().collect();
+        let notes = self.undeclared_note(&recording).into_iter().collect();
         Ok(LoadedRun { recording, notes })
     }
 
-    fn undeclared_note(&self, run: &Run, recording: &Recording) -> Option<String> {
+    fn undeclared_note(&self, recording: &Recording) -> Option<String> {
         let is_declared = |column: &str| self.channels.iter().any(|spec| spec.column == column);
         let mut others = recording.columns();
         others.retain(|column| !is_declared(column));
-        (!others.is_empty()).then(|| {
-            format!("{}: columns that recordings.toml does not declare are not used: {}", run.file, others.join(", "))
-        })
+        (!others.is_empty())
+            .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
     }
 }
 

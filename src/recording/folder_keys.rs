@@ -87,7 +87,7 @@ impl<'a> Keys<'a> {
 }
 
 /// `; did you mean "role"?` when a known word is near, else nothing.
-fn did_you_mean(word: &str, known: &[&str]) -> String {
+pub fn did_you_mean(word: &str, known: &[&str]) -> String {
     known
         .iter()
         .map(|candidate| (edit_distance(word, candidate), candidate))

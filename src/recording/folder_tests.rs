@@ -110,7 +110,7 @@ fn runs_are_checked_against_the_declaration() {
     std::fs::write(&csv, "time_s,plunger_mm,force_n,remark\n0,1,2,3\n").unwrap();
     let loaded = set.load_run(&set.runs[0]).unwrap();
     assert_eq!(loaded.recording.columns(), ["plunger_mm", "force_n", "remark"]);
-    assert_eq!(loaded.notes, ["sine.csv: columns that recordings.toml does not declare are not used: remark"]);
+    assert_eq!(loaded.notes, ["columns that recordings.toml does not declare are not used: remark"]);
     std::fs::write(&csv, "time_s,plunger_mm,force\n0,1,2\n").unwrap();
     let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
     assert!(

@@ -15,6 +15,7 @@ mod noise;
 mod piecewise;
 mod survey;
 mod unit;
+mod whole_file;
 
 pub use channels::{Channel, Recording, TIME_COLUMN};
 pub use compare::{ChannelFit, compare};
@@ -22,7 +23,9 @@ pub use csv_read::{read_csv, read_csv_from};
 pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
+pub use folder_keys::did_you_mean;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
+pub use whole_file::write_whole;

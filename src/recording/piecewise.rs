@@ -28,7 +28,7 @@ impl PiecewiseLinear {
         (!times_s.is_empty()).then_some(Self { times_s, values })
     }
 
-    /// Times of its points [s].
+    /// Times of its points, s.
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
@@ -38,7 +38,7 @@ impl PiecewiseLinear {
         &self.values
     }
 
-    /// The value at a time [s].
+    /// The value at a time, s.
     pub fn value(&self, time_s: f64) -> f64 {
         let after = self.first_after(time_s);
         if after == 0 {
@@ -48,7 +48,7 @@ impl PiecewiseLinear {
         start + self.slope(time_s) * (time_s - self.times_s[after - 1])
     }
 
-    /// The derivative at a time [s], per second; at a point that of the line to its right, 0 outside.
+    /// The derivative at a time (s), per second; at a point that of the line to its right, 0 outside.
     pub fn slope(&self, time_s: f64) -> f64 {
         let after = self.first_after(time_s);
         if after == 0 || after == self.times_s.len() {
@@ -58,7 +58,7 @@ impl PiecewiseLinear {
         rise / (self.times_s[after] - self.times_s[after - 1])
     }
 
-    /// The change of the value from one time to another [s].
+    /// The change of the value from one time to another, s.
     pub fn increment(&self, from_s: f64, to_s: f64) -> f64 {
         self.value(to_s) - self.value(from_s)
     }

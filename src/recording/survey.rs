@@ -14,9 +14,9 @@ const UNEVEN_SHARE: f64 = 0.01;
 /// A stretch of time without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Last sample before it [s].
+    /// Last sample before it, s.
     pub from_s: f64,
-    /// First sample after it [s].
+    /// First sample after it, s.
     pub to_s: f64,
 }
 
@@ -34,9 +34,9 @@ pub struct Missing {
 pub struct Survey {
     /// Samples in time.
     pub sample_count: usize,
-    /// From the first to the last sample [s].
+    /// From the first to the last sample, s.
     pub duration_s: f64,
-    /// Median time between samples [s]; `None` with fewer than two samples.
+    /// Median time between samples, s; `None` with fewer than two samples.
     pub median_interval_s: Option<f64>,
     /// Share of the intervals, gaps left out, that differ by more than a fifth from the median.
     pub uneven_share: f64,
@@ -116,12 +116,12 @@ pub fn survey(recording: &Recording) -> Survey {
     }
 }
 
-/// The longest interval [s] between samples that is no gap; infinite with fewer than two samples.
+/// The longest interval (s) between samples that is no gap; infinite with fewer than two samples.
 pub fn gap_limit_s(time_s: &[f64]) -> f64 {
     median_interval_s(time_s).map_or(f64::INFINITY, |median_s| GAP_FACTOR * median_s)
 }
 
-/// Median time between samples [s]; `None` with fewer than two samples.
+/// Median time between samples, s; `None` with fewer than two samples.
 pub fn median_interval_s(time_s: &[f64]) -> Option<f64> {
     let mut intervals_s: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     median(&mut intervals_s)

@@ -2,7 +2,7 @@
 
 use super::axis::three_digits;
 use super::panel::{Band, Panel, Series, draw_legend};
-use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION};
+use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to};
 use crate::recording::{gap_limit_s, parse_column};
 
 /// Runs beside each other; more wrap to the next row.
@@ -11,7 +11,7 @@ const CELL_WIDTH: f64 = 430.0;
 const SIGNAL_HEIGHT: f64 = 236.0;
 const RESIDUAL_HEIGHT: f64 = 140.0;
 const CELL_HEIGHT: f64 = SIGNAL_HEIGHT + RESIDUAL_HEIGHT + 18.0;
-const HEADER_HEIGHT: f64 = 58.0;
+const HEADER_HEIGHT: f64 = 76.0;
 const EDGE: f64 = 10.0;
 
 /// One run of the figure.
@@ -19,7 +19,7 @@ const EDGE: f64 = 10.0;
 pub struct ComparedRun {
     /// Its name, in the titles.
     pub name: String,
-    /// Sample times [s].
+    /// Sample times, s.
     pub time_s: Vec<f64>,
     /// Its output channels.
     pub channels: Vec<ComparedChannel>,
@@ -43,15 +43,16 @@ pub struct ComparedChannel {
 /// Draws the runs as columns and their channels as rows, as one self-contained SVG.
 ///
 /// A cell shows measured and simulated over time, and below measured minus simulated with the band of
-/// +- 2 noise standard deviations. Lines are cut where samples are missing and at gaps.
-pub fn compare_svg(runs: &[ComparedRun]) -> String {
+/// +- 2 noise standard deviations. Lines are cut where samples are missing and at gaps. `title` says what is compared
+/// with what, `remark` what the reader must know to judge it (what was fitted); it may be empty.
+pub fn compare_svg(title: &str, remark: &str, runs: &[ComparedRun]) -> String {
     let rows_of_cells = |group: &[ComparedRun]| group.iter().map(|run| run.channels.len()).max();
     let groups: Vec<&[ComparedRun]> = runs.chunks(RUNS_PER_ROW).collect();
     let row_count: usize = groups.iter().filter_map(|g| rows_of_cells(g)).sum();
     let width = CELL_WIDTH * runs.len().clamp(2, RUNS_PER_ROW) as f64 + 2.0 * EDGE;
     let height = HEADER_HEIGHT + CELL_HEIGHT * row_count as f64 + EDGE;
     let mut svg = Svg::new(width, height);
-    draw_header(&mut svg);
+    draw_header(&mut svg, width, title, remark);
     let mut y = HEADER_HEIGHT;
     for group in groups {
         for (column, run) in group.iter().enumerate() {
@@ -65,15 +66,17 @@ pub fn compare_svg(runs: &[ComparedRun]) -> String {
     svg.finish()
 }
 
-fn draw_header(svg: &mut Svg) {
-    svg.text((EDGE + 12.0, 24.0), Anchor::Start, 15.0, "Measured and simulated");
+fn draw_header(svg: &mut Svg, width: f64, title: &str, remark: &str) {
+    let room = width - 2.0 * (EDGE + 12.0);
+    svg.text((EDGE + 12.0, 24.0), Anchor::Start, 15.0, &cut_to(title, 15.0, room));
+    svg.text((EDGE + 12.0, 43.0), Anchor::Start, 11.0, &cut_to(remark, 11.0, room));
     let entries = [
         ("measured", BLUE, 1.0),
         ("simulated", VERMILION, 1.0),
         ("measured - simulated", GREY, 1.0),
         ("± 2 noise sd", BLUE, 0.25),
     ];
-    draw_legend(svg, (EDGE + 12.0, 45.0), &entries);
+    draw_legend(svg, (EDGE + 12.0, 64.0), &entries);
 }
 
 fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &ComparedChannel) {
@@ -93,17 +96,18 @@ fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
     }
 }
 
-/// `RMSE 0.0312 mm, noise sd 0.0200 mm (ratio 1.56)`.
+/// `RMSE 0.0312 mm = 0.116 % of the range = 1.56 noise sd`.
 fn accuracy(channel: &ComparedChannel) -> String {
     let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
-    let rmse = three_digits(channel.rmse);
+    let values = channel.measured.iter().filter(|v| v.is_finite());
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+    let mut text = format!("RMSE {} {symbol}", three_digits(channel.rmse));
+    if high > low {
+        text += &format!(" = {} % of the range", three_digits(100.0 * channel.rmse / (high - low)));
+    }
     match channel.noise_sd {
-        Some(sd) => format!(
-            "RMSE {rmse} {symbol}, noise sd {} {symbol} (ratio {})",
-            three_digits(sd),
-            three_digits(channel.rmse / sd)
-        ),
-        None => format!("RMSE {rmse} {symbol}, noise sd unknown"),
+        Some(sd) => text + &format!(" = {} noise sd", three_digits(channel.rmse / sd)),
+        None => text + ", noise unknown",
     }
 }
 
@@ -154,10 +158,14 @@ mod tests {
 
     #[test]
     fn every_run_and_channel_has_its_two_panels() {
-        let svg = compare_svg(&[run("sine", &["elongation_mm", "pressure_kpa"]), run("steps", &["elongation_mm"])]);
+        let svg = compare_svg(
+            "Rig",
+            "",
+            &[run("sine", &["elongation_mm", "pressure_kpa"]), run("steps", &["elongation_mm"])],
+        );
         assert_eq!(svg.matches("<polyline").count(), 3 * 3);
         assert!(svg.contains(">sine: pressure_kpa<") && svg.contains(">steps: elongation_mm<"));
-        assert!(svg.contains(">RMSE 0.0300 mm, noise sd 0.0200 mm (ratio 1.50)<"));
+        assert!(svg.contains(">RMSE 0.0300 mm = 1.50 % of the range = 1.50 noise sd<"));
         assert!(svg.contains(">elongation (mm)<") && svg.contains(">residual (kPa)<"));
         assert!(svg.contains(">time (s)<"));
     }
@@ -165,7 +173,7 @@ mod tests {
     #[test]
     fn fifth_run_wraps() {
         let runs: Vec<ComparedRun> = (0..5).map(|i| run(&format!("r{i}"), &["bend_deg"])).collect();
-        let svg = compare_svg(&runs);
+        let svg = compare_svg("Rig", "nothing fitted", &runs);
         let width = 4.0 * CELL_WIDTH + 2.0 * EDGE;
         let height = HEADER_HEIGHT + 2.0 * CELL_HEIGHT + EDGE;
         assert!(svg.contains(&format!("width=\"{width}\" height=\"{height}\"")));
@@ -180,6 +188,6 @@ mod tests {
 
     #[test]
     fn nothing_to_compare_is_still_a_picture() {
-        assert!(compare_svg(&[]).ends_with("</svg>\n"));
+        assert!(compare_svg("", "", &[]).ends_with("</svg>\n"));
     }
 }

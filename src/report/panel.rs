@@ -143,7 +143,7 @@ fn draw_y_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
     }
 }
 
-/// Draws a legend in one row, from a point [px] to the right.
+/// Draws a legend in one row, from a point (px) to the right.
 pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), entries: &[(&str, &'static str, f64)]) {
     let (mut x, y) = at;
     for (label, colour, opacity) in entries {

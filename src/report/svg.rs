@@ -21,23 +21,23 @@ const LETTER_WIDTH: f64 = 0.6;
 /// A rectangle on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
-    /// Left edge [px].
+    /// Left edge, px.
     pub x: f64,
-    /// Upper edge [px].
+    /// Upper edge, px.
     pub y: f64,
-    /// Width [px].
+    /// Width, px.
     pub width: f64,
-    /// Height [px].
+    /// Height, px.
     pub height: f64,
 }
 
 impl Rect {
-    /// Right edge [px].
+    /// Right edge, px.
     pub fn right(&self) -> f64 {
         self.x + self.width
     }
 
-    /// Lower edge [px].
+    /// Lower edge, px.
     pub fn bottom(&self) -> f64 {
         self.y + self.height
     }
@@ -164,12 +164,12 @@ pub(super) fn escaped(text: &str) -> String {
     out
 }
 
-/// Width that a text needs at most, roughly [px].
+/// Width that a text needs at most, roughly, px.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * LETTER_WIDTH * size
 }
 
-/// A text cut to a width [px], with an ellipsis where it was cut.
+/// A text cut to a width (px), with an ellipsis where it was cut.
 pub(super) fn cut_to(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();

@@ -4,18 +4,19 @@ use std::path::Path;
 
 use crate::recording::parse_column;
 
+use super::check_muscles::check_make;
 use super::{
-    ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, MusclesSpec, OutputSpec, Program, Quantity, SceneError, SceneFile,
+    AxisSpec, ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, OutputSpec, Program, Quantity, SceneError, SceneFile,
 };
 
 /// Collects where in the file a value stands.
-struct Place<'a> {
-    file: &'a Path,
-    table: String,
+pub(super) struct Place<'a> {
+    pub file: &'a Path,
+    pub table: String,
 }
 
 impl Place<'_> {
-    fn error(&self, message: impl Into<String>, remedy: impl Into<String>) -> SceneError {
+    pub fn error(&self, message: impl Into<String>, remedy: impl Into<String>) -> SceneError {
         SceneError::Value {
             file: self.file.to_owned(),
             table: self.table.clone(),
@@ -24,7 +25,7 @@ impl Place<'_> {
         }
     }
 
-    fn positive(&self, key: &str, value: f64) -> Result<(), SceneError> {
+    pub fn positive(&self, key: &str, value: f64) -> Result<(), SceneError> {
         if value > 0.0 && value.is_finite() {
             Ok(())
         } else {
@@ -32,7 +33,7 @@ impl Place<'_> {
         }
     }
 
-    fn not_negative(&self, key: &str, value: f64) -> Result<(), SceneError> {
+    pub fn not_negative(&self, key: &str, value: f64) -> Result<(), SceneError> {
         if value >= 0.0 && value.is_finite() {
             Ok(())
         } else {
@@ -41,6 +42,13 @@ impl Place<'_> {
                 format!("give {key} a number that is not negative, in SI units"),
             ))
         }
+    }
+
+    pub fn finite(&self, key: &str, value: f64) -> Result<(), SceneError> {
+        if value.is_finite() {
+            return Ok(());
+        }
+        Err(self.error(format!("{key} = {value} must be finite"), format!("give {key} a number in SI units")))
     }
 
     fn known(&self, key: &str, name: &str, known: &[&str]) -> Result<(), SceneError> {
@@ -75,7 +83,7 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
         check_hydraulics(hydraulics, &at("[hydraulics]".to_owned()))?;
     }
     if let Some(muscles) = &scene.muscles {
-        check_make(muscles, &at("[muscles]".to_owned()))?;
+        check_make(muscles, file)?;
     }
     at("[[muscle]]".to_owned()).unique("name", scene.muscle.iter().map(|m| m.name.as_str()))?;
     at("[[cable]]".to_owned()).unique("name", scene.cable.iter().map(|c| c.name.as_str()))?;
@@ -87,21 +95,45 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
         place.positive("stiffness_n_m", cable.stiffness_n_m)?;
         place.not_negative("damping_n_s_m", cable.damping_n_s_m)?;
         place.not_negative("pretension_n", cable.pretension_n)?;
+        place.not_negative("sheath_angle_rad", cable.sheath_angle_rad)?;
         if let Some(drive) = &cable.drive {
             place.known("drive.input", &drive.input, &input_names(scene))?;
         }
     }
+    for load in &scene.load {
+        let place = at(format!("[[load]] \"{}\"", load.joint));
+        place.finite("force_n", load.force_n.unwrap_or(0.0))?;
+        place.finite("torque_n_m", load.torque_n_m.unwrap_or(0.0))?;
+    }
     if let Some(axis) = &scene.axis {
-        let place = at("[axis]".to_owned());
-        place.known("position_input", &axis.position_input, &input_names(scene))?;
-        if let Some(pressure) = &axis.pressure_input {
-            place.known("pressure_input", pressure, &input_names(scene))?;
-        }
-        place.positive("derivative_window_s", axis.derivative_window_s)?;
+        check_axis(scene, axis, &at("[axis]".to_owned()))?;
+    }
+    for calibrate in &scene.calibrate {
+        check_range(calibrate.min, calibrate.max, &at(format!("[[calibrate]] \"{}\"", calibrate.key)))?;
     }
     check_outputs(scene, file)?;
     super::check_effects::check(scene, file)?;
     Ok(programs)
+}
+
+fn check_axis(scene: &SceneFile, axis: &AxisSpec, place: &Place) -> Result<(), SceneError> {
+    place.known("position_input", &axis.position_input, &input_names(scene))?;
+    if let Some(pressure) = &axis.pressure_input {
+        place.known("pressure_input", pressure, &input_names(scene))?;
+    }
+    place.not_negative("piston_area_m2", axis.piston_area_m2)?;
+    place.not_negative("mass_kg", axis.mass_kg)?;
+    place.not_negative("damping_n_s_m", axis.damping_n_s_m)?;
+    place.finite("offset_n", axis.offset_n)?;
+    place.positive("derivative_window_s", axis.derivative_window_s)
+}
+
+fn check_range(min: f64, max: f64, place: &Place) -> Result<(), SceneError> {
+    if min.is_finite() && max.is_finite() && min < max {
+        return Ok(());
+    }
+    Err(place
+        .error(format!("min = {min} must be < max = {max}"), "give the range in SI units, the smaller number as min"))
 }
 
 fn input_names(scene: &SceneFile) -> Vec<&str> {
@@ -156,6 +188,8 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
     place.not_negative("line.compliance_m3_pa", h.line.compliance_m3_pa)?;
     place.positive("fluid.density_kg_m3", h.fluid.density_kg_m3)?;
     place.not_negative("fluid.viscosity_pa_s", h.fluid.viscosity_pa_s)?;
+    place.not_negative("fluid.vapour_pressure_pa", h.fluid.vapour_pressure_pa)?;
+    place.positive("fluid.atmospheric_pressure_pa", h.fluid.atmospheric_pressure_pa)?;
     if !(1..=1000).contains(&h.line.segments) {
         return Err(place.error(
             format!("line.segments = {} must be 1 to 1000", h.line.segments),
@@ -173,47 +207,6 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
             format!("line.momentum_factor = {} must be 1 to 4/3", h.line.momentum_factor),
             "4/3 for laminar flow",
         ));
-    }
-    Ok(())
-}
-
-fn check_make(m: &MusclesSpec, place: &Place) -> Result<(), SceneError> {
-    place.positive("rest_length_m", m.rest_length_m)?;
-    place.not_negative("damping_n_s_m", m.damping_n_s_m)?;
-    place.not_negative("end_mass_kg", m.end_mass_kg)?;
-    if !(0.0..=3.5).contains(&m.pre_elongation_ratio) {
-        return Err(place.error(
-            format!("pre_elongation_ratio = {} must be 0 to 3.5", m.pre_elongation_ratio),
-            "it is elongation over rest length; the coil yields at 2.5 (350 % of the length)",
-        ));
-    }
-    let kinds = [m.tube.is_some(), m.linear.is_some(), m.displacement.is_some()];
-    if kinds.iter().filter(|k| **k).count() != 1 {
-        return Err(place.error(
-            "exactly one of [muscles.tube], [muscles.linear], [muscles.displacement] is needed",
-            "keep one of them",
-        ));
-    }
-    if let Some(tube) = &m.tube {
-        place.positive("tube.inner_diameter_m", tube.inner_diameter_m)?;
-        if tube.outer_diameter_m <= tube.inner_diameter_m {
-            return Err(place.error(
-                format!(
-                    "tube.outer_diameter_m = {} must be > tube.inner_diameter_m = {}",
-                    tube.outer_diameter_m, tube.inner_diameter_m
-                ),
-                "give the diameters in m, outer larger than inner",
-            ));
-        }
-        place.not_negative("tube.coil.stiffness_n_m", tube.coil.stiffness_n_m)?;
-    }
-    if let Some(linear) = &m.linear {
-        place.positive("linear.stiffness_n_m", linear.stiffness_n_m)?;
-    }
-    if let Some(f) = &m.friction {
-        place.not_negative("friction.m0_n", f.m0_n)?;
-        place.not_negative("friction.m1_n_pa", f.m1_n_pa)?;
-        place.positive("friction.presliding_length_m", f.presliding_length_m)?;
     }
     Ok(())
 }
@@ -312,6 +305,11 @@ fn check_expect(expect: &ExpectSpec, known: &[&str], place: &Place) -> Result<()
     place.known("channel", &expect.channel, known)?;
     if expect.min.is_none() && expect.max.is_none() {
         return Err(place.error("neither `min` nor `max` is given", "say what passes"));
+    }
+    if let (Some(min), Some(max)) = (expect.min, expect.max)
+        && min > max
+    {
+        return Err(place.error(format!("min = {min} is above max = {max}: nothing can pass"), "exchange them"));
     }
     let missing = match expect.measure {
         Measure::ValueAt => expect.at_s.is_none().then_some("at_s"),

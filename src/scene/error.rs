@@ -11,9 +11,9 @@ pub enum SceneError {
     #[error("{}: cannot be read: {source}\n  remedy: give the path of a scene file, or one of the names that `smam scenes` lists", file.display())]
     Unreadable { file: PathBuf, source: std::io::Error },
     #[error(
-        "no scene named \"{name}\": known are {known}\n  remedy: use one of these names, or the path of a scene file"
+        "no scene named \"{name}\"{nearest}; known are {known}\n  remedy: use one of these names, or the path of a scene file"
     )]
-    UnknownName { name: String, known: String },
+    UnknownName { name: String, nearest: String, known: String },
     #[error("{}: {message}\n  remedy: correct this line; `smam check` tells whether the file is right", file.display())]
     Syntax { file: PathBuf, message: String },
     #[error("{}: {table}: {message}\n  remedy: {remedy}", file.display())]

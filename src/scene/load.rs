@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use toml::Table;
 
+use crate::recording::did_you_mean;
+
 use super::overrides::Override;
 use super::{Program, SceneError, SceneFile, check};
 
@@ -115,8 +117,9 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     let folders = std::iter::once(Path::new(""))
         .chain(beside_program.iter().flat_map(|p| p.ancestors().skip(1)))
         .chain(std::iter::once(built_at));
-    folders
-        .map(|folder| folder.join(&file))
-        .find(|path| path.is_file())
-        .ok_or_else(|| SceneError::UnknownName { name: path_or_name.to_owned(), known: STOCK_SCENES.join(", ") })
+    folders.map(|folder| folder.join(&file)).find(|path| path.is_file()).ok_or_else(|| SceneError::UnknownName {
+        name: path_or_name.to_owned(),
+        nearest: did_you_mean(path_or_name, &STOCK_SCENES),
+        known: STOCK_SCENES.join(", "),
+    })
 }

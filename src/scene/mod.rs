@@ -6,6 +6,7 @@
 
 mod check;
 mod check_effects;
+mod check_muscles;
 mod error;
 mod file;
 mod load;

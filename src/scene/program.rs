@@ -108,7 +108,8 @@ impl Program {
         let kind = table.get("kind").and_then(Value::as_str).ok_or("the key `kind` is missing")?;
         let mut keys = Keys { table, unit, used: vec!["kind".to_owned()] };
         let shape = parse_shape(kind, &mut keys)?;
-        let start_s = keys.optional("start_s")?.unwrap_or(0.0);
+        // Points carry their own times: a second clock would only make them hard to read.
+        let start_s = if kind == "points" { 0.0 } else { keys.optional("start_s")?.unwrap_or(0.0) };
         match table.keys().find(|k| !keys.used.contains(k)) {
             Some(unknown) => Err(format!("unknown key `{unknown}`; a `{kind}` knows {}", keys.used.join(", "))),
             None => Ok(Self { start_s, shape }),
@@ -239,6 +240,12 @@ mod tests {
         let p = program("kind = 'staircase'\nsteps_m = [1.0, 3.0]\nhold_s = 2.0\nrise_s = 1.0").expect("valid");
         assert_eq!((p.value(0.0), p.value(2.5), p.value(5.5), p.value(99.0)), (0.0, 1.0, 3.0, 3.0));
         assert!((p.value(3.5) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_have_their_own_times() {
+        let error = program("kind = 'points'\ntime_s = [0, 1]\nvalue_m = [0, 1]\nstart_s = 2").expect_err("refused");
+        assert_eq!(error, "unknown key `start_s`; a `points` knows kind, time_s, value_m");
     }
 
     #[test]

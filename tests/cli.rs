@@ -1,0 +1,327 @@
+//! The built program from the outside: what it says, where it points, what it leaves on disk, how it exits.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+fn smam(arguments: &[&str], folder: &Path) -> Output {
+    // Elsewhere than in the project: scenes must be found by name from anywhere.
+    Command::new(env!("CARGO_BIN_EXE_smam")).args(arguments).current_dir(folder).output().expect("starts")
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("temporary folder")
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn printed(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn scene(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml")
+}
+
+/// A stock scene with one piece of its text exchanged, in a folder beside its models.
+fn changed_scene(folder: &Path, name: &str, from: &str, to: &str) -> String {
+    let text = std::fs::read_to_string(scene(name)).expect("stock scene");
+    assert!(text.contains(from), "{name} has no {from}");
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let text = text.replace(from, to).replace("../models", &models.display().to_string());
+    let path = folder.join("mine.toml");
+    std::fs::write(&path, text).expect("written");
+    path.display().to_string()
+}
+
+/// Fails with exit code 2 and says all of `words`.
+fn refused(output: &Output, words: &[&str]) {
+    let text = said(output);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    for word in words.iter().chain(&["error: ", "remedy: "]) {
+        assert!(text.contains(word), "no {word:?} in: {text}");
+    }
+}
+
+/// Names of what stands in a folder, hidden files included.
+fn listing(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("folder");
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn without_arguments_it_says_what_to_type_first() {
+    let output = smam(&[], folder().path());
+    assert_eq!(output.status.code(), Some(0));
+    assert!(printed(&output).contains("Type first:\n  smam run bending_catheter"), "{}", printed(&output));
+}
+
+#[test]
+fn wrong_usage_exits_with_two() {
+    assert_eq!(smam(&["runn"], folder().path()).status.code(), Some(2));
+    assert_eq!(smam(&["run"], folder().path()).status.code(), Some(2));
+    let output = smam(&["run", "muscle_bench", "--duration", "0"], folder().path());
+    refused(&output, &["--duration 0", "must be > 0"]);
+}
+
+#[test]
+fn unknown_scene_proposes_the_nearest() {
+    let output = smam(&["run", "bending_cateter"], folder().path());
+    refused(&output, &["no scene named \"bending_cateter\"", "did you mean \"bending_catheter\"?"]);
+    let output = smam(&["run", "nowhere/mine.toml"], folder().path());
+    refused(&output, &["nowhere/mine.toml: cannot be read"]);
+}
+
+#[test]
+fn unknown_key_is_named_with_its_line() {
+    let here = folder();
+    let path = changed_scene(here.path(), "muscle_bench", "substeps =", "substep =");
+    refused(&smam(&["check", &path], here.path()), &["mine.toml", "simulation", "unknown field `substep`", "line 9"]);
+}
+
+#[test]
+fn bad_numbers_are_named_with_table_and_key() {
+    let here = folder();
+    let path = changed_scene(here.path(), "muscle_bench", "preload_n = 0.0", "preload_n = -0.5");
+    refused(&smam(&["check", &path], here.path()), &["mine.toml: [muscles.tube.coil]: preload_n = -0.5 must be >= 0"]);
+}
+
+#[test]
+fn bad_overrides_are_refused() {
+    let here = folder();
+    let set = |text: &str| smam(&["run", "muscle_bench", "--set", text], here.path());
+    refused(&set("muscles.rest_length_m"), &["--set muscles.rest_length_m", "there is no `=`"]);
+    refused(&set("muscle.none.x=1"), &["--set muscle.none.x", "there is no `muscle.none`"]);
+    refused(&set("muscles.rest_lenth_m=0.05"), &["muscles", "unknown field `rest_lenth_m`", "--keys"]);
+    refused(&set("muscles.rest_length_m=-0.05"), &["[muscles]: rest_length_m = -0.05 must be > 0"]);
+    refused(&set("muscles.rest_length_m=long"), &["muscles.rest_length_m", "invalid type", "--keys"]);
+    assert!(listing(here.path()).is_empty(), "{:?}", listing(here.path()));
+}
+
+#[test]
+fn missing_input_column_is_named() {
+    let here = folder();
+    std::fs::write(here.path().join("in.csv"), "time_s,piston_mm\n0,0\n0.1,0.1\n").expect("written");
+    let output = smam(&["run", "muscle_bench", "--input", "in.csv", "--output", "out.csv"], here.path());
+    refused(&output, &["in.csv", "\"plunger_mm\" is missing", "found: piston_mm"]);
+    assert_eq!(listing(here.path()), ["in.csv"]);
+}
+
+#[test]
+fn broken_numbers_are_named_with_their_line() {
+    let here = folder();
+    std::fs::write(here.path().join("in.csv"), "time_s,plunger_mm\n0,0\n0.1,oops\n").expect("written");
+    let output = smam(&["run", "muscle_bench", "--input", "in.csv", "--output", "out.csv"], here.path());
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("in.csv") && text.contains("oops") && text.contains("plunger_mm"), "{text}");
+    assert!(text.contains("line 3"), "{text}");
+}
+
+#[test]
+fn gaps_and_missing_samples_are_reported_and_other_columns_named() {
+    let here = folder();
+    let mut text = "time_s,plunger_mm,remark_v\n".to_owned();
+    for i in 0..60 {
+        let value = if i == 20 { "NaN".to_owned() } else { format!("{}", 0.01 * f64::from(i)) };
+        let time = f64::from(i) * 0.01 + if i > 40 { 0.5 } else { 0.0 };
+        text += &format!("{time},{value},1\n");
+    }
+    std::fs::write(here.path().join("in.csv"), text).expect("written");
+    let output = smam(&["run", "muscle_bench", "--input", "in.csv", "--output", "out.csv"], here.path());
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(text.contains("gaps (1): 0.4 to 0.91 s"), "{text}");
+    assert!(text.contains("plunger_mm") && text.contains("missing"), "{text}");
+    assert!(text.contains("left alone: remark_v"), "{text}");
+    let out = std::fs::read_to_string(here.path().join("out.csv")).expect("written");
+    assert!(out.starts_with("time_s,plunger_mm,elongation_mm,pressure_kpa,force_n\n"), "{out}");
+    assert_eq!(out.lines().count(), 61);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_fails_before_the_run() {
+    let here = folder();
+    std::fs::write(here.path().join("file"), "").expect("written");
+    let output = smam(&["run", "muscle_bench", "--output", "file/out.csv"], here.path());
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("cannot be written") && text.contains("remedy: ") && text.contains("file"), "{text}");
+    assert!(!text.contains("simulated in"), "it was run first: {text}");
+    assert_eq!(listing(here.path()), ["file"]);
+}
+
+#[test]
+fn an_unreadable_folder_of_recordings_is_named() {
+    let here = folder();
+    let output = smam(&["compare", "nowhere"], here.path());
+    assert_eq!(output.status.code(), Some(2));
+    let text = said(&output);
+    assert!(text.contains("nowhere") && text.contains("recordings.toml"), "{text}");
+}
+
+#[test]
+fn checks_pass_and_fail_with_their_exit_codes_and_junit() {
+    let here = folder();
+    let run = |extra: &[&str]| {
+        let all = ["run", "muscle_bench", "--duration", "21", "--check", "--junit", "new/report.xml"];
+        smam(&[&all[..], extra].concat(), here.path())
+    };
+    // The loop closes at 30 s: shortened, its measures cannot pass; the peak pressure does.
+    let output = run(&["--set", "expect.elongation range.max=1.0", "--set", "expect.elongation range.min=0.5"]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(printed(&output).contains("FAIL elongation range"), "{}", printed(&output));
+    assert!(printed(&output).contains("ok   peak pressure"), "{}", printed(&output));
+    let xml = std::fs::read_to_string(here.path().join("new/report.xml")).expect("written");
+    let cases = xml.matches("<testcase ").count();
+    let failures = xml.matches("<failure ").count();
+    assert!(xml.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"muscle_bench\""), "{xml}");
+    assert!(xml.contains(&format!("tests=\"{cases}\" failures=\"{failures}\"")) && failures >= 1, "{xml}");
+    assert!(balanced(&xml), "{xml}");
+    assert_eq!(listing(here.path()), ["new"], "--check writes nothing else");
+    assert_eq!(smam(&["run", "driven_axis", "--check"], here.path()).status.code(), Some(0));
+}
+
+/// Every opened element is closed, in order.
+fn balanced(xml: &str) -> bool {
+    let mut open: Vec<&str> = Vec::new();
+    for tag in xml.split('<').skip(1).map(|rest| rest.split('>').next().unwrap_or("")) {
+        match tag.strip_prefix('/') {
+            _ if tag.starts_with('?') || tag.ends_with('/') => {}
+            Some(name) if open.pop() != Some(name) => return false,
+            Some(_) => {}
+            None => open.push(tag.split(' ').next().unwrap_or("")),
+        }
+    }
+    open.is_empty()
+}
+
+const RECORDINGS: &str = r#"format = 1
+scene = "muscle_bench"
+[[channel]]
+column = "plunger_mm"
+role = "input"
+[[channel]]
+column = "elongation_mm"
+role = "output"
+noise_sd = 0.02
+[[channel]]
+column = "pressure_kpa"
+role = "output"
+[[run]]
+file = "sine.csv"
+use = "fit"
+[[run]]
+file = "later.csv"
+use = "holdout"
+"#;
+
+/// Two runs recorded from the simulation itself, with another friction.
+fn recorded(here: &Path) {
+    std::fs::create_dir(here.join("rig")).expect("folder");
+    std::fs::write(here.join("rig/recordings.toml"), RECORDINGS).expect("written");
+    for file in ["rig/sine.csv", "rig/later.csv"] {
+        let made = ["run", "muscle_bench", "--duration", "2", "--set", "muscles.friction.m0_n=0.14", "--output", file];
+        assert_eq!(smam(&made, here).status.code(), Some(0));
+    }
+}
+
+#[test]
+fn compare_writes_figures_and_picture() {
+    let here = folder();
+    recorded(here.path());
+    let output = smam(&["compare", "rig", "--out", "result"], here.path());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(listing(&here.path().join("result")), ["compare.json", "compare.svg"]);
+    let json = std::fs::read_to_string(here.path().join("result/compare.json")).expect("written");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    for channel in ["elongation_mm", "pressure_kpa"] {
+        let figures = &json["channels"][channel];
+        for key in ["rmse", "noise_sd", "range"] {
+            assert!(figures.get(key).is_some(), "{channel} {key}: {json}");
+        }
+        assert!(json["runs"]["sine.csv"][channel]["rmse"].is_number(), "{json}");
+    }
+    assert_eq!(json["channels"]["elongation_mm"]["noise_sd"], 0.02);
+    assert!(json["channels"]["elongation_mm"]["rmse"].as_f64().is_some_and(|rmse| rmse > 0.0), "{json}");
+    assert_eq!(json["holdout"], serde_json::json!(["later.csv"]));
+    let table = printed(&output);
+    for word in ["sine.csv (fit)", "later.csv (holdout)", "all holdout"] {
+        assert!(table.contains(word), "no {word:?} in: {table}");
+    }
+    // Undeclared columns are named once, with their file.
+    assert!(
+        said(&output).contains("note: sine.csv: columns that recordings.toml does not declare"),
+        "{}",
+        said(&output)
+    );
+    let same = smam(&["compare", "rig", "--out", "result", "--set", "friction_m0_n=0.14"], here.path());
+    assert!(printed(&same).contains("      0.0000"), "its own parameters leave no difference: {}", printed(&same));
+}
+
+#[test]
+fn compare_names_what_does_not_fit_together() {
+    let here = folder();
+    recorded(here.path());
+    let compare = |extra: &[&str]| smam(&[&["compare", "rig", "--out", "result"][..], extra].concat(), here.path());
+    refused(
+        &compare(&["--scene", "antagonistic_pulley"]),
+        &["recordings.toml", "`elongation_mm`", "antagonistic_pulley"],
+    );
+    let wrong = RECORDINGS.replace("use = \"holdout\"", "use = \"hold\"");
+    std::fs::write(here.path().join("rig/recordings.toml"), wrong).expect("written");
+    let text = said(&compare(&[]));
+    assert!(text.contains("[[run]] 2") && text.contains("use = \"hold\"") && text.contains("\"holdout\""), "{text}");
+    assert_eq!(listing(here.path()), ["rig"]);
+}
+
+#[test]
+fn a_model_is_written_whole() {
+    let here = folder();
+    let output = smam(&["model", "notched-tube", "--notches", "5", "--output", "tube.urdf"], here.path());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let urdf = std::fs::read_to_string(here.path().join("tube.urdf")).expect("written");
+    assert!(urdf.contains("notch_5") && !urdf.contains("notch_6"));
+    assert!(said(&output).contains("stiffness_n_m_rad = "));
+    assert_eq!(listing(here.path()), ["tube.urdf"]);
+}
+
+/// Ctrl-C: whole rows up to where it got, under the file's own name, and exit code 1.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_what_it_computed() {
+    let here = folder();
+    // Long enough that no machine ends it within the test.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_smam"))
+        .args(["run", "muscle_bench", "--duration", "100000", "--output", "long.csv"])
+        .current_dir(here.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    let begun = Instant::now();
+    // The rows stream into a hidden file first: none of them may stand under the final name.
+    while !listing(here.path()).iter().any(|n| n.ends_with(".partial")) {
+        assert!(begun.elapsed() < Duration::from_secs(30), "never began to write");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(!here.path().join("long.csv").exists());
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(killed.success());
+    while child.try_wait().expect("waits").is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "does not stop");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let output = child.wait_with_output().expect("ended");
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("interrupted at "), "{}", said(&output));
+    assert_eq!(listing(here.path()), ["long.csv"]);
+    let csv = std::fs::read_to_string(here.path().join("long.csv")).expect("written");
+    assert!(csv.ends_with('\n') && csv.lines().count() > 10, "{} lines", csv.lines().count());
+    assert!(csv.lines().all(|l| l.split(',').count() == 5), "a row was cut");
+}
