@@ -117,7 +117,8 @@ fn sensitivities_are_those_of_finite_differences() {
             for (c, column) in twin.columns().enumerate() {
                 let exact: Vec<f64> = dual[c].iter().map(|d| d.eps.unwrap_generic(Const::<1>, Const::<1>)[0]).collect();
                 let differences = (0..exact.len()).map(|i| (above[c][i] - below[c][i]) / (2.0 * h) - exact[i]);
-                let rms = |x: &mut dyn Iterator<Item = f64>| (x.map(|v| v * v).sum::<f64>() / exact.len() as f64).sqrt();
+                let rms =
+                    |x: &mut dyn Iterator<Item = f64>| (x.map(|v| v * v).sum::<f64>() / exact.len() as f64).sqrt();
                 let (error, size) = (rms(&mut differences.into_iter()), rms(&mut exact.iter().copied()));
                 println!("{name} {column} to {}: {:.5} of {size:.3e}", spec.key, error / size);
                 assert!(error < 0.05 * size, "{name}: {column} to {}", spec.key);

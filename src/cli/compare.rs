@@ -8,9 +8,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use smam::identify::{FitReport, RecordedRun, fit_rig_parameters, load_runs, replay};
-use smam::recording::{
-    ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels,
-};
+use smam::recording::{ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 

@@ -23,7 +23,10 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
             let p = &mut case.parameters[i];
             let half = (p.max - p.min) / 2.0;
             (p.min, p.max) = ((p.min - half).max(p.min * 0.1), p.max + half);
-            warnings.push(format!("{} met the end of its range, which was widened to {:.3e} .. {:.3e}", p.key, p.min, p.max));
+            warnings.push(format!(
+                "{} met the end of its range, which was widened to {:.3e} .. {:.3e}",
+                p.key, p.min, p.max
+            ));
         }
         fit = self::fit(case, &noise, Some(&fit.x))?;
     }
@@ -49,7 +52,9 @@ fn fit(case: &Case, noise: &[Noise], near: Option<&[f64]>) -> Result<Fit, Diagno
         return from_here.ok_or_else(diverges);
     }
     let middle: Vec<f64> = case.parameters.iter().map(|p| (p.min + p.max) / 2.0).collect();
-    let from_middle = problem.fit(&model, &middle);
+    // Stock values stand in the middle of their ranges: one start then says all.
+    let is_another = case.parameters.iter().zip(&middle).any(|(p, m)| (p.start - m).abs() > 1e-3 * (p.max - p.min));
+    let from_middle = if is_another { problem.fit(&model, &middle) } else { None };
     let best = [from_here, from_middle].into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost));
     best.ok_or_else(diverges)
 }

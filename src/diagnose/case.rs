@@ -217,10 +217,9 @@ fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, Diagnose
     let keys = scene.keys();
     let parameter = |spec: &CalibrateSpec| {
         let key = calibration_key(&spec.key);
-        let parameter = twin.parameter(key).ok_or_else(|| DiagnoseError::Parameter {
-            file: scene.path.clone(),
-            key: spec.key.clone(),
-        })?;
+        let parameter = twin
+            .parameter(key)
+            .ok_or_else(|| DiagnoseError::Parameter { file: scene.path.clone(), key: spec.key.clone() })?;
         let value = keys.iter().find(|(k, _)| k == key).and_then(|(_, v)| v.parse().ok());
         let start: f64 = value.unwrap_or((spec.min + spec.max) / 2.0);
         Ok(CaseParameter {

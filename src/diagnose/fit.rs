@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::case::{Case, CaseRun};
-use super::model::{Model, Probe, respond, simulate};
+use super::model::{Model, Probe, Sides, respond, simulate};
 use super::noise::Noise;
 
 /// A fitted model.
@@ -43,14 +43,16 @@ const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
 
 /// Steps to both sides are alike; away from a bound that is near.
-fn probes(numbers: &[Number], x: &[f64], which: std::ops::Range<usize>) -> Vec<Probe> {
+fn probes(numbers: &[Number], x: &[f64], which: std::ops::Range<usize>, sides: Sides) -> Vec<Probe> {
     which
         .map(|number| {
             let n = &numbers[number];
             let share = if n.prior_weight > 0.0 { CALIBRATION_STEP } else { EFFECT_STEP };
             // A number grown far beyond its scale is probed in proportion.
             let size = (share * n.scale).max(1e-3 * x[number].abs());
-            Probe { number, step: if x[number] + size > n.max { -size } else { size } }
+            let has_room = x[number] - size >= n.min && x[number] + size <= n.max;
+            let step = if x[number] + size > n.max { -size } else { size };
+            Probe { number, step, sides: if has_room { sides } else { Sides::One } }
         })
         .collect()
 }
@@ -63,8 +65,13 @@ pub(super) struct Problem<'a> {
 }
 
 /// Stop when an iteration promises less than this many units of chi².
-const GAIN: f64 = 0.3;
-const ITERATIONS: usize = 12;
+const GAIN: f64 = 0.5;
+/// From here on derivatives are taken to both sides.
+const CLOSE: f64 = 200.0;
+const ITERATIONS: usize = 20;
+
+/// Normal matrix, gradient and cost.
+type Normal = (DMatrix<f64>, DVector<f64>, f64);
 
 impl<'a> Problem<'a> {
     fn numbers(&self, model: &Model) -> Vec<Number> {
@@ -122,9 +129,9 @@ impl<'a> Problem<'a> {
     }
 
     /// Normal matrix, gradient and cost at `x`, in scaled numbers.
-    fn normal(&self, model: &Model, numbers: &[Number], x: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>, f64)> {
+    fn normal(&self, model: &Model, numbers: &[Number], x: &[f64], sides: Sides) -> Option<Normal> {
         let count = x.len();
-        let probes = probes(numbers, x, 0..count);
+        let probes = probes(numbers, x, 0..count, sides);
         let mut matrix = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);
         let mut cost = 0.0;
@@ -153,18 +160,21 @@ impl<'a> Problem<'a> {
         let mut x: Vec<f64> = start.iter().zip(&numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect();
         // Undamped at first: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
         let mut damping = 1e-10;
-        let (mut matrix, mut gradient, mut cost) = self.normal(model, &numbers, &x)?;
+        let mut sides = Sides::One;
+        let (mut matrix, mut gradient, mut cost) = self.normal(model, &numbers, &x, sides)?;
         for _ in 0..ITERATIONS {
-            let Some((next, next_cost)) = self.improve(model, &numbers, &x, &matrix, &gradient, cost, &mut damping)
-            else {
-                break;
-            };
-            let gain = cost - next_cost;
-            x = next;
-            (matrix, gradient, cost) = self.normal(model, &numbers, &x)?;
-            if gain < GAIN {
-                break;
+            let better = self.improve(model, &numbers, &x, &matrix, &gradient, cost, &mut damping);
+            let gain = better.as_ref().map_or(0.0, |(_, next)| cost - next);
+            if let Some((next, _)) = better {
+                x = next;
             }
+            if gain < CLOSE {
+                if sides == Sides::Both && gain < GAIN {
+                    break;
+                }
+                (sides, damping) = (Sides::Both, 1e-10);
+            }
+            (matrix, gradient, cost) = self.normal(model, &numbers, &x, sides)?;
         }
         let on_bound = (0..self.case.parameters.len())
             .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
@@ -190,8 +200,12 @@ impl<'a> Problem<'a> {
             if predicted_gain(matrix, gradient, &step) < GAIN / 3.0 {
                 return None;
             }
-            let next: Vec<f64> =
-                x.iter().zip(numbers).zip(step.iter()).map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max)).collect();
+            let next: Vec<f64> = x
+                .iter()
+                .zip(numbers)
+                .zip(step.iter())
+                .map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max))
+                .collect();
             let there = self.residuals(model, &next).map(|r| self.cost(&r) + self.prior_cost(numbers, &next));
             if let Some(there) = there.filter(|t| *t < cost) {
                 *damping = (*damping / 10.0).max(1e-10);
@@ -206,7 +220,7 @@ impl<'a> Problem<'a> {
     /// noise, one row per sample (missing ones left out).
     pub fn tangent(&self, model: &Model, x: &[f64]) -> Option<Rows> {
         let numbers = self.numbers(model);
-        let probes = probes(&numbers, x, 0..x.len());
+        let probes = probes(&numbers, x, 0..x.len(), Sides::Both);
         let mut parts = Vec::new();
         for run in &self.runs {
             let response = respond(self.case, run, model, x, &probes)?;
@@ -336,7 +350,7 @@ impl Problem<'_> {
     /// Derivatives of the simulated channels to some of the numbers, in units of the noise and of each scale.
     pub fn columns(&self, model: &Model, x: &[f64], wanted: std::ops::Range<usize>) -> Option<DMatrix<f64>> {
         let all = self.numbers(model);
-        let probes = probes(&all, x, wanted.clone());
+        let probes = probes(&all, x, wanted.clone(), Sides::One);
         let numbers = &all[wanted];
         let mut parts = Vec::new();
         for run in &self.runs {

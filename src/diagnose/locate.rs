@@ -38,8 +38,8 @@ fn is_loud(residuals: &[Vec<f64>], noise: &[Noise], piece: std::ops::Range<usize
             count += 1.0;
         }
     }
-    count > 10.0 && sum / count > 1.0 / noise.iter().map(|n| n.inflation).fold(1.0, f64::max)
-        + SIGMA * (2.0 / count).sqrt()
+    count > 10.0
+        && sum / count > 1.0 / noise.iter().map(|n| n.inflation).fold(1.0, f64::max) + SIGMA * (2.0 / count).sqrt()
 }
 
 /// Number of levels that each state is cut into.

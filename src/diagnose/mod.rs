@@ -21,9 +21,7 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
-pub use answer::{
-    ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict,
-};
+pub use answer::{ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict};
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Sealed};
 pub use error::DiagnoseError;
 pub use fit::Fit;

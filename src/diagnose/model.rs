@@ -114,11 +114,19 @@ pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> 
     Some(case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect())
 }
 
-/// A number of `x` and the step over which its derivative is taken.
+/// A number of `x` and the step over which its derivative is taken, to one side or to both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
     pub number: usize,
     pub step: f64,
+    pub sides: Sides,
+}
+
+/// Differences to one side cost half; those to both sides are exact enough for narrow valleys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sides {
+    One,
+    Both,
 }
 
 /// Simulates with derivatives, as differences over the probes' steps.
@@ -126,23 +134,27 @@ pub(super) struct Probe {
 /// The exact derivatives that the fast model also has would cost the same. But where a cable hangs between taut and
 /// slack they are those of the branch taken at every step, and grow without bound; a finite step does not.
 pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], probes: &[Probe]) -> Option<Response> {
-    let jobs: Vec<Option<Probe>> = std::iter::once(None).chain(probes.iter().copied().map(Some)).collect();
-    let series: Vec<Option<Vec<Vec<f64>>>> = jobs
-        .par_iter()
-        .map(|job| {
+    let mut jobs = vec![x.to_vec()];
+    let mut ends = Vec::new();
+    for probe in probes {
+        let mut end = |step: f64| {
             let mut moved = x.to_vec();
-            if let Some(probe) = job {
-                moved[probe.number] += probe.step;
-            }
-            simulate(case, run, model, &moved)
-        })
-        .collect();
-    let mut series = series.into_iter().collect::<Option<Vec<_>>>()?;
-    let values = series.remove(0);
-    for (slopes, probe) in series.iter_mut().zip(probes) {
-        for (slope, value) in slopes.iter_mut().zip(&values) {
-            slope.iter_mut().zip(value).for_each(|(s, v)| *s = (*s - v) / probe.step);
-        }
+            moved[probe.number] += step;
+            jobs.push(moved);
+            jobs.len() - 1
+        };
+        let ahead = end(probe.step);
+        ends.push(match probe.sides {
+            Sides::One => (ahead, 0, probe.step),
+            Sides::Both => (ahead, end(-probe.step), 2.0 * probe.step),
+        });
     }
-    Some(Response { values, slopes: series })
+    let series: Vec<Option<Vec<Vec<f64>>>> = jobs.par_iter().map(|x| simulate(case, run, model, x)).collect();
+    let series = series.into_iter().collect::<Option<Vec<_>>>()?;
+    let slope = |(ahead, behind, way): (usize, usize, f64)| -> Vec<Vec<f64>> {
+        let channels = series[ahead].iter().zip(&series[behind]);
+        channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
+    };
+    let slopes = ends.into_iter().map(slope).collect();
+    Some(Response { values: series[0].clone(), slopes })
 }

@@ -11,6 +11,8 @@ use super::model::{Model, Placed};
 const MOST_EFFECTS: usize = 4;
 /// Candidates that are refitted in full at every stage.
 const REFITTED: usize = 10;
+/// Candidates that promise less than this share of the best are not refitted.
+const WORTH: f64 = 0.1;
 /// Share of an effect in chi² per sample below which it is not called missing physics.
 const LEAST_SHARE: f64 = 2e-3;
 /// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
@@ -26,8 +28,6 @@ pub struct Screened {
     pub size: f64,
     /// Size that would gain [`least_gain`]: what could just be seen.
     pub least_size: f64,
-    /// The signature orthogonal to what is fitted already, of unit length.
-    pub signature: DVector<f64>,
 }
 
 /// Fall of chi² that makes an effect worth naming, for so many samples.
@@ -56,7 +56,6 @@ pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<
                 gain: if feasible { amplitude * amplitude } else { 0.0 },
                 size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
                 least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
-                signature: signature / length.max(f64::MIN_POSITIVE),
                 variant: variant.clone(),
             }
         })
@@ -92,9 +91,6 @@ pub struct Found {
     pub rivals: Vec<Vec<Fit>>,
     /// What the baseline's residual promised of every effect.
     pub screened: Vec<Screened>,
-    /// What the final residual still promises.
-    pub left: Vec<Screened>,
-    pub samples: usize,
 }
 
 /// Searches from a baseline.
@@ -103,10 +99,9 @@ pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say
     let least = least_gain(samples);
     let mut best = baseline.clone();
     let mut first_screened = Vec::new();
-    let mut left;
     let mut rivals: Vec<Vec<Fit>> = Vec::new();
     loop {
-        left = screen(problem, &best, variants);
+        let left = screen(problem, &best, variants);
         if first_screened.is_empty() {
             first_screened = left.clone();
         }
@@ -122,15 +117,16 @@ pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say
             best = swap(problem, best, variants, &mut rivals, least, say);
         }
     }
-    Found { baseline, best, rivals, screened: first_screened, left, samples }
+    Found { baseline, best, rivals, screened: first_screened }
 }
 
 /// The candidates worth a full refit: the most promising of every effect.
 fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
     let mut picked: Vec<Screened> = Vec::new();
+    let top = screened.first().map_or(0.0, |s| s.gain);
     for s in screened {
         // A signature at zero size says little of laws with a threshold: they get the benefit of the doubt.
-        let promising = s.gain > 0.2 * least;
+        let promising = s.gain > 0.2 * least && s.gain > WORTH * top;
         if promising && picked.iter().filter(|p| p.variant.placed == s.variant.placed).count() < 2 {
             picked.push(s.clone());
         }
@@ -183,7 +179,7 @@ fn swap(
     least: f64,
     say: &dyn Fn(String),
 ) -> Fit {
-    for index in 0..best.model.effects.len() {
+    for (index, rivals) in rivals.iter_mut().enumerate() {
         let fewer = best.model.without(index);
         let start: Vec<f64> = problem.start_without(&best, index);
         let Some(reduced) = problem.fit(&fewer, &start) else { continue };
@@ -195,10 +191,10 @@ fn swap(
             say(format!("swapped for {}: chi2 {:.0} -> {:.0}", title(&better.model), best.cost, better.cost));
             let mut model_order = better.clone();
             std::mem::swap(&mut best, &mut model_order);
-            rivals[index] = vec![model_order];
+            *rivals = vec![model_order];
             return best;
         }
-        rivals[index] = refits;
+        *rivals = refits;
     }
     best
 }

@@ -9,26 +9,12 @@ const fn fitted(key: &'static str, symbol: &'static str, min: f64, max: f64, typ
 
 /// A number with a default that a diagnosis fits.
 const fn fitted_from(key: &'static str, symbol: &'static str, min: f64, max: f64, default: f64) -> ParameterSpec {
-    ParameterSpec {
-        key,
-        symbol,
-        range: Range { min, max },
-        typical: default,
-        default: Some(default),
-        is_fitted: true,
-    }
+    ParameterSpec { key, symbol, range: Range { min, max }, typical: default, default: Some(default), is_fitted: true }
 }
 
 /// A number with a default that a diagnosis leaves alone.
 const fn fixed(key: &'static str, symbol: &'static str, min: f64, max: f64, default: f64) -> ParameterSpec {
-    ParameterSpec {
-        key,
-        symbol,
-        range: Range { min, max },
-        typical: default,
-        default: Some(default),
-        is_fitted: false,
-    }
+    ParameterSpec { key, symbol, range: Range { min, max }, typical: default, default: Some(default), is_fitted: false }
 }
 
 /// The catalogue, along the chain. The order of parameters is that of [`super::Effect::values`].
@@ -113,10 +99,7 @@ pub const CATALOGUE: &[EffectSpec] = &[
         element: ElementKind::Muscle,
         law: "F_wall (1 - d tanh((W_max - W)/W_m))",
         source: "Ogden and Roxburgh 1999",
-        parameters: &[
-            fitted("softening_ratio", "d", 0.0, 0.8, 0.1),
-            fixed("energy_scale_j", "W_m", 1e-4, 1.0, 0.02),
-        ],
+        parameters: &[fitted("softening_ratio", "d", 0.0, 0.8, 0.1), fixed("energy_scale_j", "W_m", 1e-4, 1.0, 0.02)],
     },
     EffectSpec {
         kind: Kind::CoilPreload,
@@ -134,10 +117,7 @@ pub const CATALOGUE: &[EffectSpec] = &[
         element: ElementKind::Muscle,
         law: "de_p/dt = k max(0, e - e_lim), wall and coil see e - e_p",
         source: "flow beyond a threshold (Bingham)",
-        parameters: &[
-            fitted("set_rate_1_s", "k", 0.0, 1.0, 2e-3),
-            fitted("threshold_m", "e_lim", 0.0, 0.2, 0.018),
-        ],
+        parameters: &[fitted("set_rate_1_s", "k", 0.0, 1.0, 2e-3), fitted("threshold_m", "e_lim", 0.0, 0.2, 0.018)],
     },
     EffectSpec {
         kind: Kind::PressureFriction,
@@ -206,10 +186,7 @@ pub const CATALOGUE: &[EffectSpec] = &[
         element: ElementKind::Mechanism,
         law: "tau = -k (theta - theta_0) beyond theta_0",
         source: "one-sided spring",
-        parameters: &[
-            fitted("stiffness_n_m_rad", "k", 0.0, 1.0, 1e-3),
-            fitted("angle_rad", "theta_0", -4.0, 4.0, 0.6),
-        ],
+        parameters: &[fitted("stiffness_n_m_rad", "k", 0.0, 1.0, 1e-3), fitted("angle_rad", "theta_0", -4.0, 4.0, 0.6)],
     },
     EffectSpec {
         kind: Kind::NotchClosure,

@@ -18,8 +18,7 @@ pub enum ElementKind {
 
 impl ElementKind {
     /// All, along the chain.
-    pub const ALL: [Self; 6] =
-        [Self::Syringe, Self::Line, Self::Muscle, Self::Cable, Self::Mechanism, Self::Sensor];
+    pub const ALL: [Self; 6] = [Self::Syringe, Self::Line, Self::Muscle, Self::Cable, Self::Mechanism, Self::Sensor];
 
     /// Its name in scenes and answers.
     pub fn name(self) -> &'static str {

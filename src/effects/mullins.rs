@@ -31,7 +31,7 @@ mod tests {
 
     #[test]
     fn softens_below_the_greatest_energy_only() {
-        let law = Mullins { softening_ratio: 0.2, energy_scale_j: 0.02 };
+        let law = Mullins { softening_ratio: 0.2f64, energy_scale_j: 0.02 };
         assert_eq!(law.factor(0.05, 0.05), (1.0, 0.0));
         assert_eq!(law.factor(0.06, 0.05), (1.0, 0.0));
         let (deep, slope) = law.factor(0.0, 0.2);

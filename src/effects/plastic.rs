@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn flows_beyond_the_threshold_only() {
-        let law = PlasticSet { set_rate_1_s: 0.01, threshold_m: 0.02 };
+        let law = PlasticSet { set_rate_1_s: 0.01f64, threshold_m: 0.02 };
         assert_eq!(law.rate_m_s(0.02), 0.0);
         assert!((law.rate_m_s(0.03) - 1e-4).abs() < 1e-18);
     }

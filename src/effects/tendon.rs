@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn half_is_left_after_a_full_turn() {
         let law =
-            TendonFriction { friction_coefficient: 0.1, fixed_wrap_rad: std::f64::consts::TAU, presliding_m: 1e-4 };
+            TendonFriction { friction_coefficient: 0.1f64, fixed_wrap_rad: std::f64::consts::TAU, presliding_m: 1e-4 };
         assert!((law.transmission(1.0, 0.0) - 0.533_488).abs() < 1e-6);
         assert!((law.transmission(1.0, 0.0) * law.transmission(-1.0, 0.0) - 1.0).abs() < 1e-15);
     }

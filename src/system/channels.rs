@@ -5,8 +5,8 @@ use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
 use super::axis::{Axis, AxisFriction, AxisNumbers};
-use super::twin::sensor;
 use super::plant::Drive;
+use super::twin::sensor;
 use super::{Simulation, SystemError};
 
 /// What one output column reads from the state.

@@ -53,9 +53,7 @@ impl MusclePlant<f64> {
                 rho: c(f.rho),
             }),
             damping_n_s_m: c(self.damping_n_s_m),
-            stop: self
-                .stop
-                .map(|s| Stop { stiffness_n_m: c(s.stiffness_n_m), damping_n_s_m: c(s.damping_n_s_m) }),
+            stop: self.stop.map(|s| Stop { stiffness_n_m: c(s.stiffness_n_m), damping_n_s_m: c(s.damping_n_s_m) }),
             jacobian: self.jacobian.clone(),
             elongation_0_m: self.elongation_0_m,
             extras: MuscleExtras::default(),

@@ -29,10 +29,8 @@ pub use elastic::{Elastic, ElasticPoint};
 pub use energy::EnergyBook;
 pub use error::SystemError;
 pub use events::Warnings;
-pub use extras::{
-    AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras,
-};
 pub use expect::{Verdict, judge};
+pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
 pub use inputs::InputSource;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,

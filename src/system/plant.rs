@@ -264,6 +264,19 @@ impl<D: Scalar> Plant<D> {
         m.forces(elongation, speed, pressure, state.z[muscle], m.slow(state), state.greatest_j[muscle])
     }
 
+    /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
+    pub(super) fn pulling(&self, state: &PlantState<D>, inputs: &[InputSpan]) -> u64 {
+        let cables = (0..self.cables.len()).map(|i| self.cable(i, state, inputs, 0.0).2.value() > 0.0);
+        let stops = &self.coordinates.stops;
+        let stops = stops.iter().map(|s| s.force(state.y[s.coordinate], state.w[s.coordinate]).0.value() > 0.0);
+        let coils = self.muscles.iter().filter(|m| m.stop.is_some()).map(|m| {
+            let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;
+            elongation.value() < 0.0
+        });
+        let walls = self.mechanism.walls.iter().map(|w| w.wall.is_met(dot(&w.direction, &state.y)));
+        cables.chain(stops).chain(coils).chain(walls).fold(0, |bits, acts| bits << 1 | u64::from(acts))
+    }
+
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.
     pub fn cable(&self, cable: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> (D, D, D) {
         let c = &self.cables[cable];

@@ -28,6 +28,8 @@ const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
 /// Steps after which the tangents are taken anew even if nothing was switched.
 const KEEP: u32 = 16;
+/// And the time after which they are, s: the friction states have moved on.
+const KEEP_S: f64 = 3.2e-3;
 
 /// A stage: the rates of everything in a [`PlantState`].
 #[derive(Clone, Debug)]
@@ -69,6 +71,7 @@ struct MuscleTangent<D> {
 #[derive(Clone, Debug)]
 pub struct Stepper<D> {
     middle: PlantState<D>,
+    saved: PlantState<D>,
     r: Rates<D>,
     k1: Rates<D>,
     k2: Rates<D>,
@@ -117,6 +120,7 @@ impl<D: Scalar> Stepper<D> {
         };
         Self {
             middle: state.clone(),
+            saved: state.clone(),
             r: rates.clone(),
             k1: rates.clone(),
             k2: rates,
@@ -142,12 +146,26 @@ impl<D: Scalar> Stepper<D> {
         self.age = KEEP;
     }
 
+    /// Keeps a state, to try again from it.
+    pub fn save(&mut self, state: &PlantState<D>) {
+        copy(&mut self.saved, state);
+    }
+
+    /// Goes back to the kept state.
+    pub fn restore(&mut self, state: &mut PlantState<D>) {
+        copy(state, &self.saved);
+    }
+
     /// Advances `state` by `h` seconds; `inputs` start at the step's beginning.
     pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
         let g = GAMMA * h;
         self.move_pistons(plant, state, inputs, h);
         let switches = rates(plant, state, inputs, &self.piston_m_s, 0.0, &mut self.r);
-        if switches != self.switches || self.age >= KEEP || h != self.tangent_step_s {
+        if switches != self.switches
+            || self.age >= KEEP
+            || f64::from(self.age) * h >= KEEP_S
+            || h != self.tangent_step_s
+        {
             self.linearise(plant, state, inputs, g);
             (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
         }
@@ -508,6 +526,12 @@ impl Switches {
 }
 
 fn move_to<D: Scalar>(to: &mut PlantState<D>, from: &PlantState<D>, k: &Rates<D>, h: f64) {
+    copy(to, from);
+    advance(to, k, h);
+}
+
+/// Copies without allocating; both states belong to the same plant.
+fn copy<D: Scalar>(to: &mut PlantState<D>, from: &PlantState<D>) {
     to.y.copy_from_slice(&from.y);
     to.w.copy_from_slice(&from.w);
     to.z.copy_from_slice(&from.z);
@@ -517,7 +541,7 @@ fn move_to<D: Scalar>(to: &mut PlantState<D>, from: &PlantState<D>, k: &Rates<D>
     for (t, f) in to.chains.iter_mut().zip(&from.chains) {
         t.copy_from(f);
     }
-    advance(to, k, h);
+    to.piston_ahead_m.copy_from_slice(&from.piston_ahead_m);
 }
 
 fn advance<D: Scalar>(state: &mut PlantState<D>, k: &Rates<D>, h: f64) {

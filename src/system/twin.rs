@@ -9,6 +9,8 @@ mod lump;
 mod output;
 mod parameter;
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::effects::Effect;
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
@@ -60,9 +62,34 @@ pub struct Twin {
     pub step_s: f64,
 }
 
+/// Greatest step, s, and the angle by which the fastest cable may swing in one step, rad: beyond it what a cable does
+/// while it goes taut and slack again is no longer followed.
+const GREATEST_STEP_S: f64 = 1.0e-3;
+const STEP_ANGLE: f64 = 1.35;
+
 /// Steps are this much shorter over the first moments, where what was let go at once still rings.
 const RINGING_S: f64 = 0.5;
 const RINGING_STEPS: f64 = 4.0;
+/// A step in which a cable goes taut or slack is done again in so many.
+const SWITCH_STEPS: usize = 16;
+
+/// Angular frequency of the fastest swing of taut cables on their inertias, rad/s.
+fn fastest_rad_s(plant: &Plant<f64>) -> f64 {
+    let n = plant.dim();
+    if n == 0 {
+        return f64::MIN_POSITIVE;
+    }
+    let mut stiffness = DMatrix::<f64>::zeros(n, n);
+    for cable in &plant.cables {
+        let lever = DVector::from_column_slice(&cable.jacobian);
+        stiffness += &lever * lever.transpose() * cable.stiffness_n_m;
+    }
+    let inertia = DMatrix::from_row_slice(n, n, &plant.coordinates.inertia);
+    let Some(factor) = inertia.cholesky().map(|c| c.l()) else { return f64::MIN_POSITIVE };
+    let Some(inverse) = factor.try_inverse() else { return f64::MIN_POSITIVE };
+    let scaled = &inverse * stiffness * inverse.transpose();
+    scaled.symmetric_eigenvalues().max().max(f64::MIN_POSITIVE).sqrt()
+}
 
 impl Twin {
     /// The fast model of a scene.
@@ -93,9 +120,9 @@ impl Twin {
             pretension_n: bare.file.cable.iter().map(|c| c.pretension_n).collect(),
             initial_load_n: bare.file.muscles.as_ref().map_or(0.0, |m| m.initial_load_n),
             axis: super::channels::axis(&bare),
+            step_s: GREATEST_STEP_S.min(STEP_ANGLE / fastest_rad_s(&lumped.plant)),
             plant: lumped.plant,
             state: lumped.state,
-            step_s: 1.0e-3,
         })
     }
 
@@ -118,8 +145,7 @@ impl Twin {
         let mut stepper = Stepper::new(&plant, &state);
         let mut sensors = Sensors::new(&self.outputs, &setting.effects);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
-        let mut spans: Vec<InputSpan> =
-            run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        let mut spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         for (k, &time) in run.times_s.iter().enumerate() {
             if k > 0 {
                 self.advance(&plant, &mut state, &mut stepper, &mut spans, run, k);
@@ -150,9 +176,23 @@ impl Twin {
         for (span, values) in spans.iter_mut().zip(&run.inputs) {
             *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
         }
+        let mut before = plant.pulling(state, spans);
         for _ in 0..steps as usize {
+            stepper.save(state);
             stepper.step(plant, state, spans, h);
             spans.iter_mut().for_each(|s| s.value += h * s.slope);
+            let mut after = plant.pulling(state, spans);
+            if after != before {
+                spans.iter_mut().for_each(|s| s.value -= h * s.slope);
+                stepper.restore(state);
+                let fine = h / SWITCH_STEPS as f64;
+                for _ in 0..SWITCH_STEPS {
+                    stepper.step(plant, state, spans, fine);
+                    spans.iter_mut().for_each(|s| s.value += fine * s.slope);
+                }
+                after = plant.pulling(state, spans);
+            }
+            before = after;
         }
         for (span, values) in spans.iter_mut().zip(&run.inputs) {
             span.value = values[k];

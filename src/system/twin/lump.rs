@@ -80,7 +80,8 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let mut matrix = vec![0.0; dim * dim];
     for (i, (a, share_a)) in place.iter().enumerate() {
         for (j, (b, share_b)) in place.iter().enumerate() {
-            let m = if i < joints && j < joints { inertia[(i, j)] } else { full.coordinates.inertia[i * full.dim() + j] };
+            let m =
+                if i < joints && j < joints { inertia[(i, j)] } else { full.coordinates.inertia[i * full.dim() + j] };
             matrix[a * dim + b] += m * share_a * share_b;
         }
     }
@@ -106,8 +107,7 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let state = PlantState { y: total(&built.state.y), w: vec![0.0; dim], ..built.state.clone() };
     let mut hinges: Vec<usize> = groups.iter().map(Vec::len).collect();
     hinges.resize(dim, 1);
-    let group_names: Vec<Vec<String>> =
-        groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
+    let group_names: Vec<Vec<String>> = groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
     let tables = scene.file.mechanism.as_ref().map_or(&[][..], |m| &m.joint);
     let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
     Ok(Lumped { joints: groups.len(), plant, state, hinges, names: group_names, spring_table })
@@ -121,8 +121,10 @@ fn groups(plant: &Plant<f64>, joints: usize, state: &PlantState<f64>, inertia: &
     };
     let bears_muscle = |i: usize| plant.muscles.iter().any(|m| m.jacobian[i] != 0.0);
     let alike = |a: usize, b: usize| {
-        plant.cables.iter().all(|cable| cable.jacobian[a] == cable.jacobian[b] && cable.jacobian[a] != 0.0 || {
-            cable.jacobian[a] == 0.0 && cable.jacobian[b] == 0.0
+        plant.cables.iter().all(|cable| {
+            cable.jacobian[a] == cable.jacobian[b] && cable.jacobian[a] != 0.0 || {
+                cable.jacobian[a] == 0.0 && cable.jacobian[b] == 0.0
+            }
         }) && c.damping[a] == c.damping[b]
             && c.stiffness[a] == c.stiffness[b]
             && c.rest[a] == c.rest[b]

@@ -59,9 +59,7 @@ fn resolve_named(twin: &Twin, key: &str) -> Option<TwinParameter> {
         ["mechanism", "joint", number, "stiffness_n_m_rad" | "stiffness_n_m"] => {
             let number: usize = number.parse().ok()?;
             let springs = twin.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
-            Some(TwinParameter::JointStiffness(
-                springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect(),
-            ))
+            Some(TwinParameter::JointStiffness(springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect()))
         }
         _ => None,
     }
