@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::diagnose::{Case, Diagnosis, Options, Outcome, Verdict, diagnose as run_diagnosis};
+use smam::report::diagnosis_page;
 use smam::scene::Override;
 
 use super::CliError;
@@ -60,6 +61,7 @@ fn write_outcome(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
     let json = serde_json::to_string_pretty(&outcome.diagnosis)
         .map_err(|e| CliError::Failed(format!("the answer cannot be written as JSON: {e}")))?;
     write(&out.join("diagnosis.json"), &format!("{json}\n"))?;
+    write(&out.join("report.html"), &diagnosis_page(outcome))?;
     if let Some(scene) = outcome.scene_text() {
         write(&out.join("scene.toml"), &scene?)?;
     }

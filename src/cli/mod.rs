@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod diagnose;
+mod effects;
 mod error;
 mod files;
 mod interrupt;
@@ -30,6 +31,7 @@ const EXAMPLES: &str = "Examples:
   smam run bending_catheter                  a catheter bends and its forceps grip; writes out/
   smam run muscle_bench --check              the paper's figures of one muscle, checked
   smam compare path/to/recordings            your recording beside its simulation
+  smam diagnose path/to/recordings           what physics the scene lacks to explain it
   smam run muscle_bench --set muscles.friction.m0_n=0.2 --output mine.csv";
 
 #[derive(Subcommand)]
@@ -40,6 +42,8 @@ enum Command {
     Compare(compare::CompareArguments),
     /// Find the physics that recordings show and the scene lacks
     Diagnose(diagnose::DiagnoseArguments),
+    /// List the physics that a scene may leave out, or show one
+    Effects(effects::EffectsArguments),
     /// Read a scene and say whether it is right
     Check(check::CheckArguments),
     /// List the scenes that come with the program
@@ -58,6 +62,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),
+        Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),
         Some(Command::Model(arguments)) => model::model(&arguments),

@@ -160,6 +160,9 @@ impl<'a> Problem<'a> {
         let mut x: Vec<f64> = start.iter().zip(&numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect();
         // Undamped at first: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
         let mut damping = 1e-10;
+        // A model that is far off need not be far off to the last digit.
+        let samples = self.samples().max(1) as f64;
+        let unit = |cost: f64| (cost / samples).max(1.0);
         let mut sides = Sides::One;
         let (mut matrix, mut gradient, mut cost) = self.normal(model, &numbers, &x, sides)?;
         for _ in 0..ITERATIONS {
@@ -168,8 +171,8 @@ impl<'a> Problem<'a> {
             if let Some((next, _)) = better {
                 x = next;
             }
-            if gain < CLOSE {
-                if sides == Sides::Both && gain < GAIN {
+            if gain < CLOSE * unit(cost) {
+                if sides == Sides::Both && gain < GAIN * unit(cost) {
                     break;
                 }
                 (sides, damping) = (Sides::Both, 1e-10);
@@ -197,7 +200,7 @@ impl<'a> Problem<'a> {
     ) -> Option<(Vec<f64>, f64)> {
         for _ in 0..8 {
             let step = bounded_step(matrix, gradient, numbers, x, *damping)?;
-            if predicted_gain(matrix, gradient, &step) < GAIN / 3.0 {
+            if predicted_gain(matrix, gradient, &step) < GAIN / 3.0 * (cost / self.samples().max(1) as f64).max(1.0) {
                 return None;
             }
             let next: Vec<f64> = x

@@ -3,11 +3,13 @@
 mod axis;
 mod compare_figure;
 mod decimate;
+mod diagnosis_page;
 mod html;
 mod panel;
 mod svg;
 
 pub use compare_figure::{ComparedChannel, ComparedRun, compare_svg};
+pub use diagnosis_page::diagnosis_page;
 pub use html::HtmlPage;
 pub use panel::{Band, Panel, Series, figure_svg};
 pub use svg::{BLUE, GREEN, GREY, ORANGE, PURPLE, Rect, VERMILION};

@@ -1,0 +1,152 @@
+//! The page of a diagnosis: verdict, where, what, how much better, what next.
+
+use crate::diagnose::{Estimate, NamedEffect, Outcome};
+
+use super::HtmlPage;
+use super::axis::three_digits;
+use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
+
+/// One self-contained page, readable by a person who was not there.
+pub fn diagnosis_page(outcome: &Outcome) -> String {
+    let d = &outcome.diagnosis;
+    let mut page = HtmlPage::new(&format!("Diagnosis of {} ({})", d.recordings.join(", "), d.scene));
+    page.paragraph(&d.summary);
+    location(&mut page, outcome);
+    what(&mut page, outcome);
+    better(&mut page, outcome);
+    detectable(&mut page, outcome);
+    if !d.warnings.is_empty() {
+        page.heading("What to know besides");
+        d.warnings.iter().for_each(|w| {
+            page.paragraph(w);
+        });
+    }
+    page.finish()
+}
+
+fn location(page: &mut HtmlPage, outcome: &Outcome) {
+    let location = &outcome.diagnosis.location;
+    if location.element.is_none() {
+        return;
+    }
+    page.heading("Where");
+    let rows: Vec<Vec<String>> = location.ranked.iter().map(|(e, p)| vec![e.clone(), format!("{p:.3}")]).collect();
+    page.table(&["element", "probability"], &rows);
+    if !location.state_region.is_empty() {
+        page.paragraph(&format!("The calibrated scene is furthest off at {}.", location.state_region));
+    }
+    let windows: Vec<String> =
+        location.time_windows_s.iter().take(12).map(|(f, a, b)| format!("{f} {a:.1} to {b:.1} s")).collect();
+    if !windows.is_empty() {
+        let more = location.time_windows_s.len().saturating_sub(windows.len());
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        page.paragraph(&format!("More than noise in: {}{rest}.", windows.join("; ")));
+    }
+}
+
+fn what(page: &mut HtmlPage, outcome: &Outcome) {
+    let d = &outcome.diagnosis;
+    if !d.effects.is_empty() {
+        page.heading("What");
+        let rows: Vec<Vec<String>> = d.effects.iter().flat_map(effect_rows).collect();
+        page.table(&["effect", "element", "probability", "number (SI)", "value", "95 % interval", "law"], &rows);
+    }
+    if !outcome.rivals.is_empty() {
+        let best = outcome.corrected.as_ref().map_or(0.0, |f| f.cost);
+        let rows: Vec<Vec<String>> =
+            outcome.rivals.iter().map(|(title, cost)| vec![title.clone(), format!("{:.0}", cost - best)]).collect();
+        page.heading("Rivals, refitted jointly, and why they lost");
+        page.table(&["instead", "chi² above the answer"], &rows);
+    }
+    page.heading("Calibration with it");
+    let rows: Vec<Vec<String>> = d.calibration.iter().map(|(k, e)| [vec![k.clone()], estimate(e)].concat()).collect();
+    page.table(&["number (SI)", "value", "95 % interval"], &rows);
+}
+
+fn effect_rows(e: &NamedEffect) -> Vec<Vec<String>> {
+    let element = e.channel.as_ref().map_or_else(|| e.element.clone(), |c| format!("{} {c}", e.element));
+    let row = |(i, (key, number)): (usize, (&String, &Estimate))| {
+        let head = match i {
+            0 => vec![e.name.clone(), element.clone(), format!("{:.3}", e.probability)],
+            _ => vec![String::new(); 3],
+        };
+        let law = if i == 0 { e.law.clone() } else { String::new() };
+        [head, vec![key.clone()], estimate(number), vec![law]].concat()
+    };
+    e.parameters.iter().enumerate().map(row).collect()
+}
+
+fn estimate(e: &Estimate) -> Vec<String> {
+    let fixed = e.ci95[0] == e.ci95[1];
+    let interval = if fixed { "not fitted".to_owned() } else { format!("{:.3e} to {:.3e}", e.ci95[0], e.ci95[1]) };
+    vec![format!("{:.4e}", e.value), interval]
+}
+
+fn better(page: &mut HtmlPage, outcome: &Outcome) {
+    let d = &outcome.diagnosis;
+    page.heading("How much better");
+    let rows: Vec<Vec<String>> = d
+        .fit
+        .channels
+        .iter()
+        .map(|(channel, p)| {
+            let numbers = [p.rmse_baseline, p.rmse_corrected, p.noise_sd, p.rmse_corrected / p.noise_sd];
+            [vec![channel.clone()], numbers.map(three_digits).to_vec()].concat()
+        })
+        .collect();
+    page.table(&["sealed runs", "RMSE calibrated", "RMSE corrected", "noise", "corrected / noise"], &rows);
+    if !d.effects.is_empty() {
+        page.paragraph(&format!(
+            "{:.1} % of the gap between the calibrated scene and the noise is closed on sealed runs ({}), 95 % interval \
+             {:.1} to {:.1} %.",
+            100.0 * d.fit.gap_closed,
+            d.fit.holdout.join(", "),
+            100.0 * d.fit.gain_ci95[0],
+            100.0 * d.fit.gain_ci95[1]
+        ));
+    }
+    let Some([before, after]) = &outcome.residuals else { return };
+    let figure =
+        |title: &str, residuals| compare_svg(title, "runs held back are marked (sealed)", &runs(outcome, residuals));
+    page.figure(&figure("Measured and calibrated scene", before), "Before: the scene, its calibration refitted.");
+    if !d.effects.is_empty() {
+        page.figure(&figure("Measured and corrected scene", after), "After: the scene with what was found.");
+    }
+}
+
+/// The runs with their residuals taken off the measured values.
+fn runs(outcome: &Outcome, residuals: &[Vec<Vec<f64>>]) -> Vec<ComparedRun> {
+    let case = &outcome.case;
+    let compared = case.runs.iter().zip(residuals).map(|(run, residuals)| ComparedRun {
+        name: if run.is_sealed { format!("{} (sealed)", run.file) } else { run.file.clone() },
+        time_s: run.times_s().to_vec(),
+        channels: case
+            .channels
+            .iter()
+            .enumerate()
+            .map(|(c, channel)| {
+                let finite: Vec<f64> = residuals[c].iter().copied().filter(|r| r.is_finite()).collect();
+                ComparedChannel {
+                    column: channel.column.clone(),
+                    measured: run.measured[c].clone(),
+                    simulated: run.measured[c].iter().zip(&residuals[c]).map(|(m, r)| m - r).collect(),
+                    noise_sd: Some(outcome.noise[c].sd),
+                    rmse: (finite.iter().map(|r| r * r).sum::<f64>() / finite.len().max(1) as f64).sqrt(),
+                }
+            })
+            .collect(),
+    });
+    compared.collect()
+}
+
+fn detectable(page: &mut HtmlPage, outcome: &Outcome) {
+    let smallest = &outcome.diagnosis.detection.smallest_detectable;
+    if smallest.is_empty() {
+        return;
+    }
+    page.heading("What would have been seen");
+    page.paragraph("The smallest size (SI) of each effect that these recordings would have shown.");
+    let rows: Vec<Vec<String>> =
+        smallest.iter().map(|(title, size)| vec![title.clone(), format!("{size:.2e}")]).collect();
+    page.table(&["effect", "size"], &rows);
+}
