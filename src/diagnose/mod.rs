@@ -1,7 +1,7 @@
 //! What a recording shows and the simulation lacks: locate, name, model, prove, and say what to record next.
 //!
-//! [`diagnose`] goes through the steps one by one, each a module of its own: [`preflight`], [`baseline`], detection in
-//! [`noise`], [`locate`], [`search`], [`verdict`], [`prove`]. It works on the fast model of the scene
+//! [`diagnose`] goes through the steps one by one, each a module of its own: `preflight`, `baseline`, detection in
+//! `noise`, `locate`, `search`, `verdict`, `prove`. It works on the fast model of the scene
 //! ([`crate::system::Twin`]); what it finds is written as a scene.
 
 mod answer;
@@ -60,7 +60,7 @@ impl Outcome {
     /// The corrected scene as text.
     ///
     /// # Errors
-    /// As [`corrected::corrected_scene`].
+    /// A fitted number that the scene's own checks refuse.
     pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
         let fit = self.complete.as_ref()?;
         Some(corrected::corrected_scene(&self.case, fit, &self.diagnosis.summary))

@@ -273,7 +273,10 @@ impl<D: Scalar> Plant<D> {
             let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;
             elongation.value() < 0.0
         });
-        let walls = self.mechanism.walls.iter().map(|w| w.wall.is_met(dot(&w.direction, &state.y)));
+        // A wall without stiffness is none.
+        let walls = self.mechanism.walls.iter();
+        let walls =
+            walls.map(|w| w.wall.stiffness_n_m_rad.value() != 0.0 && w.wall.is_met(dot(&w.direction, &state.y)));
         cables.chain(stops).chain(coils).chain(walls).fold(0, |bits, acts| bits << 1 | u64::from(acts))
     }
 
