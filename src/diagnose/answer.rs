@@ -113,3 +113,10 @@ pub struct NextExperiment {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
 }
+
+impl NextExperiment {
+    /// None is proposed by this version, and the answer says so.
+    pub fn none() -> Self {
+        Self { why: "this version proposes no experiment".to_owned(), ..Self::default() }
+    }
+}

@@ -1,10 +1,13 @@
 //! Least squares of a [`Model`] against runs.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::case::{Case, CaseRun};
 use super::model::{Model, Probe, Sides, respond, simulate};
 use super::noise::Noise;
+use super::normal::{Normal, Number, Rows};
 
 /// A fitted model.
 #[derive(Clone, Debug)]
@@ -27,23 +30,12 @@ impl Fit {
     }
 }
 
-/// Range and scale of one number.
-#[derive(Clone, Copy, Debug)]
-struct Number {
-    min: f64,
-    max: f64,
-    scale: f64,
-    /// Where the prior sits and its weight, one over standard deviations.
-    prior: f64,
-    prior_weight: f64,
-}
-
 /// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
 const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
 
 /// Steps to both sides are alike; away from a bound that is near.
-fn probes(numbers: &[Number], x: &[f64], which: std::ops::Range<usize>, sides: Sides) -> Vec<Probe> {
+fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
     which
         .map(|number| {
             let n = &numbers[number];
@@ -69,11 +61,10 @@ const GAIN: f64 = 0.5;
 /// From here on derivatives are taken to both sides.
 const CLOSE: f64 = 200.0;
 const ITERATIONS: usize = 20;
+/// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
+const LEAST_DAMPING: f64 = 1e-10;
 
-/// Normal matrix, gradient and cost.
-type Normal = (DMatrix<f64>, DVector<f64>, f64);
-
-impl<'a> Problem<'a> {
+impl Problem<'_> {
     fn numbers(&self, model: &Model) -> Vec<Number> {
         let mut numbers: Vec<Number> = self
             .case
@@ -128,90 +119,123 @@ impl<'a> Problem<'a> {
         numbers.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
     }
 
-    /// Normal matrix, gradient and cost at `x`, in scaled numbers.
+    /// The normal equations at `x`, in scaled numbers.
     fn normal(&self, model: &Model, numbers: &[Number], x: &[f64], sides: Sides) -> Option<Normal> {
-        let count = x.len();
-        let probes = probes(numbers, x, 0..count, sides);
-        let mut matrix = DMatrix::zeros(count, count);
-        let mut gradient = DVector::zeros(count);
-        let mut cost = 0.0;
+        let mut normal = Normal::empty(x.len());
+        self.each_part(model, numbers, x, 0..x.len(), sides, |rows| normal.add(&rows))?;
+        for (i, (n, x)) in numbers.iter().zip(x).enumerate() {
+            let weight = n.prior_weight * n.scale;
+            normal.matrix[(i, i)] += weight * weight;
+            normal.gradient[i] -= weight * (x - n.prior) * n.prior_weight;
+        }
+        normal.cost += self.prior_cost(numbers, x);
+        Some(normal)
+    }
+
+    /// Calls `take` with the rows of each run and channel: residuals, and their derivatives to the numbers `wanted`.
+    fn each_part(
+        &self,
+        model: &Model,
+        numbers: &[Number],
+        x: &[f64],
+        wanted: Range<usize>,
+        sides: Sides,
+        mut take: impl FnMut(Rows),
+    ) -> Option<()> {
+        let probes = probes(numbers, x, wanted.clone(), sides);
         for run in &self.runs {
             let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
-            for (c, noise) in self.noise.iter().enumerate() {
-                let weight = 1.0 / noise.scale();
-                let rows = weighted_rows(self.case, run, c, &residuals[c], &response.slopes, numbers, weight);
-                cost += rows.residual.norm_squared();
-                gradient += rows.slopes.tr_mul(&rows.residual);
-                matrix += rows.slopes.tr_mul(&rows.slopes);
+            for c in 0..self.case.channels.len() {
+                take(self.weighted_rows(run, c, &residuals[c], &response.slopes, &numbers[wanted.clone()]));
             }
         }
-        for (i, (n, x)) in numbers.iter().zip(x).enumerate() {
-            let weight = n.prior_weight * n.scale;
-            matrix[(i, i)] += weight * weight;
-            gradient[i] -= weight * (x - n.prior) * n.prior_weight;
+        Some(())
+    }
+
+    /// Residuals at `x` and their derivatives to the numbers `wanted`, one row per sample that is there.
+    pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
+        let mut parts = Vec::new();
+        self.each_part(model, &self.numbers(model), x, wanted, sides, |rows| parts.push(rows))?;
+        Rows::stack(&parts)
+    }
+
+    fn weighted_rows(
+        &self,
+        run: &CaseRun,
+        channel: usize,
+        residual: &[f64],
+        slopes: &[Vec<Vec<f64>>],
+        numbers: &[Number],
+    ) -> Rows {
+        let weight = 1.0 / self.noise[channel].scale();
+        let there: Vec<usize> = (0..residual.len()).filter(|&i| run.measured[channel][i].is_finite()).collect();
+        let mut rows = Rows {
+            slopes: DMatrix::zeros(there.len(), numbers.len()),
+            residual: DVector::from_iterator(there.len(), there.iter().map(|&i| residual[i] * weight)),
+        };
+        for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
+            let mut column: Vec<f64> = there.iter().map(|&i| slope[channel][i] * (weight * number.scale)).collect();
+            if self.case.channels[channel].has_free_zero {
+                take_mean_off(&mut column);
+            }
+            rows.slopes.column_mut(k).copy_from_slice(&column);
         }
-        Some((matrix, gradient, cost + self.prior_cost(numbers, x)))
+        rows
     }
 
     /// Fits a model from `start`. `None` when it cannot be simulated there.
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         let numbers = self.numbers(model);
         let mut x: Vec<f64> = start.iter().zip(&numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect();
-        // Undamped at first: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
-        let mut damping = 1e-10;
-        // A model that is far off need not be far off to the last digit.
-        let samples = self.samples().max(1) as f64;
-        let unit = |cost: f64| (cost / samples).max(1.0);
+        let mut damping = LEAST_DAMPING;
         let mut sides = Sides::One;
-        let (mut matrix, mut gradient, mut cost) = self.normal(model, &numbers, &x, sides)?;
+        let mut here = self.normal(model, &numbers, &x, sides)?;
         for _ in 0..ITERATIONS {
-            let better = self.improve(model, &numbers, &x, &matrix, &gradient, cost, &mut damping);
-            let gain = better.as_ref().map_or(0.0, |(_, next)| cost - next);
+            // A model that is far off need not be far off to the last digit.
+            let unit = (here.cost / self.samples().max(1) as f64).max(1.0);
+            let better = self.improve(model, &numbers, &x, &here, GAIN * unit, &mut damping);
+            let gain = better.as_ref().map_or(0.0, |(_, cost)| here.cost - cost);
             if let Some((next, _)) = better {
                 x = next;
             }
-            if gain < CLOSE * unit(cost) {
-                if sides == Sides::Both && gain < GAIN * unit(cost) {
+            if gain < CLOSE * unit {
+                if sides == Sides::Both && gain < GAIN * unit {
                     break;
                 }
-                (sides, damping) = (Sides::Both, 1e-10);
+                (sides, damping) = (Sides::Both, LEAST_DAMPING);
             }
-            (matrix, gradient, cost) = self.normal(model, &numbers, &x, sides)?;
+            here = self.normal(model, &numbers, &x, sides)?;
         }
         let on_bound = (0..self.case.parameters.len())
             .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
             .collect();
         let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
-        let covariance = inverse(matrix).component_mul(&(&scales * scales.transpose()));
-        Some(Fit { model: model.clone(), cost: cost - self.prior_cost(&numbers, &x), covariance, x, on_bound })
+        let cost = here.cost - self.prior_cost(&numbers, &x);
+        let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
+        Some(Fit { model: model.clone(), cost, covariance, x, on_bound })
     }
 
-    #[allow(clippy::too_many_arguments)]
+    /// A point of lower cost, with it; none when less than a third of `gain` can be had.
     fn improve(
         &self,
         model: &Model,
         numbers: &[Number],
         x: &[f64],
-        matrix: &DMatrix<f64>,
-        gradient: &DVector<f64>,
-        cost: f64,
+        here: &Normal,
+        gain: f64,
         damping: &mut f64,
     ) -> Option<(Vec<f64>, f64)> {
         for _ in 0..8 {
-            let step = bounded_step(matrix, gradient, numbers, x, *damping)?;
-            if predicted_gain(matrix, gradient, &step) < GAIN / 3.0 * (cost / self.samples().max(1) as f64).max(1.0) {
+            let step = here.bounded_step(numbers, x, *damping)?;
+            if here.promised_gain(&step) < gain / 3.0 {
                 return None;
             }
-            let next: Vec<f64> = x
-                .iter()
-                .zip(numbers)
-                .zip(step.iter())
-                .map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max))
-                .collect();
+            let moved = x.iter().zip(numbers).zip(step.iter());
+            let next: Vec<f64> = moved.map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max)).collect();
             let there = self.residuals(model, &next).map(|r| self.cost(&r) + self.prior_cost(numbers, &next));
-            if let Some(there) = there.filter(|t| *t < cost) {
-                *damping = (*damping / 10.0).max(1e-10);
+            if let Some(there) = there.filter(|t| *t < here.cost) {
+                *damping = (*damping / 10.0).max(LEAST_DAMPING);
                 return Some((next, there));
             }
             *damping *= 100.0;
@@ -219,37 +243,19 @@ impl<'a> Problem<'a> {
         None
     }
 
-    /// Fitted derivatives of the residuals to the calibration and the effects, and the residuals, all in units of the
-    /// noise, one row per sample (missing ones left out).
-    pub fn tangent(&self, model: &Model, x: &[f64]) -> Option<Rows> {
-        let numbers = self.numbers(model);
-        let probes = probes(&numbers, x, 0..x.len(), Sides::Both);
-        let mut parts = Vec::new();
-        for run in &self.runs {
-            let response = respond(self.case, run, model, x, &probes)?;
-            let residuals = subtract(self.case, run, &response.values);
-            for (c, noise) in self.noise.iter().enumerate() {
-                let weight = 1.0 / noise.scale();
-                parts.push(weighted_rows(self.case, run, c, &residuals[c], &response.slopes, &numbers, weight));
-            }
-        }
-        let rows: usize = parts.iter().map(|p| p.residual.len()).sum();
-        let mut all = Rows { slopes: DMatrix::zeros(rows, x.len()), residual: DVector::zeros(rows) };
-        let mut at = 0;
-        for part in parts {
-            let n = part.residual.len();
-            all.slopes.rows_mut(at, n).copy_from(&part.slopes);
-            all.residual.rows_mut(at, n).copy_from(&part.residual);
-            at += n;
-        }
-        Some(all)
+    /// Number of samples compared.
+    pub fn samples(&self) -> usize {
+        self.runs.iter().flat_map(|r| &r.measured).flatten().filter(|v| v.is_finite()).count()
     }
-}
 
-/// Residuals and derivatives in units of the noise and of each number's scale.
-pub(super) struct Rows {
-    pub slopes: DMatrix<f64>,
-    pub residual: DVector<f64>,
+    /// The numbers of a fit without those of one effect.
+    pub fn start_without(&self, fit: &Fit, effect: usize) -> Vec<f64> {
+        let n = self.case.parameters.len();
+        let mut x = fit.x[..n].to_vec();
+        let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
+        x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
+        x
+    }
 }
 
 fn subtract(case: &Case, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -271,115 +277,4 @@ fn take_mean_off(values: &mut [f64]) {
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
     values.iter_mut().for_each(|v| *v -= mean);
-}
-
-fn weighted_rows(
-    case: &Case,
-    run: &CaseRun,
-    channel: usize,
-    residual: &[f64],
-    slopes: &[Vec<Vec<f64>>],
-    numbers: &[Number],
-    weight: f64,
-) -> Rows {
-    let there: Vec<usize> = (0..residual.len()).filter(|&i| run.measured[channel][i].is_finite()).collect();
-    let mut rows = Rows {
-        slopes: DMatrix::zeros(there.len(), numbers.len()),
-        residual: DVector::from_iterator(there.len(), there.iter().map(|&i| residual[i] * weight)),
-    };
-    for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
-        let mut column: Vec<f64> = there.iter().map(|&i| slope[channel][i] * (weight * number.scale)).collect();
-        if case.channels[channel].has_free_zero {
-            take_mean_off(&mut column);
-        }
-        rows.slopes.column_mut(k).copy_from_slice(&column);
-    }
-    rows
-}
-
-/// A damped step in scaled numbers; numbers that a bound holds back stay.
-fn bounded_step(
-    matrix: &DMatrix<f64>,
-    gradient: &DVector<f64>,
-    numbers: &[Number],
-    x: &[f64],
-    damping: f64,
-) -> Option<DVector<f64>> {
-    let mut held = vec![false; x.len()];
-    for _ in 0..x.len() + 1 {
-        let mut damped = matrix.clone();
-        let mut right = gradient.clone();
-        let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
-        for i in 0..x.len() {
-            damped[(i, i)] += damping * matrix[(i, i)] + 1e-14 * largest;
-            if held[i] {
-                damped.row_mut(i).fill(0.0);
-                damped.column_mut(i).fill(0.0);
-                damped[(i, i)] = 1.0;
-                right[i] = 0.0;
-            }
-        }
-        let step = damped.cholesky()?.solve(&right);
-        let blocked = (0..x.len()).find(|&i| {
-            let n = &numbers[i];
-            !held[i] && ((x[i] <= n.min && step[i] < 0.0) || (x[i] >= n.max && step[i] > 0.0))
-        });
-        match blocked {
-            Some(i) => held[i] = true,
-            None => return Some(step),
-        }
-    }
-    None
-}
-
-fn predicted_gain(matrix: &DMatrix<f64>, gradient: &DVector<f64>, step: &DVector<f64>) -> f64 {
-    2.0 * gradient.dot(step) - step.dot(&(matrix * step))
-}
-
-/// Inverse of a normal matrix; directions the data do not see get a very large variance.
-fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
-    let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
-    let n = matrix.nrows();
-    let damped = matrix + DMatrix::identity(n, n) * (1e-13 * largest);
-    damped.try_inverse().unwrap_or_else(|| DMatrix::from_element(n, n, f64::INFINITY))
-}
-
-impl Problem<'_> {
-    /// Number of samples compared.
-    pub fn samples(&self) -> usize {
-        self.runs.iter().flat_map(|r| &r.measured).flatten().filter(|v| v.is_finite()).count()
-    }
-
-    /// Derivatives of the simulated channels to some of the numbers, in units of the noise and of each scale.
-    pub fn columns(&self, model: &Model, x: &[f64], wanted: std::ops::Range<usize>) -> Option<DMatrix<f64>> {
-        let all = self.numbers(model);
-        let probes = probes(&all, x, wanted.clone(), Sides::One);
-        let numbers = &all[wanted];
-        let mut parts = Vec::new();
-        for run in &self.runs {
-            let response = respond(self.case, run, model, x, &probes)?;
-            let residuals = subtract(self.case, run, &response.values);
-            for (c, noise) in self.noise.iter().enumerate() {
-                let weight = 1.0 / noise.scale();
-                parts.push(weighted_rows(self.case, run, c, &residuals[c], &response.slopes, numbers, weight).slopes);
-            }
-        }
-        let rows = parts.iter().map(DMatrix::nrows).sum();
-        let mut all = DMatrix::zeros(rows, numbers.len());
-        let mut at = 0;
-        for part in parts {
-            all.rows_mut(at, part.nrows()).copy_from(&part);
-            at += part.nrows();
-        }
-        Some(all)
-    }
-
-    /// The numbers of a fit without those of one effect.
-    pub fn start_without(&self, fit: &Fit, effect: usize) -> Vec<f64> {
-        let n = self.case.parameters.len();
-        let mut x = fit.x[..n].to_vec();
-        let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
-        x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
-        x
-    }
 }

@@ -31,15 +31,15 @@ pub fn time_windows(runs: &[&CaseRun], residuals: &[Vec<Vec<f64>>], noise: &[Noi
 }
 
 fn is_loud(residuals: &[Vec<f64>], noise: &[Noise], piece: std::ops::Range<usize>) -> bool {
-    let (mut sum, mut count) = (0.0, 0.0);
+    let (mut sum, mut expected, mut count) = (0.0, 0.0, 0.0);
     for (channel, noise) in residuals.iter().zip(noise) {
         for r in channel[piece.clone()].iter().filter(|r| r.is_finite()) {
-            sum += (r / noise.sd).powi(2) / noise.inflation;
+            sum += (r / noise.scale()).powi(2);
+            expected += 1.0 / noise.inflation;
             count += 1.0;
         }
     }
-    count > 10.0
-        && sum / count > 1.0 / noise.iter().map(|n| n.inflation).fold(1.0, f64::max) + SIGMA * (2.0 / count).sqrt()
+    count > 10.0 && sum > expected + SIGMA * f64::sqrt(2.0 * count)
 }
 
 /// Number of levels that each state is cut into.

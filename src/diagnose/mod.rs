@@ -14,6 +14,7 @@ mod fit;
 mod locate;
 mod model;
 mod noise;
+mod normal;
 mod preflight;
 mod prove;
 mod search;
@@ -89,8 +90,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &base.noise };
     say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let found = confirm(found, &proof, &mut warnings);
-    let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
+    let (found, proof) = confirm(found, proof, &mut warnings);
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &base.noise };
     let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
@@ -113,7 +113,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         effects,
         calibration: calibration(&case, &complete),
         fit: proof,
-        next_experiment: NextExperiment::default(),
+        next_experiment: NextExperiment::none(),
         warnings,
     };
     diagnosis.summary = summary(&diagnosis);
@@ -131,7 +131,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
 }
 
 /// Takes back what does not hold on the sealed runs.
-fn confirm(mut found: Found, proof: &Proof, warnings: &mut Vec<String>) -> Found {
+fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (Found, Proof) {
     if !found.best.model.effects.is_empty() && proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5 {
         warnings.push(format!(
             "{} fitted the open runs but not the sealed ones, and was dropped",
@@ -139,8 +139,10 @@ fn confirm(mut found: Found, proof: &Proof, warnings: &mut Vec<String>) -> Found
         ));
         found.best = found.baseline.clone();
         found.rivals.clear();
+        proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
+        (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
     }
-    found
+    (found, proof)
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
@@ -155,7 +157,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         effects: Vec::new(),
         calibration: BTreeMap::new(),
         fit: Proof::default(),
-        next_experiment: NextExperiment::default(),
+        next_experiment: NextExperiment::none(),
         warnings: [preflight.unusable, preflight.warnings, case.notes.clone()].concat(),
     };
     Outcome {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
-use super::model::{Model, Placed};
+use super::model::{Model, Placed, Sides};
 
 /// At most this many effects in one answer.
 const MOST_EFFECTS: usize = 4;
@@ -35,10 +35,10 @@ pub fn least_gain(samples: usize) -> f64 {
     LEAST_GAIN.max(LEAST_SHARE * samples as f64)
 }
 
-/// Signatures of all variants at a fit, best first. Their sizes are taken as small: all are present at zero at once.
+/// What the signatures of all variants promise at a fit, best first; a signature is taken at zero size.
 pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Screened> {
     let fresh: Vec<&Variant> = variants.iter().filter(|v| !fit.model.effects.contains(&v.placed)).collect();
-    let Some(known) = problem.tangent(&fit.model, &fit.x) else { return Vec::new() };
+    let Some(known) = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return Vec::new() };
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
@@ -74,8 +74,8 @@ fn signature(problem: &Problem, fit: &Fit, variant: &Variant) -> Option<DVector<
     model.fitted.push(vec![0]);
     let mut x = fit.x.clone();
     x.push(0.0);
-    let columns = problem.columns(&model, &x, fit.x.len()..x.len())?;
-    Some(columns.column(0).into_owned())
+    let rows = problem.rows(&model, &x, fit.x.len()..x.len(), Sides::One)?;
+    Some(rows.slopes.column(0).into_owned())
 }
 
 fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
@@ -111,10 +111,10 @@ pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say
         let refits = refit(problem, &best, &pick(&left, least));
         let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
-        rivals.push(refits[1..].to_vec());
         best = winner.clone();
+        rivals = vec![refits[1..].to_vec()];
         if best.model.effects.len() > 1 {
-            best = swap(problem, best, variants, &mut rivals, least, say);
+            (best, rivals) = settle(problem, best, variants, least, say);
         }
     }
     Found { baseline, best, rivals, screened: first_screened }
@@ -170,33 +170,41 @@ fn add(problem: &Problem, from: &Fit, placed: &Placed, values: &[f64]) -> Option
     problem.fit(&model, &start)
 }
 
-/// Tries to leave each effect out, and others in its place.
-fn swap(
+/// Leaves out effects that others have made needless and puts better ones in their place, until neither helps.
+/// Returns with it, for each effect, the others tried in its place.
+fn settle(
     problem: &Problem,
     mut best: Fit,
     variants: &[Variant],
-    rivals: &mut [Vec<Fit>],
     least: f64,
     say: &dyn Fn(String),
-) -> Fit {
-    for (index, rivals) in rivals.iter_mut().enumerate() {
-        let fewer = best.model.without(index);
-        let start: Vec<f64> = problem.start_without(&best, index);
-        let Some(reduced) = problem.fit(&fewer, &start) else { continue };
-        let screened = screen(problem, &reduced, variants);
-        let others: Vec<Screened> =
-            pick(&screened, least).into_iter().filter(|s| s.variant.placed != best.model.effects[index]).collect();
-        let refits = refit(problem, &reduced, &others);
-        if let Some(better) = refits.first().filter(|f| f.cost < best.cost - 1.0) {
-            say(format!("swapped for {}: chi2 {:.0} -> {:.0}", title(&better.model), best.cost, better.cost));
-            let mut model_order = better.clone();
-            std::mem::swap(&mut best, &mut model_order);
-            *rivals = vec![model_order];
-            return best;
-        }
-        *rivals = refits;
+) -> (Fit, Vec<Vec<Fit>>) {
+    let mut rivals: Vec<Vec<Fit>> = Vec::new();
+    while rivals.len() < best.model.effects.len() {
+        let index = rivals.len();
+        let start = problem.start_without(&best, index);
+        let Some(fewer) = problem.fit(&best.model.without(index), &start) else {
+            rivals.push(Vec::new());
+            continue;
+        };
+        let others: Vec<Screened> = pick(&screen(problem, &fewer, variants), least)
+            .into_iter()
+            .filter(|s| s.variant.placed != best.model.effects[index])
+            .collect();
+        let refits = refit(problem, &fewer, &others);
+        let better = match refits.first().filter(|f| f.cost < best.cost - 1.0) {
+            _ if fewer.cost - best.cost < least => fewer,
+            Some(other) => other.clone(),
+            None => {
+                rivals.push(refits);
+                continue;
+            }
+        };
+        say(format!("rather {}: chi2 {:.0} -> {:.0}", title(&better.model), best.cost, better.cost));
+        best = better;
+        rivals.clear();
     }
-    best
+    (best, rivals)
 }
 
 /// Effects of a model in words.

@@ -33,10 +33,12 @@ pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess) -> Verdic
     if loud(excess.best) && excess.best > LEFT_SHARE * excess.baseline {
         return Verdict::UnknownPhysics;
     }
-    let ambiguous = found.best.model.effects.iter().any(|placed| {
-        let own = effects.iter().find(|e| e.name == placed.spec().name && e.element == placed.element.to_string());
-        own.is_some_and(|e| e.probability < SURE)
-    });
+    let ambiguous = found
+        .best
+        .model
+        .effects
+        .iter()
+        .any(|placed| effects.iter().find(|e| is_said(e, placed)).is_some_and(|e| e.probability < SURE));
     if ambiguous { Verdict::Ambiguous } else { Verdict::MissingPhysics }
 }
 

@@ -265,8 +265,8 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
-    pub(super) fn pulling(&self, state: &PlantState<D>, inputs: &[InputSpan]) -> u64 {
-        let cables = (0..self.cables.len()).map(|i| self.cable(i, state, inputs, 0.0).2.value() > 0.0);
+    pub(super) fn pulling(&self, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> u64 {
+        let cables = (0..self.cables.len()).map(|i| self.cable(i, state, inputs, elapsed_s).2.value() > 0.0);
         let stops = &self.coordinates.stops;
         let stops = stops.iter().map(|s| s.force(state.y[s.coordinate], state.w[s.coordinate]).0.value() > 0.0);
         let coils = self.muscles.iter().filter(|m| m.stop.is_some()).map(|m| {

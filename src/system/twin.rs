@@ -176,23 +176,21 @@ impl Twin {
         for (span, values) in spans.iter_mut().zip(&run.inputs) {
             *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
         }
-        let mut before = plant.pulling(state, spans);
+        let mut pulling = plant.pulling(state, spans, 0.0);
         for _ in 0..steps as usize {
             stepper.save(state);
             stepper.step(plant, state, spans, h);
-            spans.iter_mut().for_each(|s| s.value += h * s.slope);
-            let mut after = plant.pulling(state, spans);
-            if after != before {
-                spans.iter_mut().for_each(|s| s.value -= h * s.slope);
-                stepper.restore(state);
-                let fine = h / SWITCH_STEPS as f64;
-                for _ in 0..SWITCH_STEPS {
-                    stepper.step(plant, state, spans, fine);
-                    spans.iter_mut().for_each(|s| s.value += fine * s.slope);
-                }
-                after = plant.pulling(state, spans);
+            if plant.pulling(state, spans, h) == pulling {
+                spans.iter_mut().for_each(|s| s.value += h * s.slope);
+                continue;
             }
-            before = after;
+            stepper.restore(state);
+            let fine = h / SWITCH_STEPS as f64;
+            for _ in 0..SWITCH_STEPS {
+                stepper.step(plant, state, spans, fine);
+                spans.iter_mut().for_each(|s| s.value += fine * s.slope);
+            }
+            pulling = plant.pulling(state, spans, 0.0);
         }
         for (span, values) in spans.iter_mut().zip(&run.inputs) {
             span.value = values[k];
