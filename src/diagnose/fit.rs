@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::case::{Case, CaseRun};
 use super::model::{Model, Probe, Sides, respond, simulate};
 use super::noise::Noise;
-use super::normal::{Normal, Number, Rows};
+use super::normal::{Normal, Number, Rows, prior_cost};
 
 /// A fitted model.
 #[derive(Clone, Debug)]
@@ -58,9 +59,9 @@ pub(super) struct Problem<'a> {
 
 /// Stop when an iteration promises less than this many units of chi².
 const GAIN: f64 = 0.5;
-/// From here on derivatives are taken to both sides.
-const CLOSE: f64 = 200.0;
-const ITERATIONS: usize = 20;
+/// Steps on mended slopes, and how often slopes are taken anew.
+const ITERATIONS: usize = 25;
+const REFRESHES: usize = 8;
 /// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
 const LEAST_DAMPING: f64 = 1e-10;
 
@@ -100,64 +101,35 @@ impl Problem<'_> {
             let simulated = simulate(self.case, run, model, x)?;
             Some(subtract(self.case, run, &simulated))
         };
-        self.runs.iter().map(one).collect()
+        self.runs.par_iter().map(one).collect()
     }
 
-    /// Sum of squares of residuals in units of the noise.
-    pub fn cost(&self, residuals: &[Vec<Vec<f64>>]) -> f64 {
-        let mut cost = 0.0;
-        for run in residuals {
-            for (channel, noise) in run.iter().zip(self.noise) {
-                let weight = noise.scale().powi(-2);
-                cost += channel.iter().filter(|r| r.is_finite()).map(|r| r * r * weight).sum::<f64>();
-            }
-        }
-        cost
-    }
-
-    fn prior_cost(&self, numbers: &[Number], x: &[f64]) -> f64 {
-        numbers.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
-    }
-
-    /// The normal equations at `x`, in scaled numbers.
-    fn normal(&self, model: &Model, numbers: &[Number], x: &[f64], sides: Sides) -> Option<Normal> {
-        let mut normal = Normal::empty(x.len());
-        self.each_part(model, numbers, x, 0..x.len(), sides, |rows| normal.add(&rows))?;
-        for (i, (n, x)) in numbers.iter().zip(x).enumerate() {
-            let weight = n.prior_weight * n.scale;
-            normal.matrix[(i, i)] += weight * weight;
-            normal.gradient[i] -= weight * (x - n.prior) * n.prior_weight;
-        }
-        normal.cost += self.prior_cost(numbers, x);
-        Some(normal)
-    }
-
-    /// Calls `take` with the rows of each run and channel: residuals, and their derivatives to the numbers `wanted`.
-    fn each_part(
-        &self,
-        model: &Model,
-        numbers: &[Number],
-        x: &[f64],
-        wanted: Range<usize>,
-        sides: Sides,
-        mut take: impl FnMut(Rows),
-    ) -> Option<()> {
-        let probes = probes(numbers, x, wanted.clone(), sides);
-        for run in &self.runs {
+    /// Residuals at `x` and the derivatives to the numbers `wanted`, one row per sample that is there.
+    pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
+        let numbers = self.numbers(model);
+        let probes = probes(&numbers, x, wanted.clone(), sides);
+        let one = |run: &&CaseRun| -> Option<Vec<Rows>> {
             let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
-            for c in 0..self.case.channels.len() {
-                take(self.weighted_rows(run, c, &residuals[c], &response.slopes, &numbers[wanted.clone()]));
-            }
-        }
-        Some(())
+            let channels = residuals.iter().enumerate();
+            let rows = channels.map(|(c, r)| self.weighted_rows(run, c, r, &response.slopes, &numbers[wanted.clone()]));
+            Some(rows.collect())
+        };
+        let parts = self.runs.par_iter().map(one).collect::<Option<Vec<_>>>()?;
+        Rows::stack(&parts.concat())
     }
 
-    /// Residuals at `x` and their derivatives to the numbers `wanted`, one row per sample that is there.
-    pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
-        let mut parts = Vec::new();
-        self.each_part(model, &self.numbers(model), x, wanted, sides, |rows| parts.push(rows))?;
-        Rows::stack(&parts)
+    /// Residuals at `x` in units of the noise, in the order of [`Problem::rows`].
+    fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
+        let residuals = self.residuals(model, x)?;
+        let mut all = Vec::with_capacity(self.samples());
+        for (run, residuals) in self.runs.iter().zip(&residuals) {
+            for ((measured, residual), noise) in run.measured.iter().zip(residuals).zip(self.noise) {
+                let there = measured.iter().zip(residual).filter(|(m, _)| m.is_finite());
+                all.extend(there.map(|(_, r)| r / noise.scale()));
+            }
+        }
+        Some(DVector::from_vec(all))
     }
 
     fn weighted_rows(
@@ -187,60 +159,31 @@ impl Problem<'_> {
     /// Fits a model from `start`. `None` when it cannot be simulated there.
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         let numbers = self.numbers(model);
-        let mut x: Vec<f64> = start.iter().zip(&numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect();
-        let mut damping = LEAST_DAMPING;
-        let mut sides = Sides::One;
-        let mut here = self.normal(model, &numbers, &x, sides)?;
-        for _ in 0..ITERATIONS {
-            // A model that is far off need not be far off to the last digit.
-            let unit = (here.cost / self.samples().max(1) as f64).max(1.0);
-            let better = self.improve(model, &numbers, &x, &here, GAIN * unit, &mut damping);
-            let gain = better.as_ref().map_or(0.0, |(_, cost)| here.cost - cost);
-            if let Some((next, _)) = better {
-                x = next;
+        let x = within(start, &numbers);
+        let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
+        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        descent.run();
+        for _ in 0..REFRESHES {
+            let cost = descent.normal().cost;
+            descent.rows = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?;
+            descent.damping = LEAST_DAMPING;
+            descent.run();
+            if cost - descent.normal().cost < GAIN * descent.unit() {
+                break;
             }
-            if gain < CLOSE * unit {
-                if sides == Sides::Both && gain < GAIN * unit {
-                    break;
-                }
-                (sides, damping) = (Sides::Both, LEAST_DAMPING);
-            }
-            here = self.normal(model, &numbers, &x, sides)?;
         }
-        let on_bound = (0..self.case.parameters.len())
-            .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
-            .collect();
-        let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
-        let cost = here.cost - self.prior_cost(&numbers, &x);
-        let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
-        Some(Fit { model: model.clone(), cost, covariance, x, on_bound })
+        Some(descent.finish())
     }
 
-    /// A point of lower cost, with it; none when less than a third of `gain` can be had.
-    fn improve(
-        &self,
-        model: &Model,
-        numbers: &[Number],
-        x: &[f64],
-        here: &Normal,
-        gain: f64,
-        damping: &mut f64,
-    ) -> Option<(Vec<f64>, f64)> {
-        for _ in 0..8 {
-            let step = here.bounded_step(numbers, x, *damping)?;
-            if here.promised_gain(&step) < gain / 3.0 {
-                return None;
-            }
-            let moved = x.iter().zip(numbers).zip(step.iter());
-            let next: Vec<f64> = moved.map(|((x, n), s)| (x + s * n.scale).clamp(n.min, n.max)).collect();
-            let there = self.residuals(model, &next).map(|r| self.cost(&r) + self.prior_cost(numbers, &next));
-            if let Some(there) = there.filter(|t| *t < here.cost) {
-                *damping = (*damping / 10.0).max(LEAST_DAMPING);
-                return Some((next, there));
-            }
-            *damping *= 100.0;
-        }
-        None
+    /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
+    /// tell which models are worth [`Problem::fit`].
+    pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
+        let numbers = self.numbers(model);
+        let x = within(start, &numbers);
+        let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
+        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        descent.run();
+        Some(descent.finish())
     }
 
     /// Number of samples compared.
@@ -255,6 +198,79 @@ impl Problem<'_> {
         let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
         x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
         x
+    }
+}
+
+fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
+    x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
+}
+
+/// A fit on its way.
+struct Descent<'a> {
+    problem: &'a Problem<'a>,
+    model: &'a Model,
+    numbers: &'a [Number],
+    x: Vec<f64>,
+    rows: Rows,
+    damping: f64,
+}
+
+impl Descent<'_> {
+    fn normal(&self) -> Normal {
+        Normal::of(&self.rows, self.numbers, &self.x)
+    }
+
+    /// Chi² per sample, at least 1: a model that is far off need not be far off to the last digit.
+    fn unit(&self) -> f64 {
+        (self.rows.residual.norm_squared() / self.rows.residual.len().max(1) as f64).max(1.0)
+    }
+
+    /// Steps until the slopes promise no more.
+    fn run(&mut self) {
+        for _ in 0..ITERATIONS {
+            let least = GAIN * self.unit();
+            if self.improve(least).is_none_or(|gain| gain < least) {
+                break;
+            }
+        }
+    }
+
+    /// One step downwards; what it gained, none when less than a third of `least` can be had.
+    fn improve(&mut self, least: f64) -> Option<f64> {
+        let here = self.normal();
+        for _ in 0..8 {
+            let step = here.bounded_step(self.numbers, &self.x, self.damping)?;
+            if here.promised_gain(&step) < least / 3.0 {
+                return None;
+            }
+            let moved: Vec<f64> =
+                self.x.iter().zip(self.numbers).zip(step.iter()).map(|((x, n), s)| x + s * n.scale).collect();
+            let next = within(&moved, self.numbers);
+            let made = self.x.iter().zip(&next).zip(self.numbers).map(|((from, to), n)| (to - from) / n.scale);
+            let made = DVector::from_iterator(next.len(), made);
+            let residual = self.problem.weighted_residual(self.model, &next);
+            let there = residual.map(|r| (r.norm_squared() + prior_cost(self.numbers, &next), r));
+            if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
+                self.rows.move_on(&made, residual);
+                self.x = next;
+                self.damping = (self.damping / 10.0).max(LEAST_DAMPING);
+                return Some(here.cost - cost);
+            }
+            self.damping = (self.damping * 100.0).max(1e-4);
+        }
+        None
+    }
+
+    fn finish(self) -> Fit {
+        let here = self.normal();
+        let (numbers, x) = (self.numbers, self.x);
+        let on_bound = (0..self.problem.case.parameters.len())
+            .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
+            .collect();
+        let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
+        let cost = here.cost - prior_cost(numbers, &x);
+        let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
+        Fit { model: self.model.clone(), cost, covariance, x, on_bound }
     }
 }
 

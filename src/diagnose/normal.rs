@@ -13,7 +13,9 @@ pub(super) struct Number {
     pub prior_weight: f64,
 }
 
-/// Residuals in units of the noise and their derivatives to numbers in units of each scale, one row per sample.
+/// Residuals in units of the noise and the derivatives of what is simulated to numbers in units of each scale, one row
+/// per sample.
+#[derive(Clone, Debug)]
 pub(super) struct Rows {
     pub slopes: DMatrix<f64>,
     pub residual: DVector<f64>,
@@ -33,6 +35,17 @@ impl Rows {
         }
         Some(all)
     }
+
+    /// Moves on by `step` to where `residual` is left, and mends the slopes so that they agree with what the step did
+    /// (Broyden's update: the least change that does).
+    pub fn move_on(&mut self, step: &DVector<f64>, residual: DVector<f64>) {
+        let length = step.norm_squared();
+        if length > 0.0 {
+            let unforeseen = &self.residual - &residual - &self.slopes * step;
+            self.slopes.ger(1.0 / length, &unforeseen, step, 1.0);
+        }
+        self.residual = residual;
+    }
 }
 
 /// `J^T J`, `J^T r` and `r^T r`, `r` measured minus simulated, `J` the derivatives of what is simulated.
@@ -44,15 +57,19 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    pub fn empty(numbers: usize) -> Self {
-        Self { matrix: DMatrix::zeros(numbers, numbers), gradient: DVector::zeros(numbers), cost: 0.0 }
-    }
-
-    /// Adds rows.
-    pub fn add(&mut self, rows: &Rows) {
-        self.matrix += rows.slopes.tr_mul(&rows.slopes);
-        self.gradient += rows.slopes.tr_mul(&rows.residual);
-        self.cost += rows.residual.norm_squared();
+    /// Those of rows and of the numbers' priors at `x`.
+    pub fn of(rows: &Rows, numbers: &[Number], x: &[f64]) -> Self {
+        let mut normal = Self {
+            matrix: rows.slopes.tr_mul(&rows.slopes),
+            gradient: rows.slopes.tr_mul(&rows.residual),
+            cost: rows.residual.norm_squared() + prior_cost(numbers, x),
+        };
+        for (i, (n, x)) in numbers.iter().zip(x).enumerate() {
+            let weight = n.prior_weight * n.scale;
+            normal.matrix[(i, i)] += weight * weight;
+            normal.gradient[i] -= weight * (x - n.prior) * n.prior_weight;
+        }
+        normal
     }
 
     /// A damped step in scaled numbers from `x`; numbers that a bound holds back stay.
@@ -105,29 +122,47 @@ impl Normal {
     }
 }
 
+/// Squared distance of numbers from their priors.
+pub(super) fn prior_cost(numbers: &[Number], x: &[f64]) -> f64 {
+    numbers.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn line(at: &[f64]) -> Normal {
-        let rows = Rows {
+    const FREE: Number = Number { min: -9.0, max: 9.0, scale: 1.0, prior: 0.0, prior_weight: 0.0 };
+
+    fn line(at: &[f64]) -> Rows {
+        Rows {
             slopes: DMatrix::from_fn(at.len(), 2, |i, j| if j == 0 { 1.0 } else { at[i] }),
             residual: DVector::from_fn(at.len(), |i, _| 2.0 - 0.5 * at[i]),
-        };
-        let mut normal = Normal::empty(2);
-        normal.add(&rows);
-        normal
+        }
     }
 
     #[test]
     fn a_step_solves_what_is_linear_and_stops_at_bounds() {
-        let normal = line(&[0.0, 1.0, 2.0, 5.0]);
-        let free = Number { min: -9.0, max: 9.0, scale: 1.0, prior: 0.0, prior_weight: 0.0 };
-        let step = normal.bounded_step(&[free, free], &[0.0, 0.0], 0.0).expect("definite");
+        let normal = Normal::of(&line(&[0.0, 1.0, 2.0, 5.0]), &[FREE, FREE], &[0.0, 0.0]);
+        let step = normal.bounded_step(&[FREE, FREE], &[0.0, 0.0], 0.0).expect("definite");
         assert!((step[0] - 2.0).abs() < 1e-9 && (step[1] + 0.5).abs() < 1e-9, "{step}");
         assert!((normal.promised_gain(&step) - normal.cost).abs() < 1e-9);
-        let floor = Number { min: 0.0, ..free };
-        let held = normal.bounded_step(&[free, floor], &[0.0, 0.0], 0.0).expect("definite");
+        let floor = Number { min: 0.0, ..FREE };
+        let held = normal.bounded_step(&[FREE, floor], &[0.0, 0.0], 0.0).expect("definite");
         assert!(held[1] == 0.0 && (held[0] - 1.0).abs() < 1e-9, "{held}");
+    }
+    /// Two numbers that are seen through a square: wrong slopes mend themselves on the way to the answer.
+    #[test]
+    fn slopes_carried_from_elsewhere_still_lead_to_the_answer() {
+        let at = [0.0, 0.5, 1.0, 2.0, 3.0];
+        let simulated = |x: &[f64]| DVector::from_fn(at.len(), |i, _| x[0] + x[1] * at[i] + 0.1 * (x[1] * at[i]).powi(2));
+        let measured = simulated(&[0.7, -1.2]);
+        let mut x = vec![0.0, 0.0];
+        let mut rows = Rows { residual: &measured - simulated(&x), ..line(&at) };
+        for _ in 0..20 {
+            let step = Normal::of(&rows, &[FREE, FREE], &x).bounded_step(&[FREE, FREE], &x, 0.0).expect("definite");
+            x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);
+            rows.move_on(&step, &measured - simulated(&x));
+        }
+        assert!((x[0] - 0.7).abs() < 1e-6 && (x[1] + 1.2).abs() < 1e-6, "{x:?}");
     }
 }

@@ -6,11 +6,15 @@ use rayon::prelude::*;
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::model::{Model, Placed, Sides};
+use super::normal::Rows;
 
 /// At most this many effects in one answer.
 const MOST_EFFECTS: usize = 4;
 /// Candidates that are refitted in full at every stage.
 const REFITTED: usize = 10;
+/// Of those, at most so many to the end, when they come within this share of the best's gain.
+const FINISHED: usize = 4;
+const NEAR: f64 = 0.1;
 /// Candidates that promise less than this share of the best are not refitted.
 const WORTH: f64 = 0.1;
 /// Share of an effect in chi² per sample below which it is not called missing physics.
@@ -35,10 +39,23 @@ pub fn least_gain(samples: usize) -> f64 {
     LEAST_GAIN.max(LEAST_SHARE * samples as f64)
 }
 
-/// What the signatures of all variants promise at a fit, best first; a signature is taken at zero size.
-pub(super) fn screen(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Screened> {
+/// A fit with its slopes, and what the signatures of all variants promise there, best first.
+pub(super) struct Screening<'a> {
+    from: &'a Fit,
+    slopes: DMatrix<f64>,
+    pub screened: Vec<Screened>,
+}
+
+/// Screens all variants at a fit. `None` when it cannot be simulated there.
+pub(super) fn screen<'a>(problem: &Problem, from: &'a Fit, variants: &[Variant]) -> Option<Screening<'a>> {
+    let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
+    let screened = promises(problem, from, &known, variants);
+    Some(Screening { from, slopes: known.slopes, screened })
+}
+
+/// A signature is the derivative to an effect's size at zero.
+fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
     let fresh: Vec<&Variant> = variants.iter().filter(|v| !fit.model.effects.contains(&v.placed)).collect();
-    let Some(known) = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return Vec::new() };
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
@@ -101,14 +118,14 @@ pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say
     let mut first_screened = Vec::new();
     let mut rivals: Vec<Vec<Fit>> = Vec::new();
     loop {
-        let left = screen(problem, &best, variants);
+        let Some(screening) = screen(problem, &best, variants) else { break };
         if first_screened.is_empty() {
-            first_screened = left.clone();
+            first_screened = screening.screened.clone();
         }
         if best.model.effects.len() >= MOST_EFFECTS {
             break;
         }
-        let refits = refit(problem, &best, &pick(&left, least));
+        let refits = refit(problem, &screening, &pick(&screening.screened, least));
         let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
         best = winner.clone();
@@ -137,11 +154,22 @@ fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
     picked
 }
 
-/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better.
-fn refit(problem: &Problem, from: &Fit, candidates: &[Screened]) -> Vec<Fit> {
-    let fits: Vec<Option<Fit>> =
-        candidates.par_iter().map(|s| add(problem, from, &s.variant.placed, &start_values(s))).collect();
-    let mut fits: Vec<Fit> = fits.into_iter().flatten().collect();
+/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
+/// fitted roughly; those that come near the best are fitted to the end.
+fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
+    let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
+    let rough = best_of_each(rough.into_iter().flatten().collect());
+    let Some(best) = rough.first().map(|f| f.cost) else { return rough };
+    let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
+    let close = rough.iter().take_while(|f| f.cost <= near).count().min(FINISHED);
+    let finished: Vec<Option<Fit>> = rough[..close].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
+    let mut fits: Vec<Fit> = finished.into_iter().flatten().chain(rough[close..].iter().cloned()).collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
+/// The cheapest fit of each effect, cheapest first.
+fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut seen: Vec<Placed> = Vec::new();
     fits.retain(|f| {
@@ -163,11 +191,16 @@ fn start_values(s: &Screened) -> Vec<f64> {
     values
 }
 
-fn add(problem: &Problem, from: &Fit, placed: &Placed, values: &[f64]) -> Option<Fit> {
-    let model = from.model.plus(placed, values);
+/// A rough fit with one effect more, on the slopes of the fit it starts from and those of the effect's numbers.
+fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
+    let (from, values) = (screening.from, start_values(candidate));
+    let model = from.model.plus(&candidate.variant.placed, &values);
     let mut start = from.x.clone();
     start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
-    problem.fit(&model, &start)
+    let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
+    let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);
+    slopes.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
+    problem.fit_roughly(&model, &start, slopes)
 }
 
 /// Leaves out effects that others have made needless and puts better ones in their place, until neither helps.
@@ -187,11 +220,11 @@ fn settle(
             rivals.push(Vec::new());
             continue;
         };
-        let others: Vec<Screened> = pick(&screen(problem, &fewer, variants), least)
-            .into_iter()
-            .filter(|s| s.variant.placed != best.model.effects[index])
-            .collect();
-        let refits = refit(problem, &fewer, &others);
+        let refits = screen(problem, &fewer, variants).map_or_else(Vec::new, |screening| {
+            let mut others = pick(&screening.screened, least);
+            others.retain(|s| s.variant.placed != best.model.effects[index]);
+            refit(problem, &screening, &others)
+        });
         let better = match refits.first().filter(|f| f.cost < best.cost - 1.0) {
             _ if fewer.cost - best.cost < least => fewer,
             Some(other) => other.clone(),

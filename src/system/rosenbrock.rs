@@ -156,8 +156,9 @@ impl<D: Scalar> Stepper<D> {
         copy(state, &self.saved);
     }
 
-    /// Advances `state` by `h` seconds; `inputs` start at the step's beginning.
-    pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
+    /// Advances `state` by `h` seconds; `inputs` start at the step's beginning. Whether everything one-sided acted alike
+    /// at both stages: where it did not, the step is too long to be trusted.
+    pub fn step(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) -> bool {
         let g = GAMMA * h;
         self.move_pistons(plant, state, inputs, h);
         let switches = rates(plant, state, inputs, &self.piston_m_s, 0.0, &mut self.r);
@@ -172,7 +173,7 @@ impl<D: Scalar> Stepper<D> {
         self.age += 1;
         self.solve(plant, state, g, Stage::First);
         move_to(&mut self.middle, state, &self.k1, h);
-        rates(plant, &self.middle, inputs, &self.piston_m_s, h, &mut self.r);
+        let ahead = rates(plant, &self.middle, inputs, &self.piston_m_s, h, &mut self.r);
         self.subtract_first_stage(plant);
         self.solve(plant, state, g, Stage::Second);
         advance(state, &self.k1, 1.5 * h);
@@ -183,6 +184,7 @@ impl<D: Scalar> Stepper<D> {
             }
         }
         remember_greatest(plant, state);
+        ahead == switches
     }
 
     /// Where the pistons are at the end of the step, and how fast they go there.
