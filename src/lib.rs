@@ -15,5 +15,6 @@ pub mod report;
 pub mod scalar;
 pub mod scene;
 pub mod system;
+pub mod trial;
 #[cfg(feature = "viz")]
 pub mod view;

@@ -19,9 +19,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("system", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
     ("identify", &["effects", "recording", "scalar", "scene", "system"]),
     ("diagnose", &["effects", "identify", "recording", "scalar", "scene", "system"]),
+    ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
     ("view", &["mechanism", "system"]),
-    ("cli", &["diagnose", "effects", "identify", "mechanism", "recording", "report", "scene", "system", "view"]),
+    (
+        "cli",
+        &["diagnose", "effects", "identify", "mechanism", "recording", "report", "scene", "system", "trial", "view"],
+    ),
 ];
 
 /// Crates that belong to one folder: names as they stand in Rust paths, and the folder.

@@ -9,6 +9,7 @@ use smam::mechanism::MechanismError;
 use smam::recording::RecordingError;
 use smam::scene::SceneError;
 use smam::system::{RunError, SystemError};
+use smam::trial::TrialError;
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +24,8 @@ pub enum CliError {
     Diagnose(#[from] DiagnoseError),
     #[error(transparent)]
     Identify(#[from] IdentifyError),
+    #[error(transparent)]
+    Trial(#[from] TrialError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]

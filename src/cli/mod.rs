@@ -12,6 +12,7 @@ mod model;
 mod observers;
 mod run;
 mod scenes;
+mod trial;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,8 @@ enum Command {
     Check(check::CheckArguments),
     /// List the scenes that come with the program
     Scenes,
+    /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
+    Trial(trial::TrialArguments),
     /// Generate a model file
     Model(model::ModelArguments),
 }
@@ -65,6 +68,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),
+        Some(Command::Trial(arguments)) => trial::trial(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
     }
 }

@@ -31,7 +31,9 @@ pub use noise::Noise;
 pub use search::title;
 
 use fit::Problem;
-use search::Found;
+use search::{Found, Screened};
+
+use crate::effects::Effect;
 use verdict::Excess;
 
 /// What a diagnosis is asked.
@@ -55,6 +57,8 @@ pub struct Outcome {
     pub noise: Vec<Noise>,
     /// Models that were refitted and lost, with their chi².
     pub rivals: Vec<(String, f64)>,
+    /// Every effect at the size from which these recordings would show it.
+    pub just_visible: Vec<Effect<f64>>,
 }
 
 impl Outcome {
@@ -101,6 +105,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let effects = verdict::named(&found, &complete);
     let verdict = verdict::verdict(&found, &effects, excess);
     let location = location(&case, &found, &effects, &whole, &before, verdict);
+    let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let rivals = found.rivals.iter().flatten().map(|f| (title(&f.model), f.cost)).collect();
     let mut diagnosis = Diagnosis {
         format: 1,
@@ -126,6 +131,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         residuals: Some([before, after]),
         noise,
         rivals,
+        just_visible,
         case,
     })
 }
@@ -169,6 +175,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         residuals: None,
         noise: Vec::new(),
         rivals: Vec::new(),
+        just_visible: Vec::new(),
     }
 }
 

@@ -154,7 +154,8 @@ mod tests {
     #[test]
     fn slopes_carried_from_elsewhere_still_lead_to_the_answer() {
         let at = [0.0, 0.5, 1.0, 2.0, 3.0];
-        let simulated = |x: &[f64]| DVector::from_fn(at.len(), |i, _| x[0] + x[1] * at[i] + 0.1 * (x[1] * at[i]).powi(2));
+        let simulated =
+            |x: &[f64]| DVector::from_fn(at.len(), |i, _| x[0] + x[1] * at[i] + 0.1 * (x[1] * at[i]).powi(2));
         let measured = simulated(&[0.7, -1.2]);
         let mut x = vec![0.0, 0.0];
         let mut rows = Rows { residual: &measured - simulated(&x), ..line(&at) };

@@ -3,6 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::effects::Effect;
+
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::model::{Model, Placed, Sides};
@@ -32,6 +34,16 @@ pub struct Screened {
     pub size: f64,
     /// Size that would gain [`least_gain`]: what could just be seen.
     pub least_size: f64,
+}
+
+impl Screened {
+    /// The effect at the size that could just be seen; none where no size could.
+    pub fn just_visible(&self) -> Option<Effect<f64>> {
+        let mut values = self.variant.values.clone();
+        let p = &self.variant.placed.spec().parameters[0];
+        values[0] = if p.range.max > 0.0 { self.least_size } else { -self.least_size };
+        (self.least_size < p.range.max.abs().max(p.range.min.abs())).then(|| self.variant.placed.with(&values))
+    }
 }
 
 /// Fall of chi² that makes an effect worth naming, for so many samples.

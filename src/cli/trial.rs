@@ -1,0 +1,92 @@
+//! `smam trial`.
+
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+use clap::Args;
+use rayon::prelude::*;
+use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case};
+
+use super::CliError;
+use super::files::write;
+
+/// Arguments of `smam trial`.
+#[derive(Args)]
+pub struct TrialArguments {
+    /// Scenes to hold it on
+    #[arg(long = "scene", value_name = "SCENE", default_values = ["muscle_bench", "antagonistic_pulley", "bending_catheter"])]
+    scenes: Vec<String>,
+    /// Only this effect
+    #[arg(long)]
+    effect: Option<String>,
+    /// Cases per scene in which nothing is missing
+    #[arg(long, default_value_t = 5)]
+    nulls: usize,
+    /// Only nothing: no effects
+    #[arg(long, conflicts_with = "effect")]
+    only_nulls: bool,
+    /// Of everything that is drawn
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Where rows (trial.jsonl, kept from an earlier run) and table (trial.md) go
+    #[arg(long, value_name = "DIR", default_value = "out/trial")]
+    out: PathBuf,
+}
+
+/// Runs the command; cases that a former run has finished are not tried again.
+pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
+    let path = arguments.out.join("trial.jsonl");
+    let done = read_rows(&path)?;
+    let mut cases = Vec::new();
+    for scene in &arguments.scenes {
+        eprintln!("{scene}: what could be seen");
+        let mut own = plan(scene, arguments.nulls, arguments.effect.as_deref(), arguments.seed)?;
+        own.retain(|c| !arguments.only_nulls || c.effect.is_none());
+        cases.extend(own);
+    }
+    let missing: Vec<&TrialCase> = cases.iter().filter(|c| !done.iter().any(|r| r.name == c.name)).collect();
+    eprintln!("{} cases, {} of them known already", cases.len(), cases.len() - missing.len());
+    let file = Mutex::new(open(&path)?);
+    let failed = |e: std::io::Error| CliError::Failed(format!("{}: cannot be written: {e}", path.display()));
+    missing.par_iter().try_for_each(|case| -> Result<(), CliError> {
+        let row = try_case(case)?;
+        eprintln!("{:<70} {:?} {:?} {:.0} s", row.name, row.judgement, row.answer, row.seconds);
+        let line = serde_json::to_string(&row).map_err(|e| CliError::Failed(e.to_string()))?;
+        let mut file = file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        writeln!(file, "{line}").and_then(|()| file.flush()).map_err(failed)
+    })?;
+    let all = read_rows(&path)?;
+    let mut rows: Vec<Row> = cases.iter().filter_map(|c| all.iter().find(|r| r.name == c.name)).cloned().collect();
+    rows.sort_by(|a, b| a.scene.cmp(&b.scene));
+    write(&arguments.out.join("trial.md"), &table(&rows))?;
+    let wrong = rows.iter().filter(|r| r.judgement == Judgement::Wrong).count();
+    let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
+    println!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn read_rows(path: &Path) -> Result<Vec<Row>, CliError> {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(e) => return Err(CliError::Failed(format!("{}: cannot be read: {e}", path.display()))),
+    };
+    // The last line of a run that was killed may be half a line: that case is tried again.
+    Ok(text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect())
+}
+
+fn open(path: &Path) -> Result<fs::File, CliError> {
+    let failed = |e: std::io::Error| CliError::Failed(format!("{}: cannot be written: {e}", path.display()));
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    let mut file = OpenOptions::new().create(true).append(true).read(true).open(path).map_err(failed)?;
+    let ends_well = fs::read(path).map_err(failed)?.last().is_none_or(|b| *b == b'\n');
+    if !ends_well {
+        writeln!(file).map_err(failed)?;
+    }
+    Ok(file)
+}

@@ -1,0 +1,50 @@
+//! The diagnosis on trial: every effect of the catalogue at three sizes, and scenes that lack nothing.
+//!
+//! The full scene makes the recordings ([`make_specimen`]), noise is added, and the diagnosis answers without knowing.
+//! Sizes are counted from what the diagnosis itself says it could just see, so that 'small' means the same everywhere.
+
+mod judge;
+mod plan;
+mod programme;
+mod specimen;
+mod table;
+
+use std::path::PathBuf;
+
+pub use judge::{Judgement, Row};
+pub use plan::{Size, TrialCase, plan};
+pub use specimen::make_specimen;
+pub use table::table;
+
+use crate::diagnose::{Case, DiagnoseError, Options, diagnose};
+use crate::recording::RecordingError;
+use crate::scene::SceneError;
+use crate::system::SystemError;
+
+/// Why a trial cannot be held.
+#[derive(Debug, thiserror::Error)]
+pub enum TrialError {
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    System(#[from] SystemError),
+    #[error(transparent)]
+    Diagnose(#[from] DiagnoseError),
+    #[error("{file}: cannot be written: {source}\n  remedy: give another folder with --out")]
+    Write { file: PathBuf, source: std::io::Error },
+}
+
+/// Makes the recordings of a case in a folder of its own, diagnoses them, and compares.
+///
+/// # Errors
+/// A scene that cannot be run, a folder that cannot be written.
+pub fn try_case(case: &TrialCase) -> Result<Row, TrialError> {
+    let folder = tempfile::tempdir().map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
+    make_specimen(&case.scene, case.effect.as_ref(), 1.0, case.seed, folder.path())?;
+    let begun = std::time::Instant::now();
+    let loaded = Case::load(&[folder.path()], None, &[])?;
+    let outcome = diagnose(loaded, Options { seed: case.seed }, &|_| {})?;
+    Ok(judge::judge(case, &outcome, begun.elapsed().as_secs_f64()))
+}
