@@ -13,7 +13,7 @@ fn both(scene: &Scene, duration_s: f64) -> (Recording, Vec<Vec<f64>>, Vec<String
     let mut simulation = Simulation::new(scene.clone()).unwrap_or_else(|e| panic!("{e}"));
     let full = record(&mut simulation, &schedule).unwrap_or_else(|e| panic!("{e}"));
     let inputs = scene.file.input.iter().map(|i| full.si(&i.channel).expect("an input")).collect();
-    let run = TwinRun { times_s: schedule.0, inputs };
+    let run = TwinRun { times_s: schedule.0, inputs, plan: None };
     let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
     let fast = twin.simulate(&run, &TwinSetting { parameters: Vec::new(), effects }).expect("finite");
@@ -103,7 +103,7 @@ fn sensitivities_are_those_of_finite_differences() {
         let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
         let times_s = Schedule::even(12.0, 0.01).0;
         let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        let run = TwinRun { times_s, inputs };
+        let run = TwinRun { times_s, inputs, plan: None };
         for spec in &scene.file.calibrate {
             let parameter = twin.parameter(&spec.key).expect("calibrated");
             let middle = (spec.min + spec.max) / 2.0;

@@ -16,6 +16,7 @@ pub(super) struct Baseline {
 /// Fits the calibration from the scene's values and from the middle of the ranges; widens a bound that is met, once.
 pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     let mut noise = first_noise(case);
+    plan_steps(case, &noise, None).ok_or_else(diverges)?;
     let mut warnings = Vec::new();
     let mut fit = fit(case, &noise, None)?;
     if !fit.on_bound.is_empty() {
@@ -32,8 +33,17 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     }
     let residuals = problem(case, &noise).residuals(&fit.model, &fit.x).ok_or_else(diverges)?;
     noise = estimate(case, &residuals);
+    plan_steps(case, &noise, Some(&fit.x)).ok_or_else(diverges)?;
     let fit = self::fit(case, &noise, Some(&fit.x))?;
     Ok(Baseline { fit, noise, warnings })
+}
+
+/// Steps planned at a calibration, the scene's own if none is given.
+fn plan_steps(case: &mut Case, noise: &[Noise], near: Option<&[f64]>) -> Option<()> {
+    let model = Model::baseline();
+    let start = problem(case, noise).start(&model, near);
+    let setting = model.setting(case, &start);
+    case.plan_steps(&setting, noise)
 }
 
 fn diverges() -> DiagnoseError {

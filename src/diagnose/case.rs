@@ -3,12 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
 use crate::recording::{RecordingSet, Role, RunUse};
 use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
-use crate::system::{Twin, TwinParameter, TwinRun};
+use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
 
 use super::DiagnoseError;
+use super::noise::Noise;
 
 /// An output that was recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +54,9 @@ pub struct CaseParameter {
     pub max: f64,
     pub start: f64,
 }
+
+/// Share of the noise by which doubled steps may change a channel over one sampling interval.
+const STEP_TOLERANCE: f64 = 1e-3;
 
 /// Everything a diagnosis looks at.
 #[derive(Clone, Debug)]
@@ -119,7 +125,7 @@ impl Case {
 
     fn add_run(&mut self, run: &RecordedRun, twin: Arc<Twin>) -> Result<(), DiagnoseError> {
         let recording = &run.recording;
-        let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new() };
+        let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
         for input in &self.scene.file.input {
             let line = recording.piecewise_si(&input.channel)?;
             drive.inputs.push(recording.time_s().iter().map(|&t| line.value(t)).collect());
@@ -159,6 +165,21 @@ impl Case {
         sealed.measured.iter_mut().for_each(|m| m[..cut.min(n)].fill(f64::NAN));
         sealed.is_sealed = true;
         self.runs.push(sealed);
+    }
+
+    /// Plans the fast model's steps at a setting, so that what they leave out vanishes in the noise.
+    /// `None` when the fast model diverges.
+    pub fn plan_steps(&mut self, setting: &TwinSetting<f64>, noise: &[Noise]) -> Option<()> {
+        let count = self.scene.file.output.len();
+        let mut tolerance = vec![None; count];
+        for (channel, noise) in self.channels.iter().zip(noise) {
+            tolerance[channel.output] = Some(STEP_TOLERANCE * noise.sd);
+        }
+        let plan = |run: &mut CaseRun| -> Option<()> {
+            run.drive.plan = Some(run.twin.plan(&run.drive, setting, &tolerance)?);
+            Some(())
+        };
+        self.runs.par_iter_mut().map(plan).collect()
     }
 
     /// Runs to fit and select with, or those held back.

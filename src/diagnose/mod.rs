@@ -30,6 +30,8 @@ pub use model::{Model, Placed};
 pub use noise::Noise;
 pub use search::title;
 
+use baseline::Baseline;
+use candidates::Variant;
 use fit::Problem;
 use search::{Found, Screened};
 
@@ -85,22 +87,21 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         return Ok(unusable(case, preflight));
     }
     say("baseline".to_owned());
+    let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
     let base = baseline::baseline(&mut case)?;
     let variants = candidates::variants(&case);
-    let open = Problem { case: &case, runs: case.subset(Sealed::Open), noise: &base.noise };
-    let found = search::search(&open, base.fit.clone(), &variants, say);
+    let (found, noise) = search_and_weigh(&case, &base, &variants, say).ok_or_else(diverges)?;
     let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
-    let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
-    let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &base.noise };
+    let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
     let (found, proof) = confirm(found, proof, &mut warnings);
-    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &base.noise };
+    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let after = whole.residuals(&found.best.model, &found.best.x).ok_or_else(diverges)?;
-    let (baseline_excess, error) = noise::structured_excess(&before, &base.noise);
-    let (best_excess, _) = noise::structured_excess(&after, &base.noise);
+    let (baseline_excess, error) = noise::structured_excess(&before, &noise);
+    let (best_excess, _) = noise::structured_excess(&after, &noise);
     let excess = Excess { baseline: baseline_excess, best: best_excess, error };
     let effects = verdict::named(&found, &complete);
     let verdict = verdict::verdict(&found, &effects, excess);
@@ -113,7 +114,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         recordings: case.folders.clone(),
         verdict,
         summary: String::new(),
-        detection: detection(&case, &base.noise, &found, excess),
+        detection: detection(&case, &noise, &found, excess),
         location,
         effects,
         calibration: calibration(&case, &complete),
@@ -122,7 +123,6 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         warnings,
     };
     diagnosis.summary = summary(&diagnosis);
-    let noise = base.noise.clone();
     Ok(Outcome {
         diagnosis,
         baseline: Some(found.baseline),
@@ -149,6 +149,34 @@ fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (F
         (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
     }
     (found, proof)
+}
+
+/// Searches, and again with weights renewed, for what the baseline leaves is not all noise.
+fn search_and_weigh(
+    case: &Case,
+    base: &Baseline,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Option<(Found, Vec<Noise>)> {
+    let mut noise = base.noise.clone();
+    let mut found = search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, say);
+    for _ in 0..2 {
+        let residuals = open_runs(case, &noise).residuals(&found.best.model, &found.best.x)?;
+        let renewed = noise::estimate(case, &residuals);
+        if renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old)) {
+            break;
+        }
+        noise = renewed;
+        let problem = open_runs(case, &noise);
+        let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
+        let start = problem.fit(&found.best.model, &found.best.x)?;
+        found = search::search(&problem, baseline, start, variants, say);
+    }
+    Some((found, noise))
+}
+
+fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
+    Problem { case, runs: case.subset(Sealed::Open), noise }
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {

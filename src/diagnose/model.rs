@@ -95,6 +95,14 @@ impl Model {
     }
 }
 
+impl Model {
+    /// What the fast model is given; `x` holds the calibration, then the fitted numbers of the effects.
+    pub(super) fn setting(&self, case: &Case, x: &[f64]) -> TwinSetting<f64> {
+        let parameters = case.parameters.iter().zip(x).map(|(p, &v)| (p.parameter.clone(), v)).collect();
+        TwinSetting { parameters, effects: self.effects_at(&x[case.parameters.len()..]) }
+    }
+}
+
 /// Simulated channels of one run, and their derivatives to the numbers asked for.
 pub(super) struct Response {
     /// By channel, then time.
@@ -105,12 +113,7 @@ pub(super) struct Response {
 
 /// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
 pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
-    let n = case.parameters.len();
-    let setting = TwinSetting {
-        parameters: case.parameters.iter().zip(x).map(|(p, &v)| (p.parameter.clone(), v)).collect(),
-        effects: model.effects_at(&x[n..]),
-    };
-    let series = run.twin.simulate(&run.drive, &setting)?;
+    let series = run.twin.simulate(&run.drive, &model.setting(case, x))?;
     Some(case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect())
 }
 

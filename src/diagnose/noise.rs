@@ -17,6 +17,11 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// Whether weights from one are good enough for the other.
+    pub fn is_near(&self, other: &Self) -> bool {
+        (self.scale() / other.scale() - 1.0).abs() < 0.1
+    }
+
     /// What a residual is divided by so that differences of its square sum are those of white noise.
     pub fn scale(&self) -> f64 {
         self.sd * self.inflation.sqrt()

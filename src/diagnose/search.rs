@@ -24,6 +24,9 @@ const LEAST_SHARE: f64 = 2e-3;
 /// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
 const LEAST_GAIN: f64 = 35.0;
 
+/// Share of all that is explained below which one more effect may be no more than the others' laws being idealised.
+const LEAST_OF_ALL: f64 = 1e-3;
+
 /// A candidate with what it would gain, by its signature alone.
 #[derive(Clone, Debug)]
 pub struct Screened {
@@ -122,21 +125,25 @@ pub struct Found {
     pub screened: Vec<Screened>,
 }
 
-/// Searches from a baseline.
-pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+/// Searches from `start`: the baseline, or what a former search has found.
+pub(super) fn search(
+    problem: &Problem,
+    baseline: Fit,
+    start: Fit,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Found {
+    let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
     let samples = problem.samples();
-    let least = least_gain(samples);
-    let mut best = baseline.clone();
-    let mut first_screened = Vec::new();
+    let mut best = start;
     let mut rivals: Vec<Vec<Fit>> = Vec::new();
-    loop {
+    if !best.model.effects.is_empty() {
+        (best, rivals) = settle(problem, best, variants, least_gain(samples), say);
+    }
+    while best.model.effects.len() < MOST_EFFECTS {
+        let explained = (baseline.cost - best.cost).max(0.0);
+        let least = least_gain(samples).max(LEAST_OF_ALL * explained);
         let Some(screening) = screen(problem, &best, variants) else { break };
-        if first_screened.is_empty() {
-            first_screened = screening.screened.clone();
-        }
-        if best.model.effects.len() >= MOST_EFFECTS {
-            break;
-        }
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
         let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
@@ -146,7 +153,7 @@ pub(super) fn search(problem: &Problem, baseline: Fit, variants: &[Variant], say
             (best, rivals) = settle(problem, best, variants, least, say);
         }
     }
-    Found { baseline, best, rivals, screened: first_screened }
+    Found { baseline, best, rivals, screened }
 }
 
 /// The candidates worth a full refit: the most promising of every effect.

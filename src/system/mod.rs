@@ -39,4 +39,4 @@ pub use plant::{
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;
-pub use twin::{Twin, TwinParameter, TwinRun, TwinSetting};
+pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -8,6 +8,7 @@
 mod lump;
 mod output;
 mod parameter;
+mod plan;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -24,12 +25,15 @@ use super::{Stepper, SystemError};
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::TwinParameter;
+pub use plan::StepPlan;
 
 /// What drives a [`Twin`]: times (s, increasing) and each input of the scene there, SI, straight between samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwinRun {
     pub times_s: Vec<f64>,
     pub inputs: Vec<Vec<f64>>,
+    /// Steps between samples; without a plan the model's own rule decides.
+    pub plan: Option<StepPlan>,
 }
 
 /// Parameters that differ from the scene's, and the effects.
@@ -148,7 +152,8 @@ impl Twin {
         let mut spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         for (k, &time) in run.times_s.iter().enumerate() {
             if k > 0 {
-                self.advance(&plant, &mut state, &mut stepper, &mut spans, run, k);
+                let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
+                self.advance(&plant, &mut state, &mut stepper, &mut spans, run, k, steps);
                 if !state.y.iter().all(|y| y.value().is_finite()) {
                     return None;
                 }
@@ -160,6 +165,8 @@ impl Twin {
         Some(series)
     }
 
+    /// Over the interval that ends at the run's sample `k`.
+    #[allow(clippy::too_many_arguments)]
     fn advance<D: Scalar>(
         &self,
         plant: &Plant<D>,
@@ -168,16 +175,16 @@ impl Twin {
         spans: &mut [InputSpan],
         run: &TwinRun,
         k: usize,
+        steps: u16,
     ) {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
-        let shorter = if from - run.times_s[0] < RINGING_S { RINGING_STEPS } else { 1.0 };
-        let steps = ((to - from) * shorter / self.step_s - 1e-6).ceil().max(1.0);
-        let h = (to - from) / steps;
+        let h = (to - from) / f64::from(steps);
         for (span, values) in spans.iter_mut().zip(&run.inputs) {
             *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
         }
+        stepper.plant_changed();
         let mut pulling = plant.pulling(state, spans, 0.0);
-        for _ in 0..steps as usize {
+        for _ in 0..steps {
             stepper.save(state);
             if stepper.step(plant, state, spans, h) && plant.pulling(state, spans, h) == pulling {
                 spans.iter_mut().for_each(|s| s.value += h * s.slope);

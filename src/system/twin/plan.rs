@@ -1,0 +1,93 @@
+//! How many steps the fast model takes between two samples: as many as what is looked at needs.
+
+use std::sync::Arc;
+
+use super::{Twin, TwinRun, TwinSetting};
+use crate::system::Stepper;
+use crate::system::plant::InputSpan;
+
+/// Steps in each interval of a [`TwinRun`]; the first entry is that of the first interval.
+pub type StepPlan = Arc<[u16]>;
+
+/// Longest step, s: at rest longer ones flutter about zero speed, and what is held by friction creeps.
+const LONGEST_S: f64 = 2.5e-3;
+
+/// And for so long after a corner of an input, s, so much shorter: where friction stops a motion is decided there.
+const CORNER_S: f64 = 0.3;
+const CORNER_STEPS: f64 = 4.0;
+/// A corner: the slope of an input changes by this share of the greatest slope it ever has.
+const CORNER_SHARE: f64 = 0.25;
+
+/// Most steps in one interval.
+const MOST: u16 = 256;
+
+impl Twin {
+    /// Plans the steps of a run so that twice as many would change no output by more than its tolerance (in its
+    /// column's unit, by output; outputs with none are not looked at) over any one interval.
+    ///
+    /// The plan is made at one setting and then kept for others nearby: a response that is planned anew at every
+    /// setting would not be smooth. `None` when the simulation diverges.
+    pub fn plan(&self, run: &TwinRun, setting: &TwinSetting<f64>, tolerance: &[Option<f64>]) -> Option<StepPlan> {
+        if self.axis.is_some() {
+            return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
+        }
+        let (plant, mut state) = self.prepare(setting);
+        let mut stepper = Stepper::new(&plant, &state);
+        let mut spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        let shown = |state: &_, spans: &[InputSpan]| -> Vec<f64> {
+            self.outputs.iter().map(|o| o.read(&plant, state, spans)).collect()
+        };
+        let mut plan = Vec::with_capacity(run.times_s.len());
+        let mut steps: u16 = 1;
+        let greatest: Vec<f64> = run.inputs.iter().map(|x| greatest_slope(x, &run.times_s)).collect();
+        let mut corner_s = run.times_s.first().copied().unwrap_or(0.0);
+        for k in 1..run.times_s.len() {
+            // What was enough before may be more than enough now.
+            steps = (steps / 2).max(fewest_steps(run, k, &greatest, &mut corner_s));
+            let (mut coarse, mut coarse_spans) = (state.clone(), spans.clone());
+            self.advance(&plant, &mut coarse, &mut stepper, &mut coarse_spans, run, k, steps);
+            loop {
+                let (mut fine, mut fine_spans) = (state.clone(), spans.clone());
+                self.advance(&plant, &mut fine, &mut stepper, &mut fine_spans, run, k, 2 * steps);
+                if !fine.y.iter().all(|y| y.is_finite()) {
+                    return None;
+                }
+                let pairs = shown(&coarse, &coarse_spans).into_iter().zip(shown(&fine, &fine_spans));
+                let is_enough = pairs.zip(tolerance).all(|((a, b), t)| t.is_none_or(|t| (a - b).abs() <= t));
+                if is_enough || steps >= MOST {
+                    break;
+                }
+                (coarse, coarse_spans) = (fine, fine_spans);
+                steps *= 2;
+            }
+            plan.push(steps);
+            (state, spans) = (coarse, coarse_spans);
+        }
+        Some(Arc::from(plan))
+    }
+
+    /// Steps of an interval without a plan.
+    pub(super) fn steps_by_rule(&self, run: &TwinRun, k: usize) -> u16 {
+        let (from, to) = (run.times_s[k - 1], run.times_s[k]);
+        let shorter = if from - run.times_s[0] < super::RINGING_S { super::RINGING_STEPS } else { 1.0 };
+        let steps = ((to - from) * shorter / self.step_s - 1e-6).ceil();
+        steps.clamp(1.0, f64::from(u16::MAX)) as u16
+    }
+}
+
+/// Fewest steps of the interval that ends at sample `k`; keeps the time of the last corner.
+fn fewest_steps(run: &TwinRun, k: usize, greatest: &[f64], corner_s: &mut f64) -> u16 {
+    let length_s = |k: usize| run.times_s[k] - run.times_s[k - 1];
+    let slope = |x: &[f64], k: usize| (x[k] - x[k - 1]) / length_s(k);
+    let turns =
+        |(x, greatest): (&Vec<f64>, &f64)| k > 1 && (slope(x, k) - slope(x, k - 1)).abs() > CORNER_SHARE * greatest;
+    if run.inputs.iter().zip(greatest).any(turns) {
+        *corner_s = run.times_s[k - 1];
+    }
+    let shorter = if run.times_s[k - 1] - *corner_s < CORNER_S { CORNER_STEPS } else { 1.0 };
+    (length_s(k) * shorter / LONGEST_S - 1e-6).ceil().clamp(1.0, f64::from(MOST)) as u16
+}
+
+fn greatest_slope(x: &[f64], times_s: &[f64]) -> f64 {
+    x.windows(2).zip(times_s.windows(2)).map(|(x, t)| ((x[1] - x[0]) / (t[1] - t[0])).abs()).fold(0.0, f64::max)
+}
