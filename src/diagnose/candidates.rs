@@ -25,6 +25,9 @@ pub fn variants(case: &Case) -> Vec<Variant> {
     all
 }
 
+/// What equal parts have in common when one has it: material, make, surface. These are tried on all of them at once.
+const IN_ALL: [Kind; 4] = [Kind::Viscoelasticity, Kind::MullinsSoftening, Kind::CoilPreload, Kind::TendonFriction];
+
 fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
     let file = &case.scene.file;
     let on = |kind: ElementKind, index: usize, count: usize, channel: Option<&str>| Placed {
@@ -42,6 +45,9 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         _ => file.muscle.len(),
     };
     let mut placed: Vec<Placed> = (0..count).map(|i| on(spec.element, i, count, None)).collect();
+    if count > 1 && IN_ALL.contains(&spec.kind) {
+        placed.push(on(spec.element, 0, 1, None));
+    }
     if spec.kind == Kind::GravityLoad && file.cable.is_empty() {
         // On a bench the weight hangs on the muscle.
         placed = (0..file.muscle.len()).map(|i| on(ElementKind::Muscle, i, file.muscle.len(), None)).collect();

@@ -1,5 +1,6 @@
 //! The recordings of one rig beside the fast model of their scene.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -183,13 +184,13 @@ impl Case {
     }
 
     /// Runs to fit and select with, or those held back.
-    pub fn subset(&self, sealed: Sealed) -> Vec<&CaseRun> {
+    pub fn subset(&self, sealed: Sealed) -> Vec<Cow<'_, CaseRun>> {
         let wanted = |r: &&CaseRun| match sealed {
             Sealed::Open => !r.is_sealed,
             Sealed::Sealed => r.is_sealed,
             Sealed::Both => true,
         };
-        self.runs.iter().filter(wanted).collect()
+        self.runs.iter().filter(wanted).map(Cow::Borrowed).collect()
     }
 }
 

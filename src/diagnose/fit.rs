@@ -1,5 +1,6 @@
 //! Least squares of a [`Model`] against runs.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
@@ -53,7 +54,7 @@ fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> V
 /// The part of the data that is fitted, with its weights.
 pub(super) struct Problem<'a> {
     pub case: &'a Case,
-    pub runs: Vec<&'a CaseRun>,
+    pub runs: Vec<Cow<'a, CaseRun>>,
     pub noise: &'a [Noise],
 }
 
@@ -97,7 +98,7 @@ impl Problem<'_> {
 
     /// Residuals measured minus simulated by run, channel and time, in the channels' units.
     pub fn residuals(&self, model: &Model, x: &[f64]) -> Option<Vec<Vec<Vec<f64>>>> {
-        let one = |run: &&CaseRun| {
+        let one = |run: &Cow<'_, CaseRun>| {
             let simulated = simulate(self.case, run, model, x)?;
             Some(subtract(self.case, run, &simulated))
         };
@@ -108,7 +109,7 @@ impl Problem<'_> {
     pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
         let numbers = self.numbers(model);
         let probes = probes(&numbers, x, wanted.clone(), sides);
-        let one = |run: &&CaseRun| -> Option<Vec<Rows>> {
+        let one = |run: &Cow<'_, CaseRun>| -> Option<Vec<Rows>> {
             let response = respond(self.case, run, model, x, &probes)?;
             let residuals = subtract(self.case, run, &response.values);
             let channels = residuals.iter().enumerate();
@@ -184,6 +185,35 @@ impl Problem<'_> {
         let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
         descent.run();
         Some(descent.finish())
+    }
+
+    /// Sum of squares of the residuals at `x`, in units of the noise.
+    pub fn cost_at(&self, model: &Model, x: &[f64]) -> Option<f64> {
+        Some(self.weighted_residual(model, x)?.norm_squared())
+    }
+
+    /// Every run left out once: the others, and it. A single run is cut into its halves.
+    pub fn folds<'s>(&'s self) -> Vec<(Problem<'s>, Problem<'s>)> {
+        let part = |runs: Vec<Cow<'s, CaseRun>>| Problem { case: self.case, runs, noise: self.noise };
+        if let [run] = &self.runs[..] {
+            let half = run.times_s().len() / 2;
+            let blank = |range: Range<usize>| -> Cow<'_, CaseRun> {
+                let mut part = run.clone().into_owned();
+                part.measured.iter_mut().for_each(|m| m[range.clone()].fill(f64::NAN));
+                Cow::Owned(part)
+            };
+            let halves = [blank(half..run.times_s().len()), blank(0..half)];
+            return vec![
+                (part(vec![halves[0].clone()]), part(vec![halves[1].clone()])),
+                (part(vec![halves[1].clone()]), part(vec![halves[0].clone()])),
+            ];
+        }
+        let without = |i: usize| {
+            let mut rest: Vec<_> = self.runs.iter().map(|r| Cow::Borrowed(r.as_ref())).collect();
+            let left_out = rest.remove(i);
+            (part(rest), part(vec![left_out]))
+        };
+        (0..self.runs.len()).map(without).collect()
     }
 
     /// Number of samples compared.

@@ -1,5 +1,7 @@
 //! Step 3: where the baseline's misfit sits in time and state.
 
+use std::borrow::Cow;
+
 use super::case::{Case, CaseRun};
 use super::noise::Noise;
 
@@ -9,7 +11,7 @@ const PIECE_S: f64 = 1.0;
 const SIGMA: f64 = 6.0;
 
 /// Stretches (file, from, to) in which the residual is more than noise.
-pub fn time_windows(runs: &[&CaseRun], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> Vec<(String, f64, f64)> {
+pub fn time_windows(runs: &[Cow<'_, CaseRun>], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> Vec<(String, f64, f64)> {
     let mut windows = Vec::new();
     for (run, residuals) in runs.iter().zip(residuals) {
         let times = run.times_s();
@@ -47,7 +49,7 @@ const LEVELS: usize = 4;
 
 /// The part of state space where the misfit is greatest: a level of one recorded channel, and the direction of the first
 /// input. In words, `pressure_kpa 1200 .. 2100 while unloading`.
-pub fn state_region(case: &Case, runs: &[&CaseRun], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> String {
+pub fn state_region(case: &Case, runs: &[Cow<'_, CaseRun>], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> String {
     let mut best: Option<(f64, String)> = None;
     for (c, channel) in case.channels.iter().enumerate() {
         let Some((low, high)) = range(runs, c) else { continue };
@@ -90,7 +92,7 @@ fn direction(run: &CaseRun, sample: usize) -> Option<usize> {
     if after == before { None } else { Some(usize::from(after > before)) }
 }
 
-fn range(runs: &[&CaseRun], channel: usize) -> Option<(f64, f64)> {
+fn range(runs: &[Cow<'_, CaseRun>], channel: usize) -> Option<(f64, f64)> {
     let finite = runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     (high > low).then_some((low, high))

@@ -90,7 +90,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
     let base = baseline::baseline(&mut case)?;
     let variants = candidates::variants(&case);
-    let (found, noise) = search_and_weigh(&case, &base, &variants, say).ok_or_else(diverges)?;
+    let (found, noise) = search_and_weigh(&mut case, &base, &variants, say).ok_or_else(diverges)?;
     let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
@@ -151,9 +151,9 @@ fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (F
     (found, proof)
 }
 
-/// Searches, and again with weights renewed, for what the baseline leaves is not all noise.
+/// Searches, and again where what was found asks for other weights or other steps.
 fn search_and_weigh(
-    case: &Case,
+    case: &mut Case,
     base: &Baseline,
     variants: &[Variant],
     say: &dyn Fn(String),
@@ -161,19 +161,27 @@ fn search_and_weigh(
     let mut noise = base.noise.clone();
     let mut found = search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, say);
     for _ in 0..2 {
-        let residuals = open_runs(case, &noise).residuals(&found.best.model, &found.best.x)?;
-        let renewed = noise::estimate(case, &residuals);
-        if renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old)) {
+        if found.best.model.effects.is_empty() {
             break;
         }
+        let residuals = open_runs(case, &noise).residuals(&found.best.model, &found.best.x)?;
+        let renewed = noise::estimate(case, &residuals);
+        let weights_hold = renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old));
         noise = renewed;
+        case.plan_steps(&found.best.model.setting(case, &found.best.x), &noise)?;
         let problem = open_runs(case, &noise);
-        let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
         let start = problem.fit(&found.best.model, &found.best.x)?;
+        if weights_hold && (start.cost - found.best.cost).abs() < SAME_COST * search::least_gain(problem.samples()) {
+            break;
+        }
+        let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
         found = search::search(&problem, baseline, start, variants, say);
     }
     Some((found, noise))
 }
+
+/// Steps hold when new ones change chi² by less than this share of the least gain.
+const SAME_COST: f64 = 0.3;
 
 fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
     Problem { case, runs: case.subset(Sealed::Open), noise }

@@ -146,6 +146,10 @@ pub(super) fn search(
         let Some(screening) = screen(problem, &best, variants) else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
         let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
+        if !foretells(problem, &best, winner) {
+            say(format!("{}: does not foretell runs it was not fitted to", title(&winner.model)));
+            break;
+        }
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
         best = winner.clone();
         rivals = vec![refits[1..].to_vec()];
@@ -154,6 +158,20 @@ pub(super) fn search(
         }
     }
     Found { baseline, best, rivals, screened }
+}
+
+/// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
+fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    let gain = |(rest, left_out): (Problem, Problem)| -> Option<f64> {
+        let cost = |fit: &Fit| {
+            let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;
+            let fitted = rest.fit_roughly(&fit.model, &fit.x, slopes)?;
+            left_out.cost_at(&fit.model, &fitted.x)
+        };
+        Some(cost(before)? - cost(after)?)
+    };
+    let folds = problem.folds();
+    folds.into_iter().filter_map(gain).sum::<f64>() > 0.0
 }
 
 /// The candidates worth a full refit: the most promising of every effect.

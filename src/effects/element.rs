@@ -38,7 +38,7 @@ impl ElementKind {
     }
 }
 
-/// An element of one rig: `line` where there is one, `line_1`, `line_2` where there are two.
+/// An element of one rig: `line` where there is one, `line_1`, `line_2` where there are two; `line` then means both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Element {
     pub kind: ElementKind,
@@ -52,6 +52,11 @@ impl Element {
     /// Element `index` of `count` of its kind.
     pub fn of(kind: ElementKind, index: usize, count: usize) -> Self {
         Self { kind, index, is_numbered: count > 1 && kind.is_numbered() }
+    }
+
+    /// Which of `count` elements of the kind are meant.
+    pub fn indices(&self, count: usize) -> std::ops::Range<usize> {
+        if self.is_numbered || count <= 1 { self.index..self.index + 1 } else { 0..count }
     }
 
     /// Reads `line`, `line_2`; `None` for anything else.

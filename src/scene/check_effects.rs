@@ -45,9 +45,6 @@ fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)
     if element.index >= count && !on_axis {
         return Err((format!("element = \"{element}\" is not in this scene"), known(element.kind, count)));
     }
-    if count > 1 && element.kind.is_numbered() && !element.is_numbered {
-        return Err((format!("element = \"{element}\" could be any of {count}"), known(element.kind, count)));
-    }
     if effect.kind == Kind::SealFriction && scene.axis.is_none() {
         return Err((
             "no channel of this scene shows the force on the plunger".to_owned(),

@@ -55,16 +55,20 @@ impl Site {
 /// The element must exist in the plant; scenes are checked for it.
 pub(super) fn install<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
     match effect.element.kind {
-        ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => on_muscle(plant, effect),
-        ElementKind::Cable => on_cable(plant, site, effect),
+        ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => {
+            effect.element.indices(plant.muscles.len()).for_each(|i| on_muscle(plant, i, effect));
+        }
+        ElementKind::Cable => {
+            effect.element.indices(plant.cables.len()).for_each(|i| on_cable(plant, site, i, effect));
+        }
         ElementKind::Mechanism => on_mechanism(plant, site, effect),
         ElementKind::Sensor => {}
     }
 }
 
-fn on_muscle<D: Scalar>(plant: &mut Plant<D>, effect: &Effect<D>) {
+fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) {
     let v = &effect.values;
-    let muscle = &mut plant.muscles[effect.element.index];
+    let muscle = &mut plant.muscles[index];
     let extras = &mut muscle.extras;
     match effect.kind {
         Kind::PlungerBacklash => extras.backlash = Some(Backlash { width_m: v[0] }),
@@ -95,9 +99,8 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, effect: &Effect<D>) {
     }
 }
 
-fn on_cable<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
+fn on_cable<D: Scalar>(plant: &mut Plant<D>, site: &Site, index: usize, effect: &Effect<D>) {
     let v = &effect.values;
-    let index = effect.element.index;
     let cable = &mut plant.cables[index];
     match effect.kind {
         Kind::CableSlack => cable.stretch_0_m -= v[0],
