@@ -73,7 +73,7 @@ fn val_bench_recordings() {
 
 #[test]
 fn val_pulley_recordings() {
-    ["05"].into_iter().for_each(check);
+    ["05", "06"].into_iter().for_each(check);
 }
 
 #[test]

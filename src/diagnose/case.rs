@@ -7,12 +7,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
-use crate::recording::{RecordingSet, Role, RunUse};
+use crate::recording::{Recording, RecordingSet, Role, RunUse};
 use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
 use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
 
 use super::DiagnoseError;
 use super::noise::Noise;
+use super::thin::thin;
 
 /// An output that was recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,8 @@ pub struct CaseRun {
     /// Of each channel, its values at the recorded times; missing ones are NaN.
     pub measured: Vec<Vec<f64>>,
     pub is_sealed: bool,
+    /// Of the sealed end of a run: what was measured before it. A free zero is decided there.
+    pub open_part: Option<Vec<Vec<f64>>>,
 }
 
 impl CaseRun {
@@ -55,6 +58,9 @@ pub struct CaseParameter {
     pub max: f64,
     pub start: f64,
 }
+
+/// Recordings are averaged down to this interval, s: what moves here is slower.
+const LEAST_INTERVAL_S: f64 = 0.01;
 
 /// Share of the noise by which doubled steps may change a channel over one sampling interval.
 const STEP_TOLERANCE: f64 = 1e-3;
@@ -125,7 +131,7 @@ impl Case {
     }
 
     fn add_run(&mut self, run: &RecordedRun, twin: Arc<Twin>) -> Result<(), DiagnoseError> {
-        let recording = &run.recording;
+        let recording = &self.thinned(run)?;
         let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
         for input in &self.scene.file.input {
             let line = recording.piecewise_si(&input.channel)?;
@@ -139,11 +145,19 @@ impl Case {
             file: run.run.file.clone(),
             measured: measured.collect(),
             is_sealed: run.run.run_use == Some(RunUse::Holdout),
+            open_part: None,
             twin,
             drive,
             lead_in,
         });
         Ok(())
+    }
+
+    /// A recording faster than the muscles need is averaged down; the stated noise falls with it.
+    fn thinned(&mut self, run: &RecordedRun) -> Result<Recording, DiagnoseError> {
+        let Some((thin, count)) = thin(&run.recording, LEAST_INTERVAL_S)? else { return Ok(run.recording.clone()) };
+        self.notes.push(format!("{}: averaged over {count} samples each, to {LEAST_INTERVAL_S} s", run.run.file));
+        Ok(thin)
     }
 
     /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
@@ -159,12 +173,21 @@ impl Case {
             return;
         }
         self.notes.push("one run only: its last third is held back".to_owned());
-        let whole = self.runs[0].clone();
-        let (n, cut) = (whole.times_s().len(), whole.times_s().len() * 2 / 3);
-        let mut sealed = whole;
+        let cut = self.runs[0].times_s().len() * 2 / 3;
+        self.seal_from(cut);
+    }
+
+    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
+    pub fn seal_from(&mut self, cut: usize) {
+        let mut sealed = self.runs[0].clone();
+        let cut = cut.min(sealed.times_s().len());
         self.runs[0].keep(0..cut);
-        sealed.measured.iter_mut().for_each(|m| m[..cut.min(n)].fill(f64::NAN));
+        self.runs[0].is_sealed = false;
+        sealed.open_part = Some(sealed.measured.clone());
+        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
+        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
         sealed.is_sealed = true;
+        self.runs.truncate(1);
         self.runs.push(sealed);
     }
 

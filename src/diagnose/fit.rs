@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::case::{Case, CaseRun};
 use super::model::{Model, Probe, Sides, respond, simulate};
 use super::noise::Noise;
-use super::normal::{Normal, Number, Rows, prior_cost};
+use super::normal::{Number, Rows};
 
 /// A fitted model.
 #[derive(Clone, Debug)]
@@ -58,16 +58,8 @@ pub(super) struct Problem<'a> {
     pub noise: &'a [Noise],
 }
 
-/// Stop when an iteration promises less than this many units of chi².
-const GAIN: f64 = 0.5;
-/// Steps on mended slopes, and how often slopes are taken anew.
-const ITERATIONS: usize = 25;
-const REFRESHES: usize = 8;
-/// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
-const LEAST_DAMPING: f64 = 1e-10;
-
 impl Problem<'_> {
-    fn numbers(&self, model: &Model) -> Vec<Number> {
+    pub fn numbers(&self, model: &Model) -> Vec<Number> {
         let mut numbers: Vec<Number> = self
             .case
             .parameters
@@ -100,7 +92,7 @@ impl Problem<'_> {
     pub fn residuals(&self, model: &Model, x: &[f64]) -> Option<Vec<Vec<Vec<f64>>>> {
         let one = |run: &Cow<'_, CaseRun>| {
             let simulated = simulate(self.case, run, model, x)?;
-            Some(subtract(self.case, run, &simulated))
+            Some(self.subtract(run, &simulated))
         };
         self.runs.par_iter().map(one).collect()
     }
@@ -111,7 +103,7 @@ impl Problem<'_> {
         let probes = probes(&numbers, x, wanted.clone(), sides);
         let one = |run: &Cow<'_, CaseRun>| -> Option<Vec<Rows>> {
             let response = respond(self.case, run, model, x, &probes)?;
-            let residuals = subtract(self.case, run, &response.values);
+            let residuals = self.subtract(run, &response.values);
             let channels = residuals.iter().enumerate();
             let rows = channels.map(|(c, r)| self.weighted_rows(run, c, r, &response.slopes, &numbers[wanted.clone()]));
             Some(rows.collect())
@@ -121,7 +113,7 @@ impl Problem<'_> {
     }
 
     /// Residuals at `x` in units of the noise, in the order of [`Problem::rows`].
-    fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
+    pub fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
         let residuals = self.residuals(model, x)?;
         let mut all = Vec::with_capacity(self.samples());
         for (run, residuals) in self.runs.iter().zip(&residuals) {
@@ -148,43 +140,11 @@ impl Problem<'_> {
             residual: DVector::from_iterator(there.len(), there.iter().map(|&i| residual[i] * weight)),
         };
         for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
-            let mut column: Vec<f64> = there.iter().map(|&i| slope[channel][i] * (weight * number.scale)).collect();
-            if self.case.channels[channel].has_free_zero {
-                take_mean_off(&mut column);
-            }
-            rows.slopes.column_mut(k).copy_from_slice(&column);
+            let zero = self.zero(run, channel, |i, _| slope[channel][i]);
+            let column = there.iter().map(|&i| (slope[channel][i] - zero) * (weight * number.scale));
+            rows.slopes.column_mut(k).iter_mut().zip(column).for_each(|(to, from)| *to = from);
         }
         rows
-    }
-
-    /// Fits a model from `start`. `None` when it cannot be simulated there.
-    pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
-        let numbers = self.numbers(model);
-        let x = within(start, &numbers);
-        let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
-        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
-        descent.run();
-        for _ in 0..REFRESHES {
-            let cost = descent.normal().cost;
-            descent.rows = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?;
-            descent.damping = LEAST_DAMPING;
-            descent.run();
-            if cost - descent.normal().cost < GAIN * descent.unit() {
-                break;
-            }
-        }
-        Some(descent.finish())
-    }
-
-    /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
-    /// tell which models are worth [`Problem::fit`].
-    pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
-        let numbers = self.numbers(model);
-        let x = within(start, &numbers);
-        let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
-        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
-        descent.run();
-        Some(descent.finish())
     }
 
     /// Sum of squares of the residuals at `x`, in units of the noise.
@@ -216,6 +176,26 @@ impl Problem<'_> {
         (0..self.runs.len()).map(without).collect()
     }
 
+    /// Measured minus simulated, each channel with a free zero about its own.
+    fn subtract(&self, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let channel = |(c, measured): (usize, &Vec<f64>)| -> Vec<f64> {
+            let zero = self.zero(run, c, |i, m| m - simulated[c][i]);
+            measured.iter().zip(&simulated[c]).map(|(m, s)| m - s - zero).collect()
+        };
+        run.measured.iter().enumerate().map(channel).collect()
+    }
+
+    /// Where a channel's zero lies: the mean of `value(sample, measured)` if it is free, else 0.
+    fn zero(&self, run: &CaseRun, channel: usize, value: impl Fn(usize, f64) -> f64) -> f64 {
+        if !self.case.channels[channel].has_free_zero {
+            return 0.0;
+        }
+        let decides = run.open_part.as_ref().unwrap_or(&run.measured)[channel].iter().enumerate();
+        let values = decides.filter(|(_, m)| m.is_finite()).map(|(i, m)| value(i, *m));
+        let (sum, count) = values.fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
     /// Number of samples compared.
     pub fn samples(&self) -> usize {
         self.runs.iter().flat_map(|r| &r.measured).flatten().filter(|v| v.is_finite()).count()
@@ -229,98 +209,4 @@ impl Problem<'_> {
         x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
         x
     }
-}
-
-fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
-    x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
-}
-
-/// A fit on its way.
-struct Descent<'a> {
-    problem: &'a Problem<'a>,
-    model: &'a Model,
-    numbers: &'a [Number],
-    x: Vec<f64>,
-    rows: Rows,
-    damping: f64,
-}
-
-impl Descent<'_> {
-    fn normal(&self) -> Normal {
-        Normal::of(&self.rows, self.numbers, &self.x)
-    }
-
-    /// Chi² per sample, at least 1: a model that is far off need not be far off to the last digit.
-    fn unit(&self) -> f64 {
-        (self.rows.residual.norm_squared() / self.rows.residual.len().max(1) as f64).max(1.0)
-    }
-
-    /// Steps until the slopes promise no more.
-    fn run(&mut self) {
-        for _ in 0..ITERATIONS {
-            let least = GAIN * self.unit();
-            if self.improve(least).is_none_or(|gain| gain < least) {
-                break;
-            }
-        }
-    }
-
-    /// One step downwards; what it gained, none when less than a third of `least` can be had.
-    fn improve(&mut self, least: f64) -> Option<f64> {
-        let here = self.normal();
-        for _ in 0..8 {
-            let step = here.bounded_step(self.numbers, &self.x, self.damping)?;
-            if here.promised_gain(&step) < least / 3.0 {
-                return None;
-            }
-            let moved: Vec<f64> =
-                self.x.iter().zip(self.numbers).zip(step.iter()).map(|((x, n), s)| x + s * n.scale).collect();
-            let next = within(&moved, self.numbers);
-            let made = self.x.iter().zip(&next).zip(self.numbers).map(|((from, to), n)| (to - from) / n.scale);
-            let made = DVector::from_iterator(next.len(), made);
-            let residual = self.problem.weighted_residual(self.model, &next);
-            let there = residual.map(|r| (r.norm_squared() + prior_cost(self.numbers, &next), r));
-            if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
-                self.rows.move_on(&made, residual);
-                self.x = next;
-                self.damping = (self.damping / 10.0).max(LEAST_DAMPING);
-                return Some(here.cost - cost);
-            }
-            self.damping = (self.damping * 100.0).max(1e-4);
-        }
-        None
-    }
-
-    fn finish(self) -> Fit {
-        let here = self.normal();
-        let (numbers, x) = (self.numbers, self.x);
-        let on_bound = (0..self.problem.case.parameters.len())
-            .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
-            .collect();
-        let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
-        let cost = here.cost - prior_cost(numbers, &x);
-        let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
-        Fit { model: self.model.clone(), cost, covariance, x, on_bound }
-    }
-}
-
-fn subtract(case: &Case, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let mut all: Vec<Vec<f64>> = run
-        .measured
-        .iter()
-        .zip(simulated)
-        .map(|(measured, simulated)| measured.iter().zip(simulated).map(|(m, s)| m - s).collect())
-        .collect();
-    for (channel, residual) in case.channels.iter().zip(&mut all) {
-        if channel.has_free_zero {
-            take_mean_off(residual);
-        }
-    }
-    all
-}
-
-fn take_mean_off(values: &mut [f64]) {
-    let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
-    values.iter_mut().for_each(|v| *v -= mean);
 }

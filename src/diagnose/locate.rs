@@ -11,7 +11,11 @@ const PIECE_S: f64 = 1.0;
 const SIGMA: f64 = 6.0;
 
 /// Stretches (file, from, to) in which the residual is more than noise.
-pub fn time_windows(runs: &[Cow<'_, CaseRun>], residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> Vec<(String, f64, f64)> {
+pub fn time_windows(
+    runs: &[Cow<'_, CaseRun>],
+    residuals: &[Vec<Vec<f64>>],
+    noise: &[Noise],
+) -> Vec<(String, f64, f64)> {
     let mut windows = Vec::new();
     for (run, residuals) in runs.iter().zip(residuals) {
         let times = run.times_s();

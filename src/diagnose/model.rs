@@ -40,6 +40,9 @@ impl Placed {
     }
 }
 
+/// Relaxation times of one muscle, at most.
+const MOST_BRANCHES: usize = 3;
+
 /// A set of effects beside the calibration, and the numbers that are not fitted.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Model {
@@ -64,6 +67,12 @@ impl Model {
         model.values.push(values.to_vec());
         model.fitted.push((0..spec.parameters.len()).filter(|&i| spec.parameters[i].is_fitted).collect());
         model
+    }
+
+    /// Whether an effect may be added: not twice on one element, but for relaxation, which has a spectrum.
+    pub fn takes(&self, placed: &Placed) -> bool {
+        let standing = self.effects.iter().filter(|e| *e == placed).count();
+        standing < if placed.kind == Kind::Viscoelasticity { MOST_BRANCHES } else { 1 }
     }
 
     /// One effect less.

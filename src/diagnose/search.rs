@@ -27,6 +27,9 @@ const LEAST_GAIN: f64 = 35.0;
 /// Share of all that is explained below which one more effect may be no more than the others' laws being idealised.
 const LEAST_OF_ALL: f64 = 1e-3;
 
+/// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
+const BRANCH_TIE: f64 = 0.02;
+
 /// A candidate with what it would gain, by its signature alone.
 #[derive(Clone, Debug)]
 pub struct Screened {
@@ -70,7 +73,7 @@ pub(super) fn screen<'a>(problem: &Problem, from: &'a Fit, variants: &[Variant])
 
 /// A signature is the derivative to an effect's size at zero.
 fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
-    let fresh: Vec<&Variant> = variants.iter().filter(|v| !fit.model.effects.contains(&v.placed)).collect();
+    let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
@@ -145,19 +148,28 @@ pub(super) fn search(
         let least = least_gain(samples).max(LEAST_OF_ALL * explained);
         let Some(screening) = screen(problem, &best, variants) else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
-        let Some(winner) = refits.first().filter(|f| best.cost - f.cost > least) else { break };
+        let winner = simplest(&refits, &best, baseline.cost);
+        let Some(winner) = winner.filter(|f| best.cost - f.cost > least) else { break };
         if !foretells(problem, &best, winner) {
             say(format!("{}: does not foretell runs it was not fitted to", title(&winner.model)));
             break;
         }
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
         best = winner.clone();
-        rivals = vec![refits[1..].to_vec()];
+        rivals = vec![refits.iter().filter(|f| f.model != best.model).cloned().collect()];
         if best.model.effects.len() > 1 {
             (best, rivals) = settle(problem, best, variants, least, say);
         }
     }
     Found { baseline, best, rivals, screened }
+}
+
+/// The cheapest fit; but of nearly equal ones that which only gives an effect already named one more branch.
+fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
+    let cheapest = refits.first()?;
+    let tie = cheapest.cost + BRANCH_TIE * (baseline_cost - cheapest.cost).max(0.0);
+    let adds_branch = |f: &&Fit| f.model.effects.last().is_some_and(|e| before.model.effects.contains(e));
+    refits.iter().take_while(|f| f.cost <= tie).find(adds_branch).or(Some(cheapest))
 }
 
 /// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
@@ -259,10 +271,12 @@ fn settle(
         };
         let refits = screen(problem, &fewer, variants).map_or_else(Vec::new, |screening| {
             let mut others = pick(&screening.screened, least);
+            // What stands there already would only be found again.
             others.retain(|s| s.variant.placed != best.model.effects[index]);
             refit(problem, &screening, &others)
         });
-        let better = match refits.first().filter(|f| f.cost < best.cost - 1.0) {
+        let margin = 1.0 + if has_branches(&best.model) { BRANCH_TIE * (fewer.cost - best.cost).max(0.0) } else { 0.0 };
+        let better = match refits.first().filter(|f| f.cost < best.cost - margin) {
             _ if fewer.cost - best.cost < least => fewer,
             Some(other) => other.clone(),
             None => {
@@ -275,6 +289,11 @@ fn settle(
         rivals.clear();
     }
     (best, rivals)
+}
+
+/// Whether an effect stands there with more than one branch.
+fn has_branches(model: &Model) -> bool {
+    model.effects.iter().enumerate().any(|(i, e)| model.effects[..i].contains(e))
 }
 
 /// Effects of a model in words.

@@ -51,11 +51,14 @@ pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
             standing.iter().filter(|(p, _, _)| !p.says_the_same(own)).map(|(p, _, _)| p.title()).collect::<Vec<_>>()
         };
         for (rival, probability, fit) in &standing {
-            if effects.iter().any(|e: &NamedEffect| is_said(e, rival)) {
-                continue;
-            }
             let is_best = rival.says_the_same(placed);
             let (source, at) = if is_best { (final_fit, index) } else { (*fit, fit.model.effects.len() - 1) };
+            if let Some(known) = effects.iter_mut().find(|e: &&mut NamedEffect| is_said(e, rival)) {
+                if is_best {
+                    add_branch(known, parameters(source, at));
+                }
+                continue;
+            }
             effects.push(NamedEffect {
                 name: rival.spec().name.to_owned(),
                 element: rival.element.to_string(),
@@ -69,6 +72,14 @@ pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
         }
     }
     effects
+}
+
+/// A further branch of an effect that is named already: its numbers get the next free number as suffix.
+fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
+    for (key, number) in numbers {
+        let free = (2..).map(|n| format!("{key}_{n}")).find(|k| !effect.parameters.contains_key(k));
+        effect.parameters.extend(free.map(|k| (k, number)));
+    }
 }
 
 fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {

@@ -264,6 +264,11 @@ impl<D: Scalar> Plant<D> {
         m.forces(elongation, speed, pressure, state.z[muscle], m.slow(state), state.greatest_j[muscle])
     }
 
+    /// Whether anything rubs dry, or could with an effect.
+    pub(super) fn may_rub(&self) -> bool {
+        self.muscles.iter().any(|m| m.friction.is_some()) || !self.cables.is_empty()
+    }
+
     /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
     pub(super) fn pulling(&self, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> u64 {
         let cables = (0..self.cables.len()).map(|i| self.cable(i, state, inputs, elapsed_s).2.value() > 0.0);

@@ -11,6 +11,8 @@ pub type StepPlan = Arc<[u16]>;
 
 /// Longest step, s: at rest longer ones flutter about zero speed, and what is held by friction creeps.
 const LONGEST_S: f64 = 2.5e-3;
+/// Where nothing rubs, nothing does.
+const LONGEST_SMOOTH_S: f64 = 2.0e-2;
 
 /// And for so long after a corner of an input, s, so much shorter: where friction stops a motion is decided there.
 const CORNER_S: f64 = 0.3;
@@ -39,11 +41,12 @@ impl Twin {
         };
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
+        let longest_s = if plant.may_rub() { LONGEST_S } else { LONGEST_SMOOTH_S };
         let greatest: Vec<f64> = run.inputs.iter().map(|x| greatest_slope(x, &run.times_s)).collect();
         let mut corner_s = run.times_s.first().copied().unwrap_or(0.0);
         for k in 1..run.times_s.len() {
             // What was enough before may be more than enough now.
-            steps = (steps / 2).max(fewest_steps(run, k, &greatest, &mut corner_s));
+            steps = (steps / 2).max(fewest_steps(run, k, longest_s, &greatest, &mut corner_s));
             let (mut coarse, mut coarse_spans) = (state.clone(), spans.clone());
             self.advance(&plant, &mut coarse, &mut stepper, &mut coarse_spans, run, k, steps);
             loop {
@@ -76,7 +79,7 @@ impl Twin {
 }
 
 /// Fewest steps of the interval that ends at sample `k`; keeps the time of the last corner.
-fn fewest_steps(run: &TwinRun, k: usize, greatest: &[f64], corner_s: &mut f64) -> u16 {
+fn fewest_steps(run: &TwinRun, k: usize, longest_s: f64, greatest: &[f64], corner_s: &mut f64) -> u16 {
     let length_s = |k: usize| run.times_s[k] - run.times_s[k - 1];
     let slope = |x: &[f64], k: usize| (x[k] - x[k - 1]) / length_s(k);
     let turns =
@@ -85,7 +88,7 @@ fn fewest_steps(run: &TwinRun, k: usize, greatest: &[f64], corner_s: &mut f64) -
         *corner_s = run.times_s[k - 1];
     }
     let shorter = if run.times_s[k - 1] - *corner_s < CORNER_S { CORNER_STEPS } else { 1.0 };
-    (length_s(k) * shorter / LONGEST_S - 1e-6).ceil().clamp(1.0, f64::from(MOST)) as u16
+    (length_s(k) * shorter / longest_s - 1e-6).ceil().clamp(1.0, f64::from(MOST)) as u16
 }
 
 fn greatest_slope(x: &[f64], times_s: &[f64]) -> f64 {

@@ -1,0 +1,120 @@
+//! The way a fit goes down.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::fit::{Fit, Problem};
+use super::model::{Model, Sides};
+use super::normal::{Normal, Number, Rows, prior_cost};
+
+/// Stop when an iteration promises less than this many units of chi².
+const GAIN: f64 = 0.5;
+/// Steps on mended slopes, and how often slopes are taken anew.
+const ITERATIONS: usize = 25;
+const REFRESHES: usize = 8;
+/// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
+const LEAST_DAMPING: f64 = 1e-10;
+
+impl Problem<'_> {
+    /// Fits a model from `start`. `None` when it cannot be simulated there.
+    pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
+        let numbers = self.numbers(model);
+        let x = within(start, &numbers);
+        let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
+        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        descent.run();
+        for _ in 0..REFRESHES {
+            let cost = descent.normal().cost;
+            descent.rows = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?;
+            descent.damping = LEAST_DAMPING;
+            descent.run();
+            if cost - descent.normal().cost < GAIN * descent.unit() {
+                break;
+            }
+        }
+        Some(descent.finish())
+    }
+
+    /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
+    /// tell which models are worth [`Problem::fit`].
+    pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
+        let numbers = self.numbers(model);
+        let x = within(start, &numbers);
+        let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
+        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        descent.run();
+        Some(descent.finish())
+    }
+}
+
+fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
+    x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
+}
+
+/// A fit on its way.
+struct Descent<'a> {
+    problem: &'a Problem<'a>,
+    model: &'a Model,
+    numbers: &'a [Number],
+    x: Vec<f64>,
+    rows: Rows,
+    damping: f64,
+}
+
+impl Descent<'_> {
+    fn normal(&self) -> Normal {
+        Normal::of(&self.rows, self.numbers, &self.x)
+    }
+
+    /// Chi² per sample, at least 1: a model that is far off need not be far off to the last digit.
+    fn unit(&self) -> f64 {
+        (self.rows.residual.norm_squared() / self.rows.residual.len().max(1) as f64).max(1.0)
+    }
+
+    /// Steps until the slopes promise no more.
+    fn run(&mut self) {
+        for _ in 0..ITERATIONS {
+            let least = GAIN * self.unit();
+            if self.improve(least).is_none_or(|gain| gain < least) {
+                break;
+            }
+        }
+    }
+
+    /// One step downwards; what it gained, none when less than a third of `least` can be had.
+    fn improve(&mut self, least: f64) -> Option<f64> {
+        let here = self.normal();
+        for _ in 0..8 {
+            let step = here.bounded_step(self.numbers, &self.x, self.damping)?;
+            if here.promised_gain(&step) < least / 3.0 {
+                return None;
+            }
+            let moved: Vec<f64> =
+                self.x.iter().zip(self.numbers).zip(step.iter()).map(|((x, n), s)| x + s * n.scale).collect();
+            let next = within(&moved, self.numbers);
+            let made = self.x.iter().zip(&next).zip(self.numbers).map(|((from, to), n)| (to - from) / n.scale);
+            let made = DVector::from_iterator(next.len(), made);
+            let residual = self.problem.weighted_residual(self.model, &next);
+            let there = residual.map(|r| (r.norm_squared() + prior_cost(self.numbers, &next), r));
+            if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
+                self.rows.move_on(&made, residual);
+                self.x = next;
+                self.damping = (self.damping / 10.0).max(LEAST_DAMPING);
+                return Some(here.cost - cost);
+            }
+            self.damping = (self.damping * 100.0).max(1e-4);
+        }
+        None
+    }
+
+    fn finish(self) -> Fit {
+        let here = self.normal();
+        let (numbers, x) = (self.numbers, self.x);
+        let on_bound = (0..self.problem.case.parameters.len())
+            .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
+            .collect();
+        let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
+        let cost = here.cost - prior_cost(numbers, &x);
+        let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
+        Fit { model: self.model.clone(), cost, covariance, x, on_bound }
+    }
+}

@@ -1,0 +1,107 @@
+//! Contract of the diagnosis on other people's measurements: what is documented as missing from a plain model is named.
+//!
+//! The recordings are not part of the project (their licences); without them this says so.
+
+use std::path::{Path, PathBuf};
+
+use smam::diagnose::{Case, Diagnosis, NamedEffect, Options, Verdict, diagnose};
+
+fn real(name: &str) -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings/real").join(name);
+    if folder.exists() {
+        return Some(folder);
+    }
+    println!("skipped: ../shared/recordings/real/{name} is not there");
+    None
+}
+
+fn load(folder: &Path) -> Case {
+    Case::load(&[folder], None, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn answer(case: Case) -> Diagnosis {
+    let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
+    println!("{}", outcome.diagnosis.summary);
+    for (channel, p) in &outcome.diagnosis.fit.channels {
+        println!("  {channel}: sealed rmse {:.4} -> {:.4}, noise {:.4}", p.rmse_baseline, p.rmse_corrected, p.noise_sd);
+    }
+    for e in &outcome.diagnosis.effects {
+        let numbers: Vec<String> = e.parameters.iter().map(|(k, v)| format!("{k} = {:.4e}", v.value)).collect();
+        println!("  {:.3} {} in {}: {}", e.probability, e.name, e.element, numbers.join(", "));
+    }
+    outcome.diagnosis
+}
+
+fn named<'a>(d: &'a Diagnosis, name: &str, element: &str) -> &'a NamedEffect {
+    let found = d.effects.iter().find(|e| e.name == name && e.element == element);
+    found.unwrap_or_else(|| panic!("{name} in {element} is not among {:?}", d.effects))
+}
+
+#[test]
+fn val_creep_of_a_coiled_tube_is_named() {
+    let Some(folder) = real("cavatappi_fluid_muscle") else { return };
+    let d = answer(load(&folder));
+    assert_eq!(d.effects[0].name, "viscoelasticity");
+    assert_eq!(named(&d, "viscoelasticity", "muscle").probability, d.effects[0].probability);
+    // Their own scripts shift the channels against each other.
+    named(&d, "sensor_lag", "sensor");
+    let sealed = d.fit.channels["displacement_mm"];
+    assert!(sealed.rmse_corrected < 0.7 * sealed.rmse_baseline, "{sealed:?}");
+}
+
+/// The long hold: fitted up to its middle, foretold from there to the release.
+#[test]
+fn val_creep_of_a_long_hold_is_foretold() {
+    let Some(folder) = real("cavatappi_fluid_muscle") else { return };
+    let mut case = load(&folder);
+    case.runs.retain(|r| r.file == "sample3_400g_hold.csv");
+    let pressure = &case.runs[0].drive.inputs[0];
+    let greatest = pressure.iter().copied().fold(0.0, f64::max);
+    let first = pressure.iter().position(|p| *p > 0.5 * greatest).expect("a hold");
+    let release = first + pressure[first..].iter().position(|p| *p < 0.5 * greatest).expect("a release");
+    // Nothing after the release, nor the second that leads to it.
+    case.runs[0].measured[0][release - 10..].fill(f64::NAN);
+    case.seal_from(first.midpoint(release));
+    let d = answer(case);
+    named(&d, "viscoelasticity", "muscle");
+    let rmse_mm = d.fit.channels["displacement_mm"].rmse_corrected;
+    assert!(rmse_mm < 0.35, "{rmse_mm} mm over the second half");
+}
+
+/// Three sheaths are fitted, the fourth - bent further than any of them - is foretold with the same coefficient.
+#[test]
+fn val_capstan_friction_of_a_sheath_is_named() {
+    let Some(folder) = real("tendon_sheath") else { return };
+    let d = answer(load(&folder));
+    assert_eq!(d.fit.holdout, ["sheath_180_deg.csv"]);
+    let friction = named(&d, "tendon_friction", "cable").parameters["friction_coefficient"];
+    println!("  mu {:.4} in {:.4} .. {:.4}", friction.value, friction.ci95[0], friction.ci95[1]);
+    assert!(friction.ci95[0] > 0.0);
+    assert!(d.fit.gap_closed > 0.8, "{}", d.fit.gap_closed);
+    let tip = d.fit.channels["tip_deg"];
+    assert!(tip.rmse_corrected < 0.2 * tip.rmse_baseline, "{tip:?}");
+}
+
+#[test]
+fn val_dry_friction_of_a_seal_and_its_growth_with_pressure_are_named() {
+    let Some(folder) = real("seal_friction_cylinder") else { return };
+    let mut case = load(&folder);
+    case.runs.retain(|r| r.file.starts_with("o-ring"));
+    // The greatest pressure is foretold.
+    case.runs.iter_mut().for_each(|r| r.is_sealed = r.file == "o-ring257_7bar.csv");
+    let d = answer(case);
+    let growth = named(&d, "seal_friction", "syringe").parameters["friction_per_pressure_n_pa"];
+    println!("  {:.3e} N/Pa in {:.3e} .. {:.3e}", growth.value, growth.ci95[0], growth.ci95[1]);
+    assert!(growth.ci95[0] > 0.0);
+    assert_eq!(d.verdict, Verdict::MissingPhysics);
+    let force = d.fit.channels["force_n"];
+    assert!(force.rmse_corrected < 0.7 * force.rmse_baseline, "{force:?}");
+}
+
+/// Two makes of seal in one recording have no common friction; the nearest known effect is still the friction.
+#[test]
+fn val_two_seals_at_once_are_no_single_law() {
+    let Some(folder) = real("seal_friction_cylinder") else { return };
+    let d = answer(load(&folder));
+    named(&d, "seal_friction", "syringe");
+}
