@@ -90,5 +90,8 @@ fn print_diagnosis(d: &Diagnosis) {
             p.noise_sd
         );
     }
+    for (channel, difference) in &d.fit.full_scene.rms_difference_over_noise {
+        println!("  fast model against the full scene: {channel} {difference:.3} of the noise");
+    }
     d.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
 }

@@ -92,6 +92,16 @@ pub struct Proof {
     pub gain_ci95: [f64; 2],
     /// What wrong effects gained through the same door.
     pub placebo_gap_closed: Vec<(String, f64)>,
+    pub full_scene: FullScene,
+}
+
+/// How far the fast model, which the diagnosis works on, is from the full scene with the numbers found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FullScene {
+    /// If not, the figures of the sealed runs are those of the full scene.
+    pub agrees: bool,
+    /// By channel, the greatest over the runs, in units of the noise.
+    pub rms_difference_over_noise: BTreeMap<String, f64>,
 }
 
 /// One channel of the sealed runs.

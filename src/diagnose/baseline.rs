@@ -34,6 +34,7 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     let residuals = problem(case, &noise).residuals(&fit.model, &fit.x).ok_or_else(diverges)?;
     noise = estimate(case, &residuals);
     plan_steps(case, &noise, Some(&fit.x)).ok_or_else(diverges)?;
+    case.leave_out_unheld(&fit.model.setting(case, &fit.x)).ok_or_else(diverges)?;
     let fit = self::fit(case, &noise, Some(&fit.x))?;
     Ok(Baseline { fit, noise, warnings })
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use crate::effects::Effect;
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
 use crate::recording::{Recording, RecordingSet, Role, RunUse};
 use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
@@ -31,6 +32,8 @@ pub struct CaseChannel {
 #[derive(Clone, Debug)]
 pub struct CaseRun {
     pub file: String,
+    /// The scene under this run's conditions, and its fast model.
+    pub scene: Arc<Scene>,
     pub twin: Arc<Twin>,
     pub drive: TwinRun,
     /// Instants at the start of `drive` that were not recorded: the way from rest to where the recording begins.
@@ -63,12 +66,14 @@ pub struct CaseParameter {
 const LEAST_INTERVAL_S: f64 = 0.01;
 
 /// Share of the noise by which doubled steps may change a channel over one sampling interval.
-const STEP_TOLERANCE: f64 = 1e-3;
+const STEP_TOLERANCE: f64 = 1e-2;
 
 /// Everything a diagnosis looks at.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub scene: Scene,
+    /// Effects that the scene has already.
+    pub known_effects: Vec<Effect<f64>>,
     /// As the recordings name it.
     pub scene_name: String,
     pub folders: Vec<String>,
@@ -96,6 +101,7 @@ impl Case {
         let mut case = Self {
             channels: channels(first, &base, &twin),
             parameters: parameters(&base, &twin)?,
+            known_effects: known_effects(&base),
             scene: base,
             folders: folders.iter().map(|f| f.display().to_string()).collect(),
             runs: Vec::new(),
@@ -118,19 +124,19 @@ impl Case {
         self.notes.extend(notes);
         for run in &runs {
             let conditions = condition_overrides(&self.scene, &run.run)?;
-            let twin = match conditions.is_empty() {
-                true => Twin::new(&self.scene)?,
+            let scene = match conditions.is_empty() {
+                true => self.scene.clone(),
                 false => {
                     let all: Vec<Override> = overrides.iter().cloned().chain(conditions).collect();
-                    Twin::new(&Scene::load(&self.scene_name, &all)?)?
+                    Scene::load(&self.scene_name, &all)?
                 }
             };
-            self.add_run(run, Arc::new(twin))?;
+            self.add_run(run, scene)?;
         }
         Ok(())
     }
 
-    fn add_run(&mut self, run: &RecordedRun, twin: Arc<Twin>) -> Result<(), DiagnoseError> {
+    fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
         let recording = &self.thinned(run)?;
         let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
         for input in &self.scene.file.input {
@@ -146,7 +152,8 @@ impl Case {
             measured: measured.collect(),
             is_sealed: run.run.run_use == Some(RunUse::Holdout),
             open_part: None,
-            twin,
+            twin: Arc::new(Twin::new(&scene)?),
+            scene: Arc::new(scene),
             drive,
             lead_in,
         });
@@ -206,6 +213,25 @@ impl Case {
         self.runs.par_iter_mut().map(plan).collect()
     }
 
+    /// Leaves out what a joint shows while nothing holds it, at a setting. `None` when the fast model diverges.
+    pub fn leave_out_unheld(&mut self, setting: &TwinSetting<f64>) -> Option<()> {
+        let unheld: Vec<_> =
+            self.runs.par_iter().map(|r| r.twin.unheld(&r.drive, setting)).collect::<Option<Vec<_>>>()?;
+        for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
+            for (channel, measured) in self.channels.iter().zip(&mut run.measured) {
+                let left_out = leave_out(measured, &unheld[channel.output][run.lead_in..]);
+                if left_out > 0 {
+                    let (column, file) = (&channel.column, &run.file);
+                    self.notes.push(format!(
+                        "{file}: {left_out} samples of {column} are left out: no cable is taut there, and the joint \
+                         lies where its last swing left it"
+                    ));
+                }
+            }
+        }
+        Some(())
+    }
+
     /// Runs to fit and select with, or those held back.
     pub fn subset(&self, sealed: Sealed) -> Vec<Cow<'_, CaseRun>> {
         let wanted = |r: &&CaseRun| match sealed {
@@ -232,6 +258,29 @@ impl CaseRun {
         self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
         self.measured.iter_mut().for_each(|m| m.truncate(range.end));
     }
+}
+
+/// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.
+const AROUND_UNHELD: usize = 10;
+
+/// Blanks what is unheld and its neighbours; how many values that were there. Nothing if it would be most of them.
+fn leave_out(measured: &mut [f64], unheld: &[bool]) -> usize {
+    let near = |i: usize| {
+        let (from, to) = (i.saturating_sub(AROUND_UNHELD), (i + AROUND_UNHELD + 1).min(unheld.len()));
+        unheld[from..to].contains(&true)
+    };
+    let blank: Vec<usize> = (0..measured.len()).filter(|&i| measured[i].is_finite() && near(i)).collect();
+    let there = measured.iter().filter(|m| m.is_finite()).count();
+    if 2 * blank.len() > there {
+        return 0;
+    }
+    blank.iter().for_each(|&i| measured[i] = f64::NAN);
+    blank.len()
+}
+
+/// The scene has been checked: every table is an effect.
+fn known_effects(scene: &Scene) -> Vec<Effect<f64>> {
+    scene.file.effect.iter().filter_map(|t| t.effect().ok()).collect()
 }
 
 fn columns(set: &RecordingSet) -> Vec<&str> {

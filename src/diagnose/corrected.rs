@@ -2,7 +2,7 @@
 
 use toml::Table;
 
-use crate::scene::{Override, Scene, SceneError};
+use crate::scene::{Override, Scene, SceneError, SceneFile};
 
 use super::case::Case;
 use super::fit::Fit;
@@ -20,13 +20,26 @@ pub fn corrected_scene(case: &Case, fit: &Fit, title: &str) -> Result<String, Sc
     file.name = format!("{}_corrected", file.name);
     file.title = title.to_owned();
     file.expect.clear();
-    file.effect = fit.model.effects_at(&fit.x[case.parameters.len()..]).iter().map(|e| e.table()).collect();
+    let text = with_numbers(case, fit, file)?;
+    Scene::parse(&text, &case.scene.path, &[])?;
+    Ok(text)
+}
+
+/// The scene of a run, its conditions kept, with the numbers of a fit.
+///
+/// # Errors
+/// A fitted number that the scene's own checks refuse.
+pub fn corrected_run_scene(case: &Case, fit: &Fit, base: &Scene) -> Result<Scene, SceneError> {
+    Scene::parse(&with_numbers(case, fit, base.file.clone())?, &case.scene.path, &[])
+}
+
+fn with_numbers(case: &Case, fit: &Fit, mut file: SceneFile) -> Result<String, SceneError> {
+    let effects = fit.model.effects_at(&fit.x[case.parameters.len()..]);
+    file.effect.extend(effects.iter().map(|e| e.table()));
     let refuse = |message: String| SceneError::Syntax { file: case.scene.path.clone(), message };
     let mut table: Table = Table::try_from(&file).map_err(|e| refuse(e.to_string()))?;
     for (p, value) in case.parameters.iter().zip(&fit.x) {
         Override::number(&p.key, *value).apply(&mut table)?;
     }
-    let text = toml::to_string(&table).map_err(|e| refuse(e.to_string()))?;
-    Scene::parse(&text, &case.scene.path, &[])?;
-    Ok(text)
+    toml::to_string(&table).map_err(|e| refuse(e.to_string()))
 }

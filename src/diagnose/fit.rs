@@ -177,7 +177,7 @@ impl Problem<'_> {
     }
 
     /// Measured minus simulated, each channel with a free zero about its own.
-    fn subtract(&self, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub fn subtract(&self, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let channel = |(c, measured): (usize, &Vec<f64>)| -> Vec<f64> {
             let zero = self.zero(run, c, |i, m| m - simulated[c][i]);
             measured.iter().zip(&simulated[c]).map(|(m, s)| m - s - zero).collect()

@@ -12,6 +12,7 @@ mod corrected;
 mod descent;
 mod error;
 mod fit;
+mod full;
 mod locate;
 mod model;
 mod noise;
@@ -97,7 +98,9 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let (found, proof, confirmed) = confirm(found, proof, &mut warnings);
+    let (found, mut proof, confirmed) = confirm(found, proof, &mut warnings);
+    say("full scene".to_owned());
+    check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
@@ -169,6 +172,36 @@ fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (F
     (found, proof, Confirmed::Yes)
 }
 
+/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.
+fn check_on_full_scene(
+    sealed: &Problem,
+    found: &Found,
+    proof: &mut Proof,
+    seed: u64,
+    warnings: &mut Vec<String>,
+) -> Result<(), DiagnoseError> {
+    let case = sealed.case;
+    let corrected = full::play_full(case, &found.best, sealed.noise)?;
+    let agreement = full::agreement(case, &corrected);
+    if !agreement.agrees {
+        let residuals = |runs: &[full::FullRun]| -> Vec<Vec<Vec<f64>>> {
+            let played = runs.iter().filter(|r| r.is_sealed);
+            sealed.runs.iter().zip(played).map(|(run, full)| sealed.subtract(run, &full.values)).collect()
+        };
+        let baseline = full::play_full(case, &found.baseline, sealed.noise)?;
+        let renewed = prove::compare(sealed, &residuals(&baseline), &residuals(&corrected), seed);
+        *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
+        let differ: Vec<String> =
+            agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
+        warnings.push(format!(
+            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene",
+            differ.join(", ")
+        ));
+    }
+    proof.full_scene = agreement;
+    Ok(())
+}
+
 /// Searches, and again where what was found asks for other weights or other steps.
 fn search_and_weigh(
     case: &mut Case,
@@ -186,7 +219,9 @@ fn search_and_weigh(
         let renewed = noise::estimate(case, &residuals);
         let weights_hold = renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old));
         noise = renewed;
-        case.plan_steps(&found.best.model.setting(case, &found.best.x), &noise)?;
+        let setting = found.best.model.setting(case, &found.best.x);
+        case.plan_steps(&setting, &noise)?;
+        case.leave_out_unheld(&setting)?;
         let problem = open_runs(case, &noise);
         let start = problem.fit(&found.best.model, &found.best.x)?;
         if weights_hold && (start.cost - found.best.cost).abs() < SAME_COST * search::least_gain(problem.samples()) {

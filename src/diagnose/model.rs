@@ -108,7 +108,9 @@ impl Model {
     /// What the fast model is given; `x` holds the calibration, then the fitted numbers of the effects.
     pub(super) fn setting(&self, case: &Case, x: &[f64]) -> TwinSetting<f64> {
         let parameters = case.parameters.iter().zip(x).map(|(p, &v)| (p.parameter.clone(), v)).collect();
-        TwinSetting { parameters, effects: self.effects_at(&x[case.parameters.len()..]) }
+        let mut effects = case.known_effects.clone();
+        effects.extend(self.effects_at(&x[case.parameters.len()..]));
+        TwinSetting { parameters, effects }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::answer::{ChannelProof, Proof};
+use super::answer::{ChannelProof, FullScene, Proof};
 use super::case::Case;
 use super::fit::Fit;
 use super::fit::Problem;
@@ -24,7 +24,12 @@ struct Block {
 pub(super) fn prove(problem: &Problem, baseline: &Fit, corrected: &Fit, seed: u64) -> Option<Proof> {
     let before = problem.residuals(&baseline.model, &baseline.x)?;
     let after = problem.residuals(&corrected.model, &corrected.x)?;
-    let blocks = blocks(problem, &before, &after);
+    Some(compare(problem, &before, &after, seed))
+}
+
+/// Compares two sets of residuals of the sealed runs.
+pub(super) fn compare(problem: &Problem, before: &[Vec<Vec<f64>>], after: &[Vec<Vec<f64>>], seed: u64) -> Proof {
+    let blocks = blocks(problem, before, after);
     let gap = |blocks: &[Block]| {
         let sum = |f: fn(&Block) -> f64| blocks.iter().map(f).sum::<f64>();
         let (b, c, n) = (sum(|x| x.baseline), sum(|x| x.corrected), sum(|x| x.samples));
@@ -39,13 +44,14 @@ pub(super) fn prove(problem: &Problem, baseline: &Fit, corrected: &Fit, seed: u6
         .collect();
     drawn.sort_by(f64::total_cmp);
     let quantile = |q: f64| drawn.get(((drawn.len() - 1) as f64 * q) as usize).copied().unwrap_or(0.0);
-    Some(Proof {
+    Proof {
         holdout: problem.runs.iter().map(|r| r.file.clone()).collect(),
-        channels: channels(problem.case, &before, &after, problem.noise),
+        channels: channels(problem.case, before, after, problem.noise),
         gap_closed: gap(&blocks),
         gain_ci95: [quantile(0.025), quantile(0.975)],
         placebo_gap_closed: Vec::new(),
-    })
+        full_scene: FullScene::default(),
+    }
 }
 
 fn blocks(problem: &Problem, before: &[Vec<Vec<f64>>], after: &[Vec<Vec<f64>>]) -> Vec<Block> {

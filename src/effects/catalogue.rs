@@ -88,7 +88,7 @@ pub const CATALOGUE: &[EffectSpec] = &[
         law: "F = E (e - e_i), tau de_i/dt = e - e_i",
         source: "generalised Maxwell solid",
         parameters: &[
-            fitted("stiffness_n_m", "E", 0.0, 1e3, 6.0),
+            fitted("stiffness_n_m", "E", 0.0, 1e4, 6.0),
             fitted("relaxation_time_s", "tau", 0.05, 500.0, 4.0),
         ],
     },

@@ -22,6 +22,7 @@ mod plant;
 mod rosenbrock;
 mod run;
 mod simulation;
+mod switching;
 mod twin;
 
 pub use axis::AxisNumber;

@@ -8,8 +8,9 @@ use crate::scene::Scene;
 use super::build::{Built, Displacement, build};
 use super::contact::foreseen;
 use super::energy::EnergyBook;
-use super::plant::InputSpan;
+use super::plant::{InputSpan, Plant, PlantState};
 use super::rosenbrock::Stepper;
+use super::switching::Watch;
 use super::{InputSource, SystemError};
 
 /// A scene that runs.
@@ -176,29 +177,24 @@ impl Simulation {
         self.positions.copy_from_slice(&self.built.state.y[..joints]);
         let substeps = self.scene.file.simulation.substeps;
         let fine = h / substeps as f64;
+        let mut pulling = None;
         for i in 0..substeps {
             let start = self.time_s + fine * i as f64;
             self.renew_spans(start, fine);
-            self.fine_step(fine);
-            self.spans.iter_mut().for_each(|span| span.value += fine * span.slope);
+            self.fine_step(fine, &mut pulling);
         }
         self.spans.iter_mut().zip(&self.inputs).for_each(|(span, input)| span.value = input.value(end_s));
         self.carry_engine(h);
         self.time_s = end_s;
     }
 
-    fn fine_step(&mut self, h: f64) {
+    /// `pulling`: what pulls at the beginning, if that is known.
+    fn fine_step(&mut self, h: f64, pulling: &mut Option<u64>) {
         let Built { plant, state, .. } = &mut self.built;
-        if let Some(book) = &mut self.energy {
-            book.before(plant, state, &self.spans);
-        }
-        self.stepper.step(plant, state, &self.spans, h);
-        if let Some(contact) = &plant.coordinates.contact {
-            self.contact_impulse += h * contact.push(&state.y, &state.w);
-        }
-        if let Some(book) = &mut self.energy {
-            book.after(plant, state, &self.spans, h);
-        }
+        let mut now = pulling.unwrap_or_else(|| plant.pulling(state, &self.spans, 0.0));
+        let mut books = Books { energy: self.energy.as_mut(), contact_impulse: &mut self.contact_impulse };
+        self.stepper.advance(plant, state, &mut self.spans, h, &mut now, &mut books);
+        *pulling = Some(now);
     }
 
     /// Takes inertia, weights and cable levers from the mechanism's present pose.
@@ -295,6 +291,29 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+}
+
+/// What is summed up over the fine steps.
+struct Books<'a> {
+    energy: Option<&'a mut EnergyBook>,
+    contact_impulse: &'a mut f64,
+}
+
+impl Watch<f64> for Books<'_> {
+    fn begin(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
+        if let Some(book) = &mut self.energy {
+            book.before(plant, state, inputs);
+        }
+    }
+
+    fn end(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
+        if let Some(contact) = &plant.coordinates.contact {
+            *self.contact_impulse += h * contact.push(&state.y, &state.w);
+        }
+        if let Some(book) = &mut self.energy {
+            book.after(plant, state, inputs, h);
+        }
     }
 }
 

@@ -5,10 +5,12 @@
 //! differ only by what the engine adds: pose-dependent inertia and contacts. Generic over [`Scalar`], so that
 //! sensitivities to calibrated parameters and effects are exact.
 
+mod course;
 mod lump;
 mod output;
 mod parameter;
 mod plan;
+mod unheld;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,8 +22,9 @@ use crate::scene::Scene;
 use super::build::build;
 use super::install::{Site, install, settle_memory};
 use super::plant::{Drive, InputSpan, Plant, PlantState, dot};
-use super::{Stepper, SystemError};
+use super::SystemError;
 
+use course::Course;
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::TwinParameter;
@@ -74,8 +77,6 @@ const STEP_ANGLE: f64 = 2.7;
 /// Steps are this much shorter over the first moments, where what was let go at once still rings.
 const RINGING_S: f64 = 0.5;
 const RINGING_STEPS: f64 = 4.0;
-/// A step in which a cable goes taut or slack is done again in so many.
-const SWITCH_STEPS: usize = 16;
 
 /// Angular frequency of the fastest swing of taut cables on their inertias, rad/s.
 fn fastest_rad_s(plant: &Plant<f64>) -> f64 {
@@ -145,62 +146,36 @@ impl Twin {
         if let Some(axis) = &self.axis {
             return Some(output::axis_series(axis, &self.outputs, run, setting));
         }
-        let (plant, mut state) = self.prepare(setting);
-        let mut stepper = Stepper::new(&plant, &state);
         let mut sensors = Sensors::new(&self.outputs, &setting.effects);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
-        let mut spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
-        for (k, &time) in run.times_s.iter().enumerate() {
-            if k > 0 {
-                let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
-                self.advance(&plant, &mut state, &mut stepper, &mut spans, run, k, steps);
-                if !state.y.iter().all(|y| y.value().is_finite()) {
-                    return None;
-                }
-            }
+        self.watch(run, setting, |k, plant, state, spans| {
             for (output, series) in self.outputs.iter().zip(&mut series) {
-                series.push(sensors.show(output, time, output.read(&plant, &state, &spans)));
+                series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans)));
             }
-        }
+        })?;
         Some(series)
     }
 
-    /// Over the interval that ends at the run's sample `k`.
-    #[allow(clippy::too_many_arguments)]
-    fn advance<D: Scalar>(
+    /// Simulates and shows plant, state and inputs at every sample. `None` when it diverges.
+    fn watch<D: Scalar>(
         &self,
-        plant: &Plant<D>,
-        state: &mut PlantState<D>,
-        stepper: &mut Stepper<D>,
-        spans: &mut [InputSpan],
         run: &TwinRun,
-        k: usize,
-        steps: u16,
-    ) {
-        let (from, to) = (run.times_s[k - 1], run.times_s[k]);
-        let h = (to - from) / f64::from(steps);
-        for (span, values) in spans.iter_mut().zip(&run.inputs) {
-            *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
-        }
-        stepper.plant_changed();
-        let mut pulling = plant.pulling(state, spans, 0.0);
-        for _ in 0..steps {
-            stepper.save(state);
-            if stepper.step(plant, state, spans, h) && plant.pulling(state, spans, h) == pulling {
-                spans.iter_mut().for_each(|s| s.value += h * s.slope);
-                continue;
+        setting: &TwinSetting<D>,
+        mut show: impl FnMut(usize, &Plant<D>, &PlantState<D>, &[InputSpan]),
+    ) -> Option<()> {
+        let (plant, state) = self.prepare(setting);
+        let mut course = Course::new(&plant, state, run);
+        for k in 0..run.times_s.len() {
+            if k > 0 {
+                let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
+                course.advance(&plant, run, k, steps);
+                if !course.is_finite() {
+                    return None;
+                }
             }
-            stepper.restore(state);
-            let fine = h / SWITCH_STEPS as f64;
-            for _ in 0..SWITCH_STEPS {
-                stepper.step(plant, state, spans, fine);
-                spans.iter_mut().for_each(|s| s.value += fine * s.slope);
-            }
-            pulling = plant.pulling(state, spans, 0.0);
+            show(k, &plant, &course.state, &course.spans);
         }
-        for (span, values) in spans.iter_mut().zip(&run.inputs) {
-            span.value = values[k];
-        }
+        Some(())
     }
 
     /// The plant with its parameters and effects, at its start.

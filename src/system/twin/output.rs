@@ -51,6 +51,16 @@ impl TwinOutput {
     }
 }
 
+impl TwinOutput {
+    /// The coordinates that it shows, with the share of each; none for anything but joints.
+    pub fn joints(&self) -> &[(usize, f64)] {
+        match &self.reader {
+            Reader::Joints(parts) => parts,
+            _ => &[],
+        }
+    }
+}
+
 /// Finds what an output of the scene reads.
 pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Result<TwinOutput, SystemError> {
     let of = spec.of.first().map_or("", String::as_str);

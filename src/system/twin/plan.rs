@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use super::course::Course;
 use super::{Twin, TwinRun, TwinSetting};
-use crate::system::Stepper;
-use crate::system::plant::InputSpan;
 
 /// Steps in each interval of a [`TwinRun`]; the first entry is that of the first interval.
 pub type StepPlan = Arc<[u16]>;
@@ -33,11 +32,10 @@ impl Twin {
         if self.axis.is_some() {
             return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
         }
-        let (plant, mut state) = self.prepare(setting);
-        let mut stepper = Stepper::new(&plant, &state);
-        let mut spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
-        let shown = |state: &_, spans: &[InputSpan]| -> Vec<f64> {
-            self.outputs.iter().map(|o| o.read(&plant, state, spans)).collect()
+        let (plant, state) = self.prepare(setting);
+        let mut course = Course::new(&plant, state, run);
+        let shown = |course: &Course<f64>| -> Vec<f64> {
+            self.outputs.iter().map(|o| o.read(&plant, &course.state, &course.spans)).collect()
         };
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
@@ -47,24 +45,24 @@ impl Twin {
         for k in 1..run.times_s.len() {
             // What was enough before may be more than enough now.
             steps = (steps / 2).max(fewest_steps(run, k, longest_s, &greatest, &mut corner_s));
-            let (mut coarse, mut coarse_spans) = (state.clone(), spans.clone());
-            self.advance(&plant, &mut coarse, &mut stepper, &mut coarse_spans, run, k, steps);
+            let mut coarse = course.clone();
+            coarse.advance(&plant, run, k, steps);
             loop {
-                let (mut fine, mut fine_spans) = (state.clone(), spans.clone());
-                self.advance(&plant, &mut fine, &mut stepper, &mut fine_spans, run, k, 2 * steps);
-                if !fine.y.iter().all(|y| y.is_finite()) {
+                let mut fine = course.clone();
+                fine.advance(&plant, run, k, 2 * steps);
+                if !fine.is_finite() {
                     return None;
                 }
-                let pairs = shown(&coarse, &coarse_spans).into_iter().zip(shown(&fine, &fine_spans));
+                let pairs = shown(&coarse).into_iter().zip(shown(&fine));
                 let is_enough = pairs.zip(tolerance).all(|((a, b), t)| t.is_none_or(|t| (a - b).abs() <= t));
                 if is_enough || steps >= MOST {
                     break;
                 }
-                (coarse, coarse_spans) = (fine, fine_spans);
+                coarse = fine;
                 steps *= 2;
             }
             plan.push(steps);
-            (state, spans) = (coarse, coarse_spans);
+            course = coarse;
         }
         Some(Arc::from(plan))
     }

@@ -1,0 +1,37 @@
+//! Conceals an effect in a scene, records it, and lets the diagnosis look for it.
+//!
+//! ```text
+//! cargo run --release --example find_a_leak -- [SCENE] [NAME ELEMENT KEY VALUE] [--keep DIR]
+//! ```
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use smam::diagnose::{Case, Options, diagnose};
+use smam::effects::EffectTable;
+use smam::trial::make_specimen;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let keep = words.iter().position(|w| w == "--keep").map(|i| words.drain(i..).nth(1).unwrap_or_default());
+    let scene = words.first().map_or("muscle_bench", String::as_str);
+    let effect = match &words.get(1..) {
+        Some([name, element, key, value]) => (name.as_str(), element.as_str(), key.as_str(), value.parse()?),
+        _ => ("leak", "line", "conductance_m3_s_pa", 2e-16),
+    };
+    let (name, element, key, value) = effect;
+    let table = EffectTable {
+        name: name.to_owned(),
+        element: element.to_owned(),
+        channel: None,
+        parameters: [(key.to_owned(), value)].into_iter().collect(),
+    };
+    // A size of zero conceals nothing.
+    let concealed = if value == 0.0 { None } else { Some(table.effect()?) };
+    let folder = keep.map_or_else(|| std::env::temp_dir().join("smam_find_a_leak"), PathBuf::from);
+    std::fs::create_dir_all(&folder)?;
+    make_specimen(scene, concealed.as_ref(), 1.0, 7, &folder)?;
+    let outcome = diagnose(Case::load(&[&folder], None, &[])?, Options { seed: 1 }, &|line| eprintln!("{line}"))?;
+    println!("{}", serde_json::to_string_pretty(&outcome.diagnosis)?);
+    Ok(())
+}

@@ -1,0 +1,44 @@
+//! A run of the fast model under way.
+
+use super::TwinRun;
+use crate::scalar::Scalar;
+use crate::system::Stepper;
+use crate::system::plant::{InputSpan, Plant, PlantState};
+
+/// State and inputs at one instant, and the integrator that carries them on.
+#[derive(Clone, Debug)]
+pub(super) struct Course<D> {
+    pub state: PlantState<D>,
+    pub spans: Vec<InputSpan>,
+    stepper: Stepper<D>,
+}
+
+impl<D: Scalar> Course<D> {
+    /// At a run's first sample.
+    pub fn new(plant: &Plant<D>, state: PlantState<D>, run: &TwinRun) -> Self {
+        let spans = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        Self { stepper: Stepper::new(plant, &state), state, spans }
+    }
+
+    /// Over the interval that ends at the run's sample `k`, in so many steps.
+    pub fn advance(&mut self, plant: &Plant<D>, run: &TwinRun, k: usize, steps: u16) {
+        let (from, to) = (run.times_s[k - 1], run.times_s[k]);
+        let h = (to - from) / f64::from(steps);
+        for (span, values) in self.spans.iter_mut().zip(&run.inputs) {
+            *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
+        }
+        self.stepper.plant_changed();
+        let mut pulling = plant.pulling(&self.state, &self.spans, 0.0);
+        for _ in 0..steps {
+            self.stepper.advance(plant, &mut self.state, &mut self.spans, h, &mut pulling, &mut ());
+        }
+        for (span, values) in self.spans.iter_mut().zip(&run.inputs) {
+            span.value = values[k];
+        }
+    }
+
+    /// Whether it has not diverged.
+    pub fn is_finite(&self) -> bool {
+        self.state.y.iter().all(|y| y.value().is_finite())
+    }
+}
