@@ -62,6 +62,9 @@ fn write_outcome(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
         .map_err(|e| CliError::Failed(format!("the answer cannot be written as JSON: {e}")))?;
     write(&out.join("diagnosis.json"), &format!("{json}\n"))?;
     write(&out.join("report.html"), &diagnosis_page(outcome))?;
+    if let Some(inputs) = &outcome.next_inputs {
+        inputs.write_csv(&out.join("next_experiment.csv"))?;
+    }
     if let Some(scene) = outcome.scene_text() {
         write(&out.join("scene.toml"), &scene?)?;
     }
@@ -93,5 +96,6 @@ fn print_diagnosis(d: &Diagnosis) {
     for (channel, difference) in &d.fit.full_scene.rms_difference_over_noise {
         println!("  fast model against the full scene: {channel} {difference:.3} of the noise");
     }
+    println!("  next: {}", d.next_experiment.why);
     d.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
 }

@@ -71,6 +71,9 @@ pub struct NamedEffect {
     pub probability: f64,
     pub rivals: Vec<String>,
     pub parameters: BTreeMap<String, Estimate>,
+    /// Its first number as each run by itself would have it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub size_by_run: BTreeMap<String, Estimate>,
     pub law: String,
     pub hypothetical: bool,
 }
@@ -125,8 +128,8 @@ pub struct NextExperiment {
 }
 
 impl NextExperiment {
-    /// None is proposed by this version, and the answer says so.
-    pub fn none() -> Self {
-        Self { why: "this version proposes no experiment".to_owned(), ..Self::default() }
+    /// None, and why.
+    pub fn none(why: &str) -> Self {
+        Self { why: why.to_owned(), ..Self::default() }
     }
 }

@@ -1,14 +1,75 @@
 //! Step 3: where the baseline's misfit sits in time and state.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
+use super::answer::{Location, NamedEffect, Verdict};
 use super::case::{Case, CaseRun};
+use super::fit::Problem;
 use super::noise::Noise;
+use super::search::Found;
 
 /// Length of the pieces that time is cut into, s.
 const PIECE_S: f64 = 1.0;
 /// A piece counts when its mean square stands this many standard errors above that of noise.
 const SIGMA: f64 = 6.0;
+
+/// Element, time and state in which the baseline's misfit sits.
+pub fn location(
+    case: &Case,
+    found: &Found,
+    effects: &[NamedEffect],
+    whole: &Problem,
+    before: &[Vec<Vec<f64>>],
+    verdict: Verdict,
+) -> Location {
+    if verdict == Verdict::Adequate {
+        return Location::default();
+    }
+    let mut shares: BTreeMap<String, f64> = BTreeMap::new();
+    for e in effects {
+        *shares.entry(e.element.clone()).or_default() += e.probability;
+    }
+    if shares.is_empty() {
+        // Nothing of the catalogue: where the signatures promise most.
+        for s in &found.screened {
+            let share = shares.entry(s.variant.placed.element.to_string()).or_default();
+            *share = share.max(s.gain);
+        }
+    }
+    let sum: f64 = shares.values().sum();
+    let mut ranked: Vec<(String, f64)> = shares.into_iter().map(|(e, s)| (e, s / sum.max(f64::MIN_POSITIVE))).collect();
+    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    Location {
+        element: ranked.first().map(|(e, _)| e.clone()),
+        ranked,
+        time_windows_s: time_windows(&whole.runs, before, whole.noise),
+        state_region: state_region(case, &whole.runs, before, whole.noise),
+        indistinguishable: indistinguishable(found),
+    }
+}
+
+/// Signatures more alike than this are not told apart.
+const ALIKE: f64 = 0.9;
+
+/// For each effect found: its element with those in which another effect would look the same here.
+fn indistinguishable(found: &Found) -> Vec<Vec<String>> {
+    let mut sets = Vec::new();
+    for placed in &found.best.model.effects {
+        let own: Vec<_> = found.screened.iter().filter(|s| s.variant.placed == *placed).collect();
+        let mut set = vec![placed.element.to_string()];
+        for other in &found.screened {
+            let element = other.variant.placed.element.to_string();
+            if !set.contains(&element) && own.iter().any(|s| s.likeness(other) > ALIKE) {
+                set.push(element);
+            }
+        }
+        if set.len() > 1 && !sets.contains(&set) {
+            sets.push(set);
+        }
+    }
+    sets
+}
 
 /// Stretches (file, from, to) in which the residual is more than noise.
 pub fn time_windows(

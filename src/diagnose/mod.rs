@@ -8,9 +8,11 @@ mod answer;
 mod baseline;
 mod candidates;
 mod case;
+mod confirm;
 mod corrected;
 mod descent;
 mod error;
+mod experiment;
 mod fit;
 mod full;
 mod locate;
@@ -18,10 +20,14 @@ mod model;
 mod noise;
 mod normal;
 mod preflight;
+pub mod programme;
 mod prove;
 mod search;
+mod steady;
+mod summary;
 mod thin;
 mod verdict;
+mod weigh;
 
 use std::collections::BTreeMap;
 
@@ -33,12 +39,12 @@ pub use model::{Model, Placed};
 pub use noise::Noise;
 pub use search::title;
 
-use baseline::Baseline;
-use candidates::Variant;
+use confirm::Confirmed;
 use fit::Problem;
 use search::{Found, Screened};
 
 use crate::effects::Effect;
+use crate::recording::Recording;
 use verdict::Excess;
 
 /// What a diagnosis is asked.
@@ -64,6 +70,8 @@ pub struct Outcome {
     pub rivals: Vec<(String, f64)>,
     /// Every effect at the size from which these recordings would show it.
     pub just_visible: Vec<Effect<f64>>,
+    /// The programme to play next: time and inputs, in the columns' units.
+    pub next_inputs: Option<Recording>,
 }
 
 impl Outcome {
@@ -93,14 +101,15 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
     let base = baseline::baseline(&mut case)?;
     let variants = candidates::variants(&case);
-    let (found, noise) = search_and_weigh(&mut case, &base, &variants, say).ok_or_else(diverges)?;
+    let (found, noise) = weigh::search_and_weigh(&mut case, &base, &variants, say).ok_or_else(diverges)?;
     let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let (found, mut proof, confirmed) = confirm(found, proof, &mut warnings);
+    let (found, mut proof, confirmed) = confirm::confirm(found, proof, &mut warnings);
     say("full scene".to_owned());
-    check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
+    proof.placebo_gap_closed = confirm::placebos(&sealed, &found, options.seed);
+    confirm::check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
@@ -108,12 +117,17 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let (baseline_excess, error) = noise::structured_excess(&before, &noise);
     let (best_excess, _) = noise::structured_excess(&after, &noise);
     let excess = Excess { baseline: baseline_excess, best: best_excess, error };
-    let effects = verdict::named(&found, &complete);
+    let mut effects = verdict::named(&found, &complete);
+    let sizes = steady::sizes_by_run(&case, &complete, &noise);
+    steady::report(sizes, &complete, &mut effects, &mut warnings);
     let verdict = match confirmed {
         Confirmed::Yes => verdict::verdict(&found, &effects, excess),
         Confirmed::InPart => Verdict::UnknownPhysics,
     };
-    let location = location(&case, &found, &effects, &whole, &before, verdict);
+    let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
+    say("next experiment".to_owned());
+    let nearest = found.rivals.iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let experiment = experiment::propose(&case, &noise, &found.best, nearest, verdict == Verdict::Ambiguous)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let rivals = found.rivals.iter().flatten().map(|f| (title(&f.model), f.cost)).collect();
     let mut diagnosis = Diagnosis {
@@ -127,10 +141,10 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         effects,
         calibration: calibration(&case, &complete),
         fit: proof,
-        next_experiment: NextExperiment::none(),
+        next_experiment: experiment.next,
         warnings,
     };
-    diagnosis.summary = summary(&diagnosis);
+    diagnosis.summary = summary::summary(&diagnosis);
     Ok(Outcome {
         diagnosis,
         baseline: Some(found.baseline),
@@ -140,104 +154,9 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         noise,
         rivals,
         just_visible,
+        next_inputs: experiment.inputs,
         case,
     })
-}
-
-/// What the sealed runs say to what the open ones have found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Confirmed {
-    /// It holds, or there is nothing to hold.
-    Yes,
-    /// It explains the open runs for the most part, and not the sealed ones: not the whole truth.
-    InPart,
-}
-
-/// Takes back what does not hold on the sealed runs; what explains most of the open ones is kept as the nearest known.
-fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (Found, Proof, Confirmed) {
-    let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
-    if found.best.model.effects.is_empty() || !gains_nothing {
-        return (found, proof, Confirmed::Yes);
-    }
-    let title = title(&found.best.model);
-    if found.baseline.cost - found.best.cost > 0.5 * found.baseline.cost {
-        warnings.push(format!("{title} explains the open runs for the most part, but not the sealed ones"));
-        return (found, proof, Confirmed::InPart);
-    }
-    warnings.push(format!("{title} fitted the open runs but not the sealed ones, and was dropped"));
-    found.best = found.baseline.clone();
-    found.rivals.clear();
-    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
-    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
-    (found, proof, Confirmed::Yes)
-}
-
-/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.
-fn check_on_full_scene(
-    sealed: &Problem,
-    found: &Found,
-    proof: &mut Proof,
-    seed: u64,
-    warnings: &mut Vec<String>,
-) -> Result<(), DiagnoseError> {
-    let case = sealed.case;
-    let corrected = full::play_full(case, &found.best, sealed.noise)?;
-    let agreement = full::agreement(case, &corrected);
-    if !agreement.agrees {
-        let residuals = |runs: &[full::FullRun]| -> Vec<Vec<Vec<f64>>> {
-            let played = runs.iter().filter(|r| r.is_sealed);
-            sealed.runs.iter().zip(played).map(|(run, full)| sealed.subtract(run, &full.values)).collect()
-        };
-        let baseline = full::play_full(case, &found.baseline, sealed.noise)?;
-        let renewed = prove::compare(sealed, &residuals(&baseline), &residuals(&corrected), seed);
-        *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
-        let differ: Vec<String> =
-            agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
-        warnings.push(format!(
-            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene",
-            differ.join(", ")
-        ));
-    }
-    proof.full_scene = agreement;
-    Ok(())
-}
-
-/// Searches, and again where what was found asks for other weights or other steps.
-fn search_and_weigh(
-    case: &mut Case,
-    base: &Baseline,
-    variants: &[Variant],
-    say: &dyn Fn(String),
-) -> Option<(Found, Vec<Noise>)> {
-    let mut noise = base.noise.clone();
-    let mut found = search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, say);
-    for _ in 0..2 {
-        if found.best.model.effects.is_empty() {
-            break;
-        }
-        let residuals = open_runs(case, &noise).residuals(&found.best.model, &found.best.x)?;
-        let renewed = noise::estimate(case, &residuals);
-        let weights_hold = renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old));
-        noise = renewed;
-        let setting = found.best.model.setting(case, &found.best.x);
-        case.plan_steps(&setting, &noise)?;
-        case.leave_out_unheld(&setting)?;
-        let problem = open_runs(case, &noise);
-        let start = problem.fit(&found.best.model, &found.best.x)?;
-        if weights_hold && (start.cost - found.best.cost).abs() < SAME_COST * search::least_gain(problem.samples()) {
-            break;
-        }
-        let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
-        found = search::search(&problem, baseline, start, variants, say);
-    }
-    Some((found, noise))
-}
-
-/// Steps hold when new ones change chi² by less than this share of the least gain.
-const SAME_COST: f64 = 0.3;
-
-fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
-    Problem { case, runs: case.subset(Sealed::Open), noise }
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
@@ -252,7 +171,9 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         effects: Vec::new(),
         calibration: BTreeMap::new(),
         fit: Proof::default(),
-        next_experiment: NextExperiment::none(),
+        next_experiment: NextExperiment::none(
+            "the recordings say nothing yet: see the warnings for what to record instead",
+        ),
         warnings: [preflight.unusable, preflight.warnings, case.notes.clone()].concat(),
     };
     Outcome {
@@ -265,6 +186,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         noise: Vec::new(),
         rivals: Vec::new(),
         just_visible: Vec::new(),
+        next_inputs: None,
     }
 }
 
@@ -296,73 +218,4 @@ fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> {
         Estimate { value, ci95: [value - half, value + half] }
     };
     case.parameters.iter().enumerate().map(|(i, p)| (p.key.clone(), estimate(i))).collect()
-}
-
-fn location(
-    case: &Case,
-    found: &Found,
-    effects: &[NamedEffect],
-    whole: &Problem,
-    before: &[Vec<Vec<f64>>],
-    verdict: Verdict,
-) -> Location {
-    if verdict == Verdict::Adequate {
-        return Location::default();
-    }
-    let mut shares: BTreeMap<String, f64> = BTreeMap::new();
-    for e in effects {
-        *shares.entry(e.element.clone()).or_default() += e.probability;
-    }
-    if shares.is_empty() {
-        // Nothing of the catalogue: where the signatures promise most.
-        for s in &found.screened {
-            let share = shares.entry(s.variant.placed.element.to_string()).or_default();
-            *share = share.max(s.gain);
-        }
-    }
-    let sum: f64 = shares.values().sum();
-    let mut ranked: Vec<(String, f64)> = shares.into_iter().map(|(e, s)| (e, s / sum.max(f64::MIN_POSITIVE))).collect();
-    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-    Location {
-        element: ranked.first().map(|(e, _)| e.clone()),
-        ranked,
-        time_windows_s: locate::time_windows(&whole.runs, before, whole.noise),
-        state_region: locate::state_region(case, &whole.runs, before, whole.noise),
-        indistinguishable: Vec::new(),
-    }
-}
-
-/// The verdict in two sentences.
-fn summary(d: &Diagnosis) -> String {
-    let effects: Vec<String> = d
-        .effects
-        .iter()
-        .map(|e| match &e.channel {
-            Some(channel) => format!("{} on {channel}", e.name),
-            None => format!("{} in {}", e.name, e.element),
-        })
-        .collect();
-    let closed = format!(
-        "On the sealed runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
-        100.0 * d.fit.gap_closed
-    );
-    match d.verdict {
-        Verdict::Adequate => format!(
-            "The calibrated scene explains the recordings down to their noise: nothing is missing that they could show. \
-             What is left is {:.4} of the noise's variance.",
-            d.detection.excess_chi2_per_sample.max(0.0)
-        ),
-        Verdict::MissingPhysics => format!("The scene lacks {}. {closed}", effects.join(" and ")),
-        Verdict::Ambiguous => format!("The scene lacks one of these: {}. {closed}", effects.join(", ")),
-        Verdict::UnknownPhysics => format!(
-            "Something is missing that is not in the catalogue{}. {}",
-            d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
-            if effects.is_empty() {
-                "No known effect explains any of it.".to_owned()
-            } else {
-                format!("The nearest known effect, {}, leaves a part of it. {closed}", effects.join(" with "))
-            }
-        ),
-        Verdict::UnusableData => d.summary.clone(),
-    }
 }

@@ -1,5 +1,7 @@
 //! Which effects explain the recordings: screening by signature, joint refits, additions, swaps, deletions.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -40,6 +42,8 @@ pub struct Screened {
     pub size: f64,
     /// Size that would gain [`least_gain`]: what could just be seen.
     pub least_size: f64,
+    /// The signature without what the calibration can imitate, of unit length.
+    direction: Arc<DVector<f64>>,
 }
 
 impl Screened {
@@ -49,6 +53,13 @@ impl Screened {
         let p = &self.variant.placed.spec().parameters[0];
         values[0] = if p.range.max > 0.0 { self.least_size } else { -self.least_size };
         (self.least_size < p.range.max.abs().max(p.range.min.abs())).then(|| self.variant.placed.with(&values))
+    }
+}
+
+impl Screened {
+    /// Cosine of the angle between two signatures: 1 where no recording of this kind tells the effects apart.
+    pub fn likeness(&self, other: &Self) -> f64 {
+        if self.direction.len() == other.direction.len() { self.direction.dot(&other.direction).abs() } else { 0.0 }
     }
 }
 
@@ -91,6 +102,7 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
                 gain: if feasible { amplitude * amplitude } else { 0.0 },
                 size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
                 least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
+                direction: Arc::new(signature / length.max(f64::MIN_POSITIVE)),
                 variant: variant.clone(),
             }
         })

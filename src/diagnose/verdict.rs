@@ -66,6 +66,7 @@ pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
                 probability: *probability,
                 rivals: rivals(rival),
                 parameters: parameters(source, at),
+                size_by_run: BTreeMap::new(),
                 law: rival.spec().law.to_owned(),
                 hypothetical: false,
             });

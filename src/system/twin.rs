@@ -19,10 +19,10 @@ use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 
+use super::SystemError;
 use super::build::build;
 use super::install::{Site, install, settle_memory};
 use super::plant::{Drive, InputSpan, Plant, PlantState, dot};
-use super::SystemError;
 
 use course::Course;
 pub(super) use output::sensor;

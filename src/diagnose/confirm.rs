@@ -1,0 +1,78 @@
+//! Step 7, the consequences: what does not hold on sealed runs is taken back, and the full scene has the last word.
+
+use super::DiagnoseError;
+use super::answer::Proof;
+use super::fit::{Fit, Problem};
+use super::full::{FullRun, agreement, play_full};
+use super::prove;
+use super::search::{Found, title};
+
+/// What the sealed runs say to what the open ones have found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Confirmed {
+    /// It holds, or there is nothing to hold.
+    Yes,
+    /// It explains the open runs for the most part, and not the sealed ones: not the whole truth.
+    InPart,
+}
+
+/// Takes back what does not hold on the sealed runs; what explains most of the open ones is kept as the nearest known.
+pub fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (Found, Proof, Confirmed) {
+    let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
+    if found.best.model.effects.is_empty() || !gains_nothing {
+        return (found, proof, Confirmed::Yes);
+    }
+    let title = title(&found.best.model);
+    if found.baseline.cost - found.best.cost > 0.5 * found.baseline.cost {
+        warnings.push(format!("{title} explains the open runs for the most part, but not the sealed ones"));
+        return (found, proof, Confirmed::InPart);
+    }
+    warnings.push(format!("{title} fitted the open runs but not the sealed ones, and was dropped"));
+    found.best = found.baseline.clone();
+    found.rivals.clear();
+    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
+    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
+    (found, proof, Confirmed::Yes)
+}
+
+/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.
+pub fn check_on_full_scene(
+    sealed: &Problem,
+    found: &Found,
+    proof: &mut Proof,
+    seed: u64,
+    warnings: &mut Vec<String>,
+) -> Result<(), DiagnoseError> {
+    let case = sealed.case;
+    let corrected = play_full(case, &found.best, sealed.noise)?;
+    let agreement = agreement(case, &corrected);
+    if !agreement.agrees {
+        let residuals = |runs: &[FullRun]| -> Vec<Vec<Vec<f64>>> {
+            let played = runs.iter().filter(|r| r.is_sealed);
+            sealed.runs.iter().zip(played).map(|(run, full)| sealed.subtract(run, &full.values)).collect()
+        };
+        let baseline = play_full(case, &found.baseline, sealed.noise)?;
+        let renewed = prove::compare(sealed, &residuals(&baseline), &residuals(&corrected), seed);
+        *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
+        let differ: Vec<String> =
+            agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
+        warnings.push(format!(
+            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene",
+            differ.join(", ")
+        ));
+    }
+    proof.full_scene = agreement;
+    Ok(())
+}
+
+/// Wrong effects that are put through the same door, at most.
+const PLACEBOS: usize = 5;
+
+/// What the rivals that lost would have gained on the sealed runs.
+pub fn placebos(sealed: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
+    let gained = |rival: &Fit| -> Option<(String, f64)> {
+        let proof = prove::prove(sealed, &found.baseline, rival, seed)?;
+        Some((title(&rival.model), proof.gap_closed))
+    };
+    found.rivals.iter().flatten().take(PLACEBOS).filter_map(gained).collect()
+}
