@@ -1,6 +1,7 @@
 //! The recordings of one rig beside the fast model of their scene.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -49,6 +50,42 @@ impl CaseRun {
     /// Recorded times, s.
     pub fn times_s(&self) -> &[f64] {
         &self.drive.times_s[self.lead_in..]
+    }
+}
+
+impl CaseRun {
+    /// How the first input moves at a recorded sample.
+    pub fn direction(&self, sample: usize) -> Direction {
+        let Some(input) = self.drive.inputs.first() else { return Direction::Resting };
+        let at = self.lead_in + sample;
+        let before = input[at.saturating_sub(1)];
+        let after = input[(at + 1).min(input.len() - 1)];
+        match after.total_cmp(&before) {
+            Ordering::Less => Direction::Falling,
+            Ordering::Equal => Direction::Resting,
+            Ordering::Greater => Direction::Rising,
+        }
+    }
+}
+
+/// How an input moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    Falling,
+    Rising,
+    Resting,
+}
+
+impl Direction {
+    pub const ALL: [Self; 3] = [Self::Rising, Self::Falling, Self::Resting];
+
+    /// As it is said in figures.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Falling => "input falling",
+            Self::Rising => "input rising",
+            Self::Resting => "input at rest",
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::answer::{Location, NamedEffect, Verdict};
-use super::case::{Case, CaseRun};
+use super::case::{Case, CaseRun, Direction};
 use super::fit::Problem;
 use super::noise::Noise;
 use super::search::Found;
@@ -123,7 +123,11 @@ pub fn state_region(case: &Case, runs: &[Cow<'_, CaseRun>], residuals: &[Vec<Vec
         for (run, residuals) in runs.iter().zip(residuals) {
             for (i, &value) in run.measured[c].iter().enumerate().filter(|(_, v)| v.is_finite()) {
                 let level = (((value - low) / width) as usize).min(LEVELS - 1);
-                let Some(direction) = direction(run, i) else { continue };
+                let direction = match run.direction(i) {
+                    Direction::Falling => 0,
+                    Direction::Rising => 1,
+                    Direction::Resting => continue,
+                };
                 let excess: f64 = residuals
                     .iter()
                     .zip(noise)
@@ -146,15 +150,6 @@ pub fn state_region(case: &Case, runs: &[Cow<'_, CaseRun>], residuals: &[Vec<Vec
         }
     }
     best.map_or_else(String::new, |(_, words)| words)
-}
-
-/// 1 where the first input rises, 0 where it falls, none where it rests.
-fn direction(run: &CaseRun, sample: usize) -> Option<usize> {
-    let input = run.drive.inputs.first()?;
-    let at = run.lead_in + sample;
-    let before = input[at.saturating_sub(1)];
-    let after = input[(at + 1).min(input.len() - 1)];
-    if after == before { None } else { Some(usize::from(after > before)) }
 }
 
 fn range(runs: &[Cow<'_, CaseRun>], channel: usize) -> Option<(f64, f64)> {

@@ -32,7 +32,7 @@ mod weigh;
 use std::collections::BTreeMap;
 
 pub use answer::{ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict};
-pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Sealed};
+pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Sealed};
 pub use error::DiagnoseError;
 pub use fit::Fit;
 pub use model::{Model, Placed};

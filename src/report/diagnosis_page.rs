@@ -5,6 +5,7 @@ use crate::diagnose::{Estimate, NamedEffect, Outcome};
 use super::HtmlPage;
 use super::axis::three_digits;
 use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
+use super::diagnosis_map::{bars_svg, state_map_svg, time_lines_svg};
 
 /// One self-contained page, readable by a person who was not there.
 pub fn diagnosis_page(outcome: &Outcome) -> String {
@@ -14,6 +15,7 @@ pub fn diagnosis_page(outcome: &Outcome) -> String {
     location(&mut page, outcome);
     what(&mut page, outcome);
     better(&mut page, outcome);
+    next(&mut page, outcome);
     detectable(&mut page, outcome);
     if !d.warnings.is_empty() {
         page.heading("What to know besides");
@@ -37,6 +39,17 @@ fn location(page: &mut HtmlPage, outcome: &Outcome) {
     }
     let windows: Vec<String> =
         location.time_windows_s.iter().take(12).map(|(f, a, b)| format!("{f} {a:.1} to {b:.1} s")).collect();
+    if let Some([before, after]) = &outcome.residuals {
+        page.figure(&time_lines_svg(outcome), "Marked: where the calibrated scene is off by more than noise.");
+        let caption = "Calibrated scene: residual in units of the noise, by level and motion of the first input.";
+        page.figure(&state_map_svg(outcome, before), caption);
+        if !outcome.diagnosis.effects.is_empty() {
+            page.figure(&state_map_svg(outcome, after), "The same with what was found in place.");
+        }
+    }
+    if let Some(set) = location.indistinguishable.first() {
+        page.paragraph(&format!("With these channels, effects in {} can look the same.", set.join(" and ")));
+    }
     if !windows.is_empty() {
         let more = location.time_windows_s.len().saturating_sub(windows.len());
         let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
@@ -51,6 +64,7 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
         let rows: Vec<Vec<String>> = d.effects.iter().flat_map(effect_rows).collect();
         page.table(&["effect", "element", "probability", "number (SI)", "value", "95 % interval", "law"], &rows);
     }
+    from_run_to_run(page, &d.effects);
     if !outcome.rivals.is_empty() {
         let best = outcome.corrected.as_ref().map_or(0.0, |f| f.cost);
         let rows: Vec<Vec<String>> =
@@ -61,6 +75,19 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
     page.heading("Calibration with it");
     let rows: Vec<Vec<String>> = d.calibration.iter().map(|(k, e)| [vec![k.clone()], estimate(e)].concat()).collect();
     page.table(&["number (SI)", "value", "95 % interval"], &rows);
+}
+
+/// The size of each effect as every run by itself would have it.
+fn from_run_to_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
+    let row = |e: &NamedEffect, (file, size): (&String, &Estimate)| {
+        [vec![e.name.clone(), file.clone()], estimate(size)].concat()
+    };
+    let rows: Vec<Vec<String>> =
+        effects.iter().flat_map(|e| e.size_by_run.iter().map(move |one| row(e, one))).collect();
+    if !rows.is_empty() {
+        page.heading("From run to run");
+        page.table(&["effect", "by itself", "size (SI)", "95 % interval"], &rows);
+    }
 }
 
 fn effect_rows(e: &NamedEffect) -> Vec<Vec<String>> {
@@ -95,6 +122,9 @@ fn better(page: &mut HtmlPage, outcome: &Outcome) {
         })
         .collect();
     page.table(&["sealed runs", "RMSE calibrated", "RMSE corrected", "noise", "corrected / noise"], &rows);
+    page.figure(&bars_svg(outcome), "Runs that had no part in choosing or fitting.");
+    full_scene(page, outcome);
+    placebos(page, outcome);
     if !d.effects.is_empty() {
         page.paragraph(&format!(
             "{:.1} % of the gap between the calibrated scene and the noise is closed on sealed runs ({}), 95 % interval \
@@ -111,6 +141,44 @@ fn better(page: &mut HtmlPage, outcome: &Outcome) {
     page.figure(&figure("Measured and calibrated scene", before), "Before: the scene, its calibration refitted.");
     if !d.effects.is_empty() {
         page.figure(&figure("Measured and corrected scene", after), "After: the scene with what was found.");
+    }
+}
+
+/// How near the fast model, on which all this rests, is to the full scene.
+fn full_scene(page: &mut HtmlPage, outcome: &Outcome) {
+    let full = &outcome.diagnosis.fit.full_scene;
+    let each: Vec<String> =
+        full.rms_difference_over_noise.iter().map(|(column, d)| format!("{column} {d:.3}")).collect();
+    let consequence = match full.agrees {
+        true => "They agree",
+        false => "They do not agree, and the figures of the sealed runs are those of the full scene",
+    };
+    page.paragraph(&format!(
+        "The fast model against the full scene with the numbers found, in units of the noise: {}. {consequence}.",
+        each.join(", ")
+    ));
+}
+
+fn placebos(page: &mut HtmlPage, outcome: &Outcome) {
+    let placebos = &outcome.diagnosis.fit.placebo_gap_closed;
+    if placebos.is_empty() {
+        return;
+    }
+    let rows: Vec<Vec<String>> =
+        placebos.iter().map(|(title, gap)| vec![title.clone(), format!("{:.1} %", 100.0 * gap)]).collect();
+    page.paragraph("What other effects would have closed of the gap on the sealed runs:");
+    page.table(&["instead", "gap closed"], &rows);
+}
+
+fn next(page: &mut HtmlPage, outcome: &Outcome) {
+    let next = &outcome.diagnosis.next_experiment;
+    page.heading("What to do next");
+    page.paragraph(&format!("{}.", next.why));
+    if let Some(file) = &next.file {
+        page.paragraph(&format!(
+            "{file} holds the inputs for the rig; `smam run scene.toml --input {file}` shows what the corrected scene \
+             expects."
+        ));
     }
 }
 

@@ -3,6 +3,7 @@
 mod axis;
 mod compare_figure;
 mod decimate;
+mod diagnosis_map;
 mod diagnosis_page;
 mod html;
 mod panel;
