@@ -17,9 +17,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = words.first().map_or("muscle_bench", String::as_str);
     let effect = match &words.get(1..) {
         Some([name, element, key, value]) => (name.as_str(), element.as_str(), key.as_str(), value.parse()?),
-        _ => ("leak", "line", "conductance_m3_s_pa", 2e-16),
+        _ => ("leak", "line", "conductance_m3_s_pa", 1e-17),
     };
-    let (name, element, key, value) = effect;
+    let (name, element, key, value): (&str, &str, &str, f64) = effect;
     let table = EffectTable {
         name: name.to_owned(),
         element: element.to_owned(),

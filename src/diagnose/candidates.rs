@@ -16,9 +16,26 @@ pub struct Variant {
 /// Every effect that can sit on the case's scene, each in the variants it is first tried in.
 pub fn variants(case: &Case) -> Vec<Variant> {
     let mut all = Vec::new();
-    for spec in CATALOGUE {
+    for spec in CATALOGUE.iter().filter(|s| !s.kind.is_hypothetical()) {
         for placed in places(case, spec) {
             let tried = starts(case, &placed).into_iter().filter(|v| fits_scene(case, &placed, v));
+            all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
+        }
+    }
+    all
+}
+
+/// Terms of a hypothesis: powers of elongation and pressure as pulls of every muscle, of pressure as flows.
+pub fn hypothetical_variants(case: &Case) -> Vec<Variant> {
+    let mut all = Vec::new();
+    for spec in CATALOGUE.iter().filter(|s| s.kind.is_hypothetical()) {
+        let powers: &[&[f64]] = match spec.kind {
+            Kind::HypotheticalForce => &[&[1.0, 0.0], &[2.0, 0.0], &[3.0, 0.0], &[0.0, 1.0], &[1.0, 1.0], &[2.0, 1.0]],
+            _ => &[&[0.0], &[1.0], &[2.0], &[3.0]],
+        };
+        for placed in places(case, spec) {
+            let values = powers.iter().map(|p| [&[spec.parameters[0].typical], *p].concat());
+            let tried = values.filter(|v| fits_scene(case, &placed, v));
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
         }
     }

@@ -27,7 +27,7 @@ pub fn location(
         return Location::default();
     }
     let mut shares: BTreeMap<String, f64> = BTreeMap::new();
-    for e in effects {
+    for e in effects.iter().filter(|e| !e.hypothetical) {
         *shares.entry(e.element.clone()).or_default() += e.probability;
     }
     if shares.is_empty() {

@@ -15,6 +15,7 @@ mod error;
 mod experiment;
 mod fit;
 mod full;
+mod hypothesis;
 mod locate;
 mod model;
 mod noise;
@@ -106,17 +107,20 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let (found, mut proof, confirmed) = confirm::confirm(found, proof, &mut warnings);
+    let (mut found, mut proof, confirmed) = confirm::confirm(found, proof, &mut warnings);
+    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+    let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
+    let so_far = (&found, &proof, confirmed);
+    let hypothesis = hypothesis::weigh_hypotheses(&case, &noise, so_far, excess, options.seed, say);
+    if let Some((with_it, renewed)) = hypothesis {
+        (found, proof) = (with_it, renewed);
+        (after, excess.best) = misfit(&whole, &found).map(|(a, e)| (a, e.best)).ok_or_else(diverges)?;
+    }
     say("full scene".to_owned());
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, options.seed);
     confirm::check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
-    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
-    let after = whole.residuals(&found.best.model, &found.best.x).ok_or_else(diverges)?;
-    let (baseline_excess, error) = noise::structured_excess(&before, &noise);
-    let (best_excess, _) = noise::structured_excess(&after, &noise);
-    let excess = Excess { baseline: baseline_excess, best: best_excess, error };
     let mut effects = verdict::named(&found, &complete);
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     steady::report(sizes, &complete, &mut effects, &mut warnings);
@@ -157,6 +161,15 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
         next_inputs: experiment.inputs,
         case,
     })
+}
+
+/// Residuals with what was found, and how much of baseline and best is more than noise.
+fn misfit(whole: &Problem, found: &Found) -> Option<(Vec<Vec<Vec<f64>>>, Excess)> {
+    let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
+    let after = whole.residuals(&found.best.model, &found.best.x)?;
+    let (baseline, error) = noise::structured_excess(&before, whole.noise);
+    let (best, _) = noise::structured_excess(&after, whole.noise);
+    Some((after, Excess { baseline, best, error }))
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {

@@ -40,7 +40,7 @@ impl Placed {
     }
 }
 
-/// Relaxation times of one muscle, at most.
+/// Relaxation times of one muscle, or terms of one hypothesis, at most.
 const MOST_BRANCHES: usize = 3;
 
 /// A set of effects beside the calibration, and the numbers that are not fitted.
@@ -72,7 +72,7 @@ impl Model {
     /// Whether an effect may be added: not twice on one element, but for relaxation, which has a spectrum.
     pub fn takes(&self, placed: &Placed) -> bool {
         let standing = self.effects.iter().filter(|e| *e == placed).count();
-        standing < if placed.kind == Kind::Viscoelasticity { MOST_BRANCHES } else { 1 }
+        standing < if placed.kind.may_repeat() { MOST_BRANCHES } else { 1 }
     }
 
     /// One effect less.

@@ -176,6 +176,30 @@ pub(super) fn search(
     Found { baseline, best, rivals, screened }
 }
 
+/// Most terms of a hypothesis.
+const MOST_TERMS: usize = 3;
+
+/// Adds the best variants one by one, nothing else changed. `None` when none is worth it.
+pub(super) fn grow(
+    problem: &Problem,
+    baseline: &Fit,
+    from: &Fit,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Option<Fit> {
+    let mut best = from.clone();
+    for _ in 0..MOST_TERMS {
+        let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
+        let screening = screen(problem, &best, variants)?;
+        let refits = refit(problem, &screening, &pick(&screening.screened, least));
+        let winner = refits.first().filter(|f| best.cost - f.cost > least && foretells(problem, &best, f));
+        let Some(winner) = winner else { break };
+        say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
+        best = winner.clone();
+    }
+    (best.model != from.model).then_some(best)
+}
+
 /// The cheapest fit; but of nearly equal ones that which only gives an effect already named one more branch.
 fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
     let cheapest = refits.first()?;

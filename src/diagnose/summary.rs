@@ -27,12 +27,26 @@ pub fn summary(d: &Diagnosis) -> String {
         Verdict::UnknownPhysics => format!(
             "Something is missing that is not in the catalogue{}. {}",
             d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
-            if effects.is_empty() {
-                "No known effect explains any of it.".to_owned()
-            } else {
-                format!("The nearest known effect, {}, leaves a part of it. {closed}", effects.join(" with "))
-            }
+            unknown(d, &closed)
         ),
         Verdict::UnusableData => d.summary.clone(),
+    }
+}
+
+/// What comes nearest, and what hypothesis takes it further.
+fn unknown(d: &Diagnosis, closed: &str) -> String {
+    let named = |hypothetical: bool| -> String {
+        let own = d.effects.iter().filter(|e| e.hypothetical == hypothetical);
+        own.map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ")
+    };
+    match (named(false).as_str(), named(true).as_str()) {
+        ("", "") => "No known effect explains any of it.".to_owned(),
+        (known, "") => format!("The nearest known effect, {known}, leaves a part of it. {closed}"),
+        ("", terms) => format!("No known effect explains any of it; a hypothesis, {terms}, does. {closed}"),
+        (known, terms) => {
+            format!(
+                "The nearest known effect, {known}, leaves a part of it; a hypothesis, {terms}, takes more. {closed}"
+            )
+        }
     }
 }

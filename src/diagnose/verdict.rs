@@ -24,14 +24,24 @@ pub struct Excess {
     pub error: f64,
 }
 
+/// Whether more is left than the catalogue explains.
+pub fn is_unknown(found: &Found, excess: Excess) -> bool {
+    let loud = |e: f64| e > 5.0 * excess.error && e > LEFT_LEAST;
+    let effects = &found.best.model.effects;
+    if effects.iter().any(|e| e.kind.is_hypothetical()) {
+        return true;
+    }
+    let left = if effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
+    loud(excess.best) && excess.best > left
+}
+
 /// What the search and what is left amount to.
 pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess) -> Verdict {
-    let loud = |e: f64| e > 5.0 * excess.error && e > LEFT_LEAST;
-    if found.best.model.effects.is_empty() {
-        return if loud(excess.baseline) { Verdict::UnknownPhysics } else { Verdict::Adequate };
-    }
-    if loud(excess.best) && excess.best > LEFT_SHARE * excess.baseline {
+    if is_unknown(found, excess) {
         return Verdict::UnknownPhysics;
+    }
+    if found.best.model.effects.is_empty() {
+        return Verdict::Adequate;
     }
     let ambiguous = found
         .best
@@ -68,7 +78,7 @@ pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
                 parameters: parameters(source, at),
                 size_by_run: BTreeMap::new(),
                 law: rival.spec().law.to_owned(),
-                hypothetical: false,
+                hypothetical: rival.kind.is_hypothetical(),
             });
         }
     }
@@ -92,7 +102,9 @@ fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
 /// The effect and its rivals with their probabilities, best first; the same words are counted once.
 fn standing<'a>(found: &'a Found, index: usize, placed: &Placed) -> Vec<(Placed, f64, &'a Fit)> {
     let best = &found.best;
-    let rivals = found.rivals.get(index).map_or(&[][..], Vec::as_slice);
+    // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
+    let is_hypothesis = placed.kind.is_hypothetical();
+    let rivals = found.rivals.get(index).filter(|_| !is_hypothesis).map_or(&[][..], Vec::as_slice);
     let worst = found.baseline.cost - best.cost;
     // Between idealised laws a difference counts in proportion to what they explain, not to the number of samples.
     let unit = (0.005 * worst / best.model.effects.len() as f64).max(1.0);

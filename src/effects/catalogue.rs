@@ -236,6 +236,28 @@ pub const CATALOGUE: &[EffectSpec] = &[
         source: "calibration error",
         parameters: &[fitted("gain_error", "g", -0.9, 5.0, 0.03)],
     },
+    EffectSpec {
+        kind: Kind::HypotheticalForce,
+        name: "hypothetical_force",
+        title: "a pull that no law of this list explains; found by regression",
+        element: ElementKind::Muscle,
+        law: "F = F_h (e/10 mm)^i (p/1 MPa)^j",
+        source: "sparse regression, no law of nature",
+        parameters: &[
+            fitted("force_n", "F_h", -10.0, 10.0, 0.02),
+            fixed("elongation_power", "i", 0.0, 4.0, 1.0),
+            fixed("pressure_power", "j", 0.0, 4.0, 0.0),
+        ],
+    },
+    EffectSpec {
+        kind: Kind::HypotheticalFlow,
+        name: "hypothetical_flow",
+        title: "a flow that no law of this list explains; found by regression",
+        element: ElementKind::Line,
+        law: "Q = Q_h (p/1 MPa)^j",
+        source: "sparse regression, no law of nature",
+        parameters: &[fitted("flow_m3_s", "Q_h", -1e-8, 1e-8, 1e-11), fixed("pressure_power", "j", 0.0, 4.0, 2.0)],
+    },
 ];
 
 /// The entry of a law.

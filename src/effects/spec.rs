@@ -27,6 +27,20 @@ pub enum Kind {
     SensorDelay,
     SensorDrift,
     SensorGain,
+    HypotheticalForce,
+    HypotheticalFlow,
+}
+
+impl Kind {
+    /// Whether it stands for physics nobody has named: never a candidate by itself.
+    pub fn is_hypothetical(self) -> bool {
+        matches!(self, Self::HypotheticalForce | Self::HypotheticalFlow)
+    }
+
+    /// Whether one element may have it several times: relaxation has a spectrum, a polynomial several terms.
+    pub fn may_repeat(self) -> bool {
+        self == Self::Viscoelasticity || self.is_hypothetical()
+    }
 }
 
 /// Bounds of a number, both included.

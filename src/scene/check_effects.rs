@@ -20,7 +20,7 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<(), SceneError> {
         place(scene, &effect).map_err(|(message, remedy)| refuse(message, remedy))?;
         let key = (effect.kind, effect.element, effect.channel.clone());
         // Only relaxation has a spectrum: several branches on one muscle.
-        if effect.kind != Kind::Viscoelasticity && seen.contains(&key) {
+        if !effect.kind.may_repeat() && seen.contains(&key) {
             return Err(refuse("it stands twice on this element".to_owned(), "join the two tables".to_owned()));
         }
         seen.push(key);

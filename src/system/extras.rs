@@ -1,6 +1,9 @@
 //! What effects add to a [`super::Plant`]. All of it is absent from a stock scene and then costs next to nothing.
 
-use crate::effects::{Backlash, CoilPreload, MaxwellBranch, Mullins, PlasticSet, TendonFriction, TrappedAir, Wall};
+use crate::effects::{
+    Backlash, CoilPreload, HypotheticalFlow, HypotheticalForce, MaxwellBranch, Mullins, PlasticSet, TendonFriction,
+    TrappedAir, Wall,
+};
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
@@ -19,6 +22,8 @@ pub struct MuscleExtras<D> {
     pub mullins: Option<Mullins<D>>,
     pub preload: Option<CoilPreload<D>>,
     pub plastic: Option<PlasticSet<D>>,
+    pub forces: Vec<HypotheticalForce<D>>,
+    pub flows: Vec<HypotheticalFlow<D>>,
 }
 
 impl<D> Default for MuscleExtras<D> {
@@ -32,6 +37,8 @@ impl<D> Default for MuscleExtras<D> {
             mullins: None,
             preload: None,
             plastic: None,
+            forces: Vec::new(),
+            flows: Vec::new(),
         }
     }
 }
@@ -47,8 +54,8 @@ impl<D: Scalar> MuscleExtras<D> {
         if self.plastic.is_some() { slow[self.branches.len()] } else { D::constant(0.0) }
     }
 
-    /// Pull (N) and stiffness (N/m) of branches and preload.
-    pub(super) fn pull_and_stiffness(&self, elongation_m: D, slow: &[D]) -> (D, D) {
+    /// Pull (N) and stiffness (N/m) of branches, preload and hypothetical terms.
+    pub(super) fn pull_and_stiffness(&self, elongation_m: D, pressure_pa: D, slow: &[D]) -> (D, D) {
         let (mut pull, mut stiffness) = (D::constant(0.0), D::constant(0.0));
         for (branch, &dashpot) in self.branches.iter().zip(slow) {
             pull += branch.pull_n(elongation_m, dashpot);
@@ -56,6 +63,11 @@ impl<D: Scalar> MuscleExtras<D> {
         }
         if let Some(preload) = &self.preload {
             let (f, k) = preload.pull_and_stiffness(elongation_m);
+            pull += f;
+            stiffness += k;
+        }
+        for force in &self.forces {
+            let (f, k) = force.pull_and_stiffness(elongation_m, pressure_pa);
             pull += f;
             stiffness += k;
         }
@@ -77,7 +89,8 @@ impl<D: Scalar> MuscleExtras<D> {
         let zero = D::constant(0.0);
         let compliance = self.air.as_ref().map_or(zero, |a| a.compliance_m3_pa(pressure_pa));
         let leak = self.leak_m3_s_pa.map_or(zero, |g| g * pressure_pa);
-        (compliance, leak - self.growth_m3_s.unwrap_or(zero))
+        let hypothetical: D = self.flows.iter().map(|f| f.flow_m3_s(pressure_pa)).sum();
+        (compliance, leak - self.growth_m3_s.unwrap_or(zero) + hypothetical)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Effects into the equations.
 
 use crate::effects::{
-    Backlash, CoilPreload, Effect, ElementKind, Kind, MaxwellBranch, Mullins, PlasticSet, TendonFriction, TrappedAir,
-    Wall,
+    Backlash, CoilPreload, Effect, ElementKind, HypotheticalFlow, HypotheticalForce, Kind, MaxwellBranch, Mullins,
+    PlasticSet, TendonFriction, TrappedAir, Wall,
 };
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
@@ -91,6 +91,14 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
             if let Some(friction) = &mut muscle.friction {
                 friction.m1_n_pa += v[0];
             }
+        }
+        Kind::HypotheticalForce => extras.forces.push(HypotheticalForce {
+            force_n: v[0],
+            elongation_power: v[1].value() as i32,
+            pressure_power: v[2].value() as i32,
+        }),
+        Kind::HypotheticalFlow => {
+            extras.flows.push(HypotheticalFlow { flow_m3_s: v[0], pressure_power: v[1].value() as i32 });
         }
         Kind::GravityLoad => {
             plant.mechanism.loads.push(ConstantLoad { direction: muscle.jacobian.clone(), force: v[0] });

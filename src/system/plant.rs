@@ -192,7 +192,7 @@ impl<D: Scalar> MusclePlant<D> {
         let (law, (extra_n, extra_k)) = if self.has_extras() {
             let seen = elongation_m - self.extras.set_m(slow);
             let law = self.elastic.softened(seen, pressure_pa, self.extras.mullins.as_ref(), greatest_j);
-            (law, self.extras.pull_and_stiffness(elongation_m, slow))
+            (law, self.extras.pull_and_stiffness(elongation_m, pressure_pa, slow))
         } else {
             (self.elastic.at(elongation_m, pressure_pa), (zero, zero))
         };
@@ -215,13 +215,17 @@ impl<D: Scalar> MusclePlant<D> {
 
     fn has_extras(&self) -> bool {
         let x = &self.extras;
-        !x.branches.is_empty() || x.mullins.is_some() || x.preload.is_some() || x.plastic.is_some()
+        !x.branches.is_empty()
+            || x.mullins.is_some()
+            || x.preload.is_some()
+            || x.plastic.is_some()
+            || !x.forces.is_empty()
     }
 
     fn port(&self, law: &super::ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
         let (mut outflow_m3_s, mut compliance_m3_pa) = (law.area_m2 * speed_m_s, law.compliance_m3_pa);
         let x = &self.extras;
-        if x.air.is_some() || x.leak_m3_s_pa.is_some() || x.growth_m3_s.is_some() {
+        if x.air.is_some() || x.leak_m3_s_pa.is_some() || x.growth_m3_s.is_some() || !x.flows.is_empty() {
             let (compliance, flow) = x.line_load(pressure_pa);
             compliance_m3_pa += compliance;
             outflow_m3_s += flow;
