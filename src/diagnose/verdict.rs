@@ -52,11 +52,12 @@ pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess) -> Verdic
     if ambiguous { Verdict::Ambiguous } else { Verdict::MissingPhysics }
 }
 
-/// The effects of the best model with those rivals that the data leave standing.
-pub fn named(found: &Found, final_fit: &Fit) -> Vec<NamedEffect> {
+/// The effects of the best model with those rivals that the data leave standing; `left` is the chi² that the best leaves
+/// beyond noise.
+pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     let mut effects = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
-        let standing = standing(found, index, placed);
+        let standing = standing(found, index, placed, left);
         let rivals = |own: &Placed| {
             standing.iter().filter(|(p, _, _)| !p.says_the_same(own)).map(|(p, _, _)| p.title()).collect::<Vec<_>>()
         };
@@ -100,14 +101,15 @@ fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
 }
 
 /// The effect and its rivals with their probabilities, best first; the same words are counted once.
-fn standing<'a>(found: &'a Found, index: usize, placed: &Placed) -> Vec<(Placed, f64, &'a Fit)> {
+fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> Vec<(Placed, f64, &'a Fit)> {
     let best = &found.best;
     // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
     let is_hypothesis = placed.kind.is_hypothetical();
     let rivals = found.rivals.get(index).filter(|_| !is_hypothesis).map_or(&[][..], Vec::as_slice);
     let worst = found.baseline.cost - best.cost;
-    // Between idealised laws a difference counts in proportion to what they explain, not to the number of samples.
-    let unit = (0.005 * worst / best.model.effects.len() as f64).max(1.0);
+    // Laws are idealised: as far as the best itself leaves something, a difference counts in proportion to that, and at
+    // most to what is explained, not to the number of samples.
+    let unit = (0.005 * worst / best.model.effects.len() as f64).min(left).max(1.0);
     let mut all: Vec<(Placed, f64, &Fit)> = vec![(placed.clone(), 1.0, best)];
     for rival in rivals {
         let Some(own) = rival.model.effects.last() else { continue };

@@ -1,0 +1,106 @@
+//! Contract of the diagnosis on recordings that the full scene makes: unknown physics, bad recordings, threads.
+
+use std::path::Path;
+
+use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
+use smam::effects::EffectTable;
+use smam::recording::{Channel, Recording, read_csv};
+use smam::trial::make_specimen;
+use tempfile::TempDir;
+
+/// Recordings of the stock bench with an effect concealed, or with none.
+fn specimen(effect: Option<(&str, &str, &str, f64)>) -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let table = effect.map(|(name, element, key, value)| EffectTable {
+        name: name.to_owned(),
+        element: element.to_owned(),
+        channel: None,
+        parameters: [(key.to_owned(), value)].into_iter().collect(),
+    });
+    let effect = table.map(|t| t.effect().expect("an effect of the catalogue"));
+    make_specimen("muscle_bench", effect.as_ref(), 1.0, 7, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    folder
+}
+
+fn answer(folder: &Path) -> Diagnosis {
+    let case = Case::load(&[folder], None, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
+    println!("{}", outcome.diagnosis.summary);
+    outcome.diagnosis
+}
+
+/// A pull that the catalogue does not hold is imitated by three of its effects, but not as well as by one term.
+#[test]
+fn val_unknown_physics_is_called_so_and_modelled() {
+    let folder = specimen(Some(("hypothetical_force", "muscle", "force_n", 0.05)));
+    let d = answer(folder.path());
+    assert_eq!(d.verdict, Verdict::UnknownPhysics);
+    assert_eq!(d.location.element.as_deref(), Some("muscle"));
+    let [term] = &d.effects[..] else { panic!("{:?}", d.effects) };
+    assert!(term.hypothetical);
+    assert!((term.parameters["force_n"].value - 0.05).abs() < 0.002, "{:?}", term.parameters);
+    assert!(d.fit.gap_closed > 0.95, "{}", d.fit.gap_closed);
+}
+
+#[test]
+fn the_answer_is_the_same_on_one_thread_and_on_three() {
+    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        serde_json::to_string(&pool.install(|| answer(folder.path()))).expect("JSON")
+    };
+    let one = with(1);
+    assert!(one.contains("\"leak\""), "{one}");
+    assert_eq!(one, with(3));
+}
+
+/// Changes every run of a folder.
+fn change(folder: &Path, with: impl Fn(&Recording) -> Recording) {
+    for file in ["sine.csv", "steps.csv", "chirp.csv"] {
+        let path = folder.join(file);
+        let recording = read_csv(&path).unwrap_or_else(|e| panic!("{e}"));
+        with(&recording).write_csv(&path).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// The recording with the values of one column changed.
+fn column(recording: &Recording, name: &str, with: impl Fn(f64) -> f64) -> Recording {
+    let change = |c: &Channel| match c.column == name {
+        true => Channel::new(name, c.values.iter().map(|v| with(*v)).collect()),
+        false => c.clone(),
+    };
+    let channels = recording.channels().iter().map(change).collect();
+    Recording::new(recording.time_s().to_vec(), channels).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn bad_recordings_get_a_reason_and_no_diagnosis() {
+    type Change = fn(f64) -> f64;
+    let cases: [(&str, Change, &str); 5] = [
+        ("pressure_kpa", |v| v * 1000.0, "factor of 1000"),
+        ("elongation_mm", |v| v * 1e-3, "factor of 1/1000"),
+        ("elongation_mm", |_| 4.2, "constant"),
+        ("elongation_mm", |v| -v, "runs against the scene"),
+        ("plunger_mm", |_| 0.5, "no input ever moves"),
+    ];
+    for (name, with, word) in cases {
+        let folder = specimen(None);
+        change(folder.path(), |r| column(r, name, with));
+        let d = answer(folder.path());
+        assert_eq!(d.verdict, Verdict::UnusableData, "{name}: {word}");
+        assert!(d.effects.is_empty());
+        assert!(d.summary.contains(word), "{name}: {}", d.summary);
+    }
+}
+
+#[test]
+fn a_short_run_is_too_short() {
+    let folder = specimen(None);
+    change(folder.path(), |r| {
+        let keep = |c: &Channel| Channel::new(c.column.clone(), c.values[..20].to_vec());
+        Recording::new(r.time_s()[..20].to_vec(), r.channels().iter().map(keep).collect()).expect("increasing")
+    });
+    let d = answer(folder.path());
+    assert_eq!(d.verdict, Verdict::UnusableData);
+    assert!(d.summary.contains("samples"), "{}", d.summary);
+}
