@@ -86,6 +86,7 @@ fn bad_recordings_get_a_reason_and_no_diagnosis() {
     for (name, with, word) in cases {
         let folder = specimen(None);
         change(folder.path(), |r| column(r, name, with));
+        println!("{name}: {word}");
         let d = answer(folder.path());
         assert_eq!(d.verdict, Verdict::UnusableData, "{name}: {word}");
         assert!(d.effects.is_empty());

@@ -27,7 +27,9 @@ pub fn location(
         return Location::default();
     }
     let mut shares: BTreeMap<String, f64> = BTreeMap::new();
-    for e in effects.iter().filter(|e| !e.hypothetical) {
+    // Hypotheses say where only when nothing known does.
+    let only_hypotheses = effects.iter().all(|e| e.hypothetical);
+    for e in effects.iter().filter(|e| only_hypotheses || !e.hypothetical) {
         *shares.entry(e.element.clone()).or_default() += e.probability;
     }
     if shares.is_empty() {

@@ -32,9 +32,11 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
 }
 
 fn inputs(case: &Case, found: &mut Preflight) {
+    // The way to where a recording begins was not recorded.
+    let recorded = |run: &CaseRun, input: usize| ends(&run.drive.inputs[input][run.lead_in..]);
     let moves = |run: &CaseRun| {
-        run.drive.inputs.iter().any(|x| {
-            let (low, high) = ends(x);
+        (0..run.drive.inputs.len()).any(|i| {
+            let (low, high) = recorded(run, i);
             high > low
         })
     };
@@ -42,7 +44,7 @@ fn inputs(case: &Case, found: &mut Preflight) {
         found.unusable.push("no input ever moves: record a programme that uses most of the stroke".to_owned());
     }
     for (i, input) in case.scene.file.input.iter().enumerate() {
-        let stroke = case.runs.iter().map(|r| ends(&r.drive.inputs[i])).fold(0.0f64, |m, (l, h)| m.max(h - l));
+        let stroke = case.runs.iter().map(|r| recorded(r, i)).fold(0.0f64, |m, (l, h)| m.max(h - l));
         let is_plunger = input.channel.contains("plunger");
         if is_plunger && stroke > 0.2 {
             found.unusable.push(format!(

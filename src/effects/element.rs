@@ -54,9 +54,9 @@ impl Element {
         Self { kind, index, is_numbered: count > 1 && kind.is_numbered() }
     }
 
-    /// Which of `count` elements of the kind are meant.
+    /// Which of `count` elements of the kind are meant; none where there is none.
     pub fn indices(&self, count: usize) -> std::ops::Range<usize> {
-        if self.is_numbered || count <= 1 { self.index..self.index + 1 } else { 0..count }
+        if self.is_numbered { self.index..(self.index + 1).min(count) } else { 0..count }
     }
 
     /// Reads `line`, `line_2`; `None` for anything else.
@@ -82,6 +82,14 @@ impl fmt::Display for Element {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_plain_name_means_all_there_are() {
+        let of = |name: &str, count: usize| Element::parse(name).map(|e| e.indices(count).collect::<Vec<_>>());
+        assert_eq!(of("line", 2), Some(vec![0, 1]));
+        assert_eq!(of("line_2", 2), Some(vec![1]));
+        assert_eq!(of("syringe", 0), Some(vec![]));
+    }
 
     #[test]
     fn names_go_there_and_back() {
