@@ -24,7 +24,7 @@ impl<D> Watch<D> for () {
 impl<D: Scalar> Stepper<D> {
     /// Advances state and inputs by `h` seconds: in one step, or in parts when something switches on the way.
     ///
-    /// `pulling` is what pulls at the beginning ([`Plant::pulling`]), and becomes what pulls at the end.
+    /// `pulling` is what pulls at the beginning (`Plant::pulling`), and becomes what pulls at the end.
     pub fn advance(
         &mut self,
         plant: &Plant<D>,
