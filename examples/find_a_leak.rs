@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = words.first().map_or("muscle_bench", String::as_str);
     let effect = match &words.get(1..) {
         Some([name, element, key, value]) => (name.as_str(), element.as_str(), key.as_str(), value.parse()?),
-        _ => ("leak", "line", "conductance_m3_s_pa", 1e-17),
+        None | Some([]) => ("leak", "line", "conductance_m3_s_pa", 1e-17),
+        Some(_) => return Err("an effect needs four words: NAME ELEMENT KEY VALUE (see `smam effects`)".into()),
     };
     let (name, element, key, value): (&str, &str, &str, f64) = effect;
     let table = EffectTable {

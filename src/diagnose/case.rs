@@ -51,9 +51,7 @@ impl CaseRun {
     pub fn times_s(&self) -> &[f64] {
         &self.drive.times_s[self.lead_in..]
     }
-}
 
-impl CaseRun {
     /// How the first input moves at a recorded sample.
     pub fn direction(&self, sample: usize) -> Direction {
         let Some(input) = self.drive.inputs.first() else { return Direction::Resting };
@@ -197,9 +195,11 @@ impl Case {
         Ok(())
     }
 
-    /// A recording faster than the muscles need is averaged down; the stated noise falls with it.
+    /// A recording faster than the muscles need is averaged down. What was stated is the noise of single samples: that of
+    /// their means is then estimated.
     fn thinned(&mut self, run: &RecordedRun) -> Result<Recording, DiagnoseError> {
         let Some((thin, count)) = thin(&run.recording, LEAST_INTERVAL_S)? else { return Ok(run.recording.clone()) };
+        self.channels.iter_mut().for_each(|c| c.stated_sd = None);
         self.notes.push(format!("{}: averaged over {count} samples each, to {LEAST_INTERVAL_S} s", run.run.file));
         Ok(thin)
     }

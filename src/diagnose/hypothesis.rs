@@ -3,7 +3,7 @@
 use super::answer::Proof;
 use super::candidates::hypothetical_variants;
 use super::case::{Case, Sealed};
-use super::fit::Problem;
+use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::prove::prove;
 use super::search::{Found, grow, least_gain, title};
@@ -45,12 +45,10 @@ fn simpler(
     if numbers == 0 || found.best.cost < open.samples() as f64 + least {
         return None;
     }
-    let best = grow(&open, &found.baseline, &found.baseline, &hypothetical_variants(case), say)?;
+    let (best, renewed) = with_terms(&open, found, &found.baseline, seed, say)?;
     if best.model.effect_numbers() > numbers || best.cost > found.best.cost - least {
         return None;
     }
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
-    let renewed = prove(&sealed, &found.baseline, &best, seed)?;
     say(format!("{} imitates, {} explains more with less", title(&found.best.model), title(&best.model)));
     let rivals = vec![vec![found.best.clone()]];
     (renewed.gap_closed >= proof.gap_closed).then(|| (Found { best, rivals, ..found.clone() }, renewed))
@@ -66,12 +64,18 @@ fn hypothesise(
     say: &dyn Fn(String),
 ) -> Option<(Found, Proof)> {
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    let best = grow(&open, &found.baseline, &found.best, &hypothetical_variants(case), say)?;
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
-    let renewed = prove(&sealed, &found.baseline, &best, seed)?;
+    let (best, renewed) = with_terms(&open, found, &found.best, seed, say)?;
     if renewed.gap_closed < proof.gap_closed + WORTH {
         say("hypothetical terms: gain nothing on the sealed runs, dropped".to_owned());
         return None;
     }
     Some((Found { best, ..found.clone() }, renewed))
+}
+
+/// A fit with terms added to it, and what it is worth on sealed runs. `None` when no term is worth it.
+fn with_terms(open: &Problem, found: &Found, from: &Fit, seed: u64, say: &dyn Fn(String)) -> Option<(Fit, Proof)> {
+    let best = grow(open, &found.baseline, from, &hypothetical_variants(open.case), say)?;
+    let sealed = Problem { case: open.case, runs: open.case.subset(Sealed::Sealed), noise: open.noise };
+    let proof = prove(&sealed, &found.baseline, &best, seed)?;
+    Some((best, proof))
 }

@@ -141,7 +141,8 @@ fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+/// Of two series; 0 where one does not move.
+pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let (ma, mb) = (mean(a), mean(b));
     let product: f64 = a.iter().zip(b).map(|(x, y)| (x - ma) * (y - mb)).sum::<f64>() / a.len().max(1) as f64;
     product / (spread(a) * spread(b)).max(f64::MIN_POSITIVE)

@@ -1,5 +1,6 @@
 //! Programmes that a rig can play: waves between 0 and 1 over the stroke of every plunger.
 
+use super::preflight::correlation;
 use crate::recording::{Channel, Recording, RecordingError, parse_column};
 
 /// Sampling interval, s, and the time over which the plungers go from rest into the programme.
@@ -27,15 +28,6 @@ pub fn strokes(inputs: &[(String, Vec<f64>)]) -> Vec<Stroke> {
         Stroke { column: column.clone(), low, high, with_first }
     };
     inputs.iter().map(stroke).collect()
-}
-
-fn correlation(x: &[f64], y: &[f64]) -> f64 {
-    let middle = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
-    let product = |a: &[f64], b: &[f64]| -> f64 {
-        let (ma, mb) = (middle(a), middle(b));
-        a.iter().zip(b).map(|(x, y)| (x - ma) * (y - mb)).sum()
-    };
-    product(x, y) / (product(x, x) * product(y, y)).sqrt()
 }
 
 /// Levels held for six seconds each, with ramps between them.

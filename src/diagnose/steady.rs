@@ -8,6 +8,7 @@ use super::fit::{Fit, Problem};
 use super::model::Sides;
 use super::noise::Noise;
 use super::normal::Normal;
+use super::verdict::is_said;
 
 /// Runs disagree when their sizes spread by this many standard errors and by this share of the size.
 const SIGMA: f64 = 4.0;
@@ -59,9 +60,7 @@ pub fn report(sizes: Vec<RunSizes>, fit: &Fit, effects: &mut [NamedEffect], warn
                 each.join(", ")
             ));
         }
-        let own = effects.iter_mut().find(|e| {
-            e.name == placed.spec().name && e.element == placed.element.to_string() && e.channel == placed.channel
-        });
+        let own = effects.iter_mut().find(|e| is_said(e, placed));
         if let Some(own) = own.filter(|e| e.size_by_run.is_empty()) {
             own.size_by_run = s.runs.into_iter().collect();
         }

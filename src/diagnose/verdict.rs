@@ -94,7 +94,8 @@ fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
     }
 }
 
-fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
+/// Whether an answer names this effect.
+pub fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
     effect.name == placed.spec().name
         && effect.element == placed.element.to_string()
         && effect.channel == placed.channel

@@ -49,9 +49,7 @@ impl TwinOutput {
         };
         value / self.factor
     }
-}
 
-impl TwinOutput {
     /// The coordinates that it shows, with the share of each; none for anything but joints.
     pub fn joints(&self) -> &[(usize, f64)] {
         match &self.reader {
