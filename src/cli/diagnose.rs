@@ -23,7 +23,7 @@ pub struct DiagnoseArguments {
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Where to write diagnosis.json, report.html and scene.toml [default: out/diagnose_DIR]
+    /// Where to write diagnosis.json, report.html, scene.toml and baseline.toml [default: out/diagnose_DIR]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Of the bootstrap's draws; the same seed gives the same answer
@@ -67,6 +67,9 @@ fn write_outcome(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
     }
     if let Some(scene) = outcome.scene_text() {
         write(&out.join("scene.toml"), &scene?)?;
+    }
+    if let Some(scene) = outcome.baseline_text() {
+        write(&out.join("baseline.toml"), &scene?)?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The corrected scene: calibration and effects as found, in a file that runs, sweeps and views like any other.
+//! Fitted scenes: calibration and effects as found, in a file that runs, sweeps and views like any other.
 
 use toml::Table;
 
@@ -7,17 +7,18 @@ use crate::scene::{Override, Scene, SceneError, SceneFile};
 use super::case::Case;
 use super::fit::Fit;
 
-/// The scene with the numbers of a fit. The mechanism's file is named by its full path: the scene may stand anywhere.
+/// The scene with the numbers of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
+/// scene may stand anywhere.
 ///
 /// # Errors
 /// A fitted number that the scene's own checks refuse.
-pub fn corrected_scene(case: &Case, fit: &Fit, title: &str) -> Result<String, SceneError> {
+pub fn fitted_scene(case: &Case, fit: &Fit, suffix: &str, title: &str) -> Result<String, SceneError> {
     let mut file = case.scene.file.clone();
     if let Some(mechanism) = &mut file.mechanism {
         let urdf = case.scene.folder().join(&mechanism.urdf);
         mechanism.urdf = urdf.canonicalize().unwrap_or(urdf);
     }
-    file.name = format!("{}_corrected", file.name);
+    file.name = format!("{}_{suffix}", file.name);
     file.title = title.to_owned();
     file.expect.clear();
     let text = with_numbers(case, fit, file)?;

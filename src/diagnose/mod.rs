@@ -82,7 +82,16 @@ impl Outcome {
     /// A fitted number that the scene's own checks refuse.
     pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
         let fit = self.complete.as_ref()?;
-        Some(corrected::corrected_scene(&self.case, fit, &self.diagnosis.summary))
+        Some(corrected::fitted_scene(&self.case, fit, "corrected", &self.diagnosis.summary))
+    }
+
+    /// The scene calibrated to the open runs, with no effect added, as text: what everything found is compared with.
+    ///
+    /// # Errors
+    /// A fitted number that the scene's own checks refuse.
+    pub fn baseline_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
+        let fit = self.baseline.as_ref()?;
+        Some(corrected::fitted_scene(&self.case, fit, "calibrated", "Calibrated, nothing added"))
     }
 }
 
