@@ -3,6 +3,7 @@
 //! The chain is `plunger -> syringe -> line -> muscle -> cable -> mechanism`. Everything left of the
 //! mechanism is written here; the mechanism is a rapier multibody. See `ARCHITECTURE.md` for the map.
 
+pub mod conceal;
 pub mod diagnose;
 pub mod effects;
 pub mod hydraulics;
@@ -10,6 +11,7 @@ pub mod hysteresis;
 pub mod identify;
 pub mod mechanism;
 pub mod muscle;
+pub mod proof;
 pub mod recording;
 pub mod report;
 pub mod scalar;

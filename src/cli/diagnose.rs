@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::diagnose::{Case, Diagnosis, Options, Outcome, Verdict, diagnose as run_diagnosis};
+use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose as run_diagnosis, write_answer};
 use smam::report::diagnosis_page;
 use smam::scene::Override;
 
@@ -45,7 +45,8 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     let case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
     let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
-    write_outcome(&outcome, &out)?;
+    write_answer(&outcome, &out)?;
+    write(&out.join("report.html"), &diagnosis_page(&outcome))?;
     print_diagnosis(&outcome.diagnosis);
     eprintln!("written: {}", out.display());
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
@@ -55,23 +56,6 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
 fn default_out(folder: &Path) -> PathBuf {
     let name = folder.canonicalize().ok().and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
     Path::new("out").join(format!("diagnose_{}", name.unwrap_or_else(|| "recordings".to_owned())))
-}
-
-fn write_outcome(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
-    let json = serde_json::to_string_pretty(&outcome.diagnosis)
-        .map_err(|e| CliError::Failed(format!("the answer cannot be written as JSON: {e}")))?;
-    write(&out.join("diagnosis.json"), &format!("{json}\n"))?;
-    write(&out.join("report.html"), &diagnosis_page(outcome))?;
-    if let Some(inputs) = &outcome.next_inputs {
-        inputs.write_csv(&out.join("next_experiment.csv"))?;
-    }
-    if let Some(scene) = outcome.scene_text() {
-        write(&out.join("scene.toml"), &scene?)?;
-    }
-    if let Some(scene) = outcome.baseline_text() {
-        write(&out.join("baseline.toml"), &scene?)?;
-    }
-    Ok(())
 }
 
 fn print_diagnosis(d: &Diagnosis) {

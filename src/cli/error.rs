@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use smam::conceal::ConcealError;
 use smam::diagnose::DiagnoseError;
 use smam::identify::IdentifyError;
 use smam::mechanism::MechanismError;
+use smam::proof::ProofError;
 use smam::recording::RecordingError;
 use smam::scene::SceneError;
 use smam::system::{RunError, SystemError};
@@ -26,6 +28,10 @@ pub enum CliError {
     Identify(#[from] IdentifyError),
     #[error(transparent)]
     Trial(#[from] TrialError),
+    #[error(transparent)]
+    Proof(#[from] ProofError),
+    #[error(transparent)]
+    Conceal(#[from] ConcealError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]

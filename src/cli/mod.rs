@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod conceal;
 mod diagnose;
 mod effects;
 mod error;
@@ -10,8 +11,10 @@ mod interrupt;
 mod junit;
 mod model;
 mod observers;
+mod proof;
 mod run;
 mod scenes;
+mod score;
 mod trial;
 
 use std::process::ExitCode;
@@ -51,6 +54,12 @@ enum Command {
     Scenes,
     /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
     Trial(trial::TrialArguments),
+    /// Make recordings of a rig that hides something, with the answer under seal
+    Conceal(conceal::ConcealArguments),
+    /// Open the seals of concealed cases and score what was answered
+    Score(score::ScoreArguments),
+    /// Conceal, diagnose and score many cases: the proof, repeated on your own seed
+    Proof(proof::ProofArguments),
     /// Generate a model file
     Model(model::ModelArguments),
 }
@@ -69,6 +78,9 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),
         Some(Command::Trial(arguments)) => trial::trial(&arguments),
+        Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
+        Some(Command::Score(arguments)) => score::score(&arguments),
+        Some(Command::Proof(arguments)) => proof::proof(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
     }
 }

@@ -31,4 +31,6 @@ pub enum DiagnoseError {
     Parameter { file: PathBuf, key: String },
     #[error("the scene cannot be simulated with what was recorded: {0}\n  remedy: try `smam compare` on the folder")]
     Simulation(String),
+    #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]
+    Write { file: PathBuf, source: std::io::Error },
 }

@@ -1,0 +1,84 @@
+//! `smam conceal`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use smam::conceal::{Hiding, Rig, draw, write_case};
+use smam::recording::write_whole;
+
+use super::CliError;
+
+/// Arguments of `smam conceal`.
+#[derive(Args)]
+pub struct ConcealArguments {
+    /// Of everything that is drawn; the same seed hides the same
+    #[arg(long)]
+    seed: u64,
+    /// Cases to draw, with seeds counting up from that one
+    #[arg(long, default_value_t = 1)]
+    count: u64,
+    /// The rig
+    #[arg(long, value_enum, default_value_t = RigName::MuscleBench)]
+    rig: RigName,
+    /// What kind of thing to hide [default: drawn]
+    #[arg(long, value_enum)]
+    hiding: Option<HidingName>,
+    /// Where to write NAME/, NAME.holdout.csv, sealed/NAME.json and seals.txt
+    #[arg(long, value_name = "DIR", default_value = "out/concealed")]
+    out: PathBuf,
+}
+
+/// Rigs by the names of their scenes.
+#[derive(Clone, Copy, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum RigName {
+    MuscleBench,
+    AntagonisticPulley,
+    BendingCatheter,
+}
+
+/// What may be hidden.
+#[derive(Clone, Copy, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum HidingName {
+    /// Nothing is missing
+    Nothing,
+    /// One effect of the catalogue
+    One,
+    /// Two or three of them
+    Several,
+    /// Something that the catalogue does not hold
+    Unlisted,
+}
+
+/// Runs the command.
+pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
+    let rig = match arguments.rig {
+        RigName::MuscleBench => Rig::MuscleBench,
+        RigName::AntagonisticPulley => Rig::AntagonisticPulley,
+        RigName::BendingCatheter => Rig::BendingCatheter,
+    };
+    let mut seals = String::new();
+    for seed in arguments.seed..arguments.seed.saturating_add(arguments.count) {
+        let drawn = draw(&format!("case_{seed}"), rig, hiding(arguments.hiding, seed), seed)?;
+        let seal = write_case(&drawn, &arguments.out)?;
+        println!("{} {seal}", drawn.truth.name);
+        seals.push_str(&format!("{} {seal}\n", drawn.truth.name));
+    }
+    let path = arguments.out.join("seals.txt");
+    write_whole(&path, &seals).map_err(|source| CliError::Write { file: path, source })?;
+    eprintln!("written: {}; the answers lie in sealed/", arguments.out.display());
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Two of ten hide nothing, two something unlisted, three one effect, three several.
+fn hiding(asked: Option<HidingName>, seed: u64) -> Hiding {
+    match asked {
+        Some(HidingName::Nothing) => Hiding::Nothing,
+        Some(HidingName::One) => Hiding::One,
+        Some(HidingName::Several) => Hiding::Several,
+        Some(HidingName::Unlisted) => Hiding::Unlisted,
+        None => Hiding::drawn(seed),
+    }
+}

@@ -1,0 +1,61 @@
+//! `smam score`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use smam::proof::{Folders, Row, metrics, open, page, row};
+
+use super::CliError;
+use super::files::write;
+
+/// Arguments of `smam score`.
+#[derive(Args)]
+pub struct ScoreArguments {
+    /// Folder that `smam conceal` wrote: cases, seals.txt and sealed answers
+    cases: PathBuf,
+    /// Folder with one NAME/ of `smam diagnose --out` for each case
+    #[arg(long, value_name = "DIR")]
+    answers: PathBuf,
+    /// Where to write rows.jsonl, score.json and table.md
+    #[arg(long, value_name = "DIR", default_value = "out/score")]
+    out: PathBuf,
+}
+
+/// Runs the command: opens every seal whose case was answered.
+pub fn score(arguments: &ScoreArguments) -> Result<ExitCode, CliError> {
+    let folders = Folders { cases: arguments.cases.clone(), answers: arguments.answers.clone() };
+    let seals = read_seals(&arguments.cases.join("seals.txt"))?;
+    let answered = seals.iter().filter(|(name, _)| arguments.answers.join(name).join("diagnosis.json").is_file());
+    let mut rows = Vec::new();
+    for (name, seal) in answered {
+        rows.push(row(&open(name, seal, &folders)?, &folders)?);
+    }
+    eprintln!("{} of {} cases were answered", rows.len(), seals.len());
+    write_score(&rows, &arguments.out)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Names and seals, as they were published.
+pub fn read_seals(path: &Path) -> Result<Vec<(String, String)>, CliError> {
+    let text = std::fs::read_to_string(path).map_err(|e| {
+        CliError::Usage(format!(
+            "{}: cannot be read: {e}\n  remedy: name a folder that `smam conceal` wrote",
+            path.display()
+        ))
+    })?;
+    let pair = |line: &str| line.split_once(' ').map(|(name, seal)| (name.to_owned(), seal.trim().to_owned()));
+    Ok(text.lines().filter_map(pair).collect())
+}
+
+/// Writes rows, figures and table, and prints the table.
+pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
+    let json = |e: serde_json::Error| CliError::Failed(format!("the score cannot be written as JSON: {e}"));
+    let figures = metrics(rows);
+    let lines: Result<Vec<String>, serde_json::Error> = rows.iter().map(serde_json::to_string).collect();
+    write(&out.join("rows.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
+    write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(json)?))?;
+    let page = page(rows, &figures);
+    write(&out.join("table.md"), &page)?;
+    super::print_text(&page)
+}

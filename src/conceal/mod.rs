@@ -1,0 +1,70 @@
+//! Concealed cases: recordings of rigs that hide something, with the answer under seal.
+//!
+//! The plant is a second program for the same rigs: its own equations and numbers, another integrator, other forms of
+//! the laws, noise with colour. It imports nothing of the simulation or the diagnosis, and the diagnosis imports nothing
+//! of it.
+
+mod case;
+mod noise;
+mod plant;
+mod programme;
+mod seal;
+mod secrets;
+mod size;
+mod solve;
+mod stock;
+mod tube;
+mod write;
+
+use std::path::PathBuf;
+
+pub use case::{Decoy, Drawn, Hiding, Truth, draw};
+pub use noise::ChannelNoise;
+pub use seal::{seal, sealed_text};
+pub use secrets::Secret;
+pub use stock::{Calibration, Rig};
+pub use write::{SEALED, write_case};
+
+use crate::recording::RecordingError;
+
+/// Why a case cannot be concealed.
+#[derive(Debug, thiserror::Error)]
+pub enum ConcealError {
+    #[error("the concealing plant cannot be integrated: {0}\n  remedy: another seed")]
+    Solver(String),
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error("{file}: cannot be written: {source}\n  remedy: give another folder with --out")]
+    Write { file: PathBuf, source: std::io::Error },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    #[test]
+    fn speed() {
+        for rig in stock::Rig::ALL {
+            for wave in [programme::Wave::Sine, programme::Wave::Steps] {
+                let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+                let drives = programme::programme(rig, wave, &mut r);
+                let plant = plant::Plant::new(rig, stock::Calibration::STOCK);
+                let t = std::time::Instant::now();
+                let out = solve::solve(&plant, &drives);
+                match out {
+                    Ok(o) => println!(
+                        "{rig:?} {wave:?} {:?} {:?}",
+                        t.elapsed(),
+                        o.iter()
+                            .map(|c| (
+                                c.iter().cloned().fold(f64::MAX, f64::min),
+                                c.iter().cloned().fold(f64::MIN, f64::max)
+                            ))
+                            .collect::<Vec<_>>()
+                    ),
+                    Err(e) => println!("{rig:?} {wave:?} {:?} {e}", t.elapsed()),
+                }
+            }
+        }
+    }
+}

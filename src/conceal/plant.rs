@@ -1,0 +1,375 @@
+//! The concealing plant: the stock rigs as ordinary differential equations in the order of `physics.md`, with places for
+//! whatever may be hidden in them. Nothing here is shared with the simulation that diagnoses.
+
+use super::programme::Drive;
+use super::stock::{
+    ATMOSPHERE_PA, AXIAL_DAMPING_N_S_M, BOILING_PA, CABLE_N_M, CABLE_N_S_M, CLOSED_COIL_N_M, CLOSED_COIL_N_S_M,
+    COIL_AREA_M2, COIL_STIFFNESS_N_M, Calibration, DOWNSTREAM_COMPLIANCE_M3_PA, END_MASS_KG, Rig, STRING_LOAD_N,
+    SYRINGE_AREA_M2, line_inertance, line_resistance,
+};
+use super::tube::pull_and_energy;
+
+/// States of one muscle with its line.
+pub const MUSCLE_STATES: usize = 12;
+/// Syringe pressure, line flow, muscle pressure, elongation, speed, friction state; then what hidden physics remembers:
+/// piston, two branches, set, greatest energy of the wall, volume taken by the barrel.
+const P_S: usize = 0;
+const Q: usize = 1;
+const P_M: usize = 2;
+const E: usize = 3;
+const V: usize = 4;
+const Z: usize = 5;
+const PISTON: usize = 6;
+const BRANCH: usize = 7;
+const BRANCH_2: usize = 8;
+const SET: usize = 9;
+const GREATEST: usize = 10;
+const BARREL: usize = 11;
+/// What one unit of the scaled states stands for.
+const MUSCLE_SCALE: [f64; MUSCLE_STATES] = [1e6, 1e-8, 1e6, 1e-2, 1e-2, 1.0, 1e-3, 1e-2, 1e-2, 1e-3, 1e-2, 1e-9];
+/// Angle, speed, friction state.
+const JOINT_STATES: usize = 3;
+const JOINT_SCALE: [f64; JOINT_STATES] = [1.0, 10.0, 1.0];
+
+/// Time constants of what is a jump in the ideal law, s.
+const PISTON_S: f64 = 5e-4;
+const GREATEST_S: f64 = 5e-3;
+
+/// Hidden physics of one muscle, its line and its syringe. All zero: the stock muscle.
+#[derive(Clone, Debug, Default)]
+pub struct MuscleSecrets {
+    pub air_m3: f64,
+    pub air_exponent: f64,
+    /// Conductance, m³/(s Pa), and by how much it grows per Pa.
+    pub leak: f64,
+    pub leak_growth_1_pa: f64,
+    pub restriction: f64,
+    /// Added to the restriction while the fluid comes back, and its growth with flow, s/m³.
+    pub return_restriction: f64,
+    pub restriction_growth_s_m3: f64,
+    pub growth_m3_s: f64,
+    /// Over which the growth dies away; 0: never.
+    pub growth_fades_s: f64,
+    pub play_m: f64,
+    /// Stiffness and time of two branches, and their hardening, 1/m².
+    pub branches: [(f64, f64); 2],
+    pub branch_hardening_1_m2: f64,
+    pub softening: f64,
+    /// Saturating exponential instead of the hyperbolic tangent.
+    pub softens_exponentially: bool,
+    pub preload_n: f64,
+    pub preload_exponential: bool,
+    pub set_rate_1_s: f64,
+    pub set_threshold_m: f64,
+    pub set_power: f64,
+    pub load_n: f64,
+    pub coil_loss_1_s: f64,
+    pub barrel_m3_pa: f64,
+    pub barrel_s: f64,
+    pub rate_force_n: f64,
+    pub fibre_n_m: f64,
+    pub fibre_breaks_s: f64,
+    pub ripple_m: f64,
+    pub ripple_hz: f64,
+    pub area_growth_1_m: f64,
+    pub cubic_n_m3: f64,
+}
+
+/// Hidden physics of the mechanism and its cables.
+#[derive(Clone, Debug, Default)]
+pub struct MechanismSecrets {
+    pub bearing_n_m: f64,
+    pub bearing_rad: f64,
+    /// Smooth in the speed instead of Dahl's state.
+    pub bearing_by_speed: bool,
+    pub slack_m: [f64; 2],
+    pub capstan: f64,
+    pub capstan_by_speed: bool,
+    pub coupling_m: f64,
+    pub wall_n_m_rad: f64,
+    pub wall_rad: f64,
+    pub wall_power: f64,
+    pub notch_n_m_rad: f64,
+    pub notch_rad: f64,
+    pub load_n_m: f64,
+}
+
+/// One joint: `J w' = torque - d w - k (angle - rest)`, and a closed stop.
+#[derive(Clone, Copy, Debug)]
+struct Joint {
+    inertia: f64,
+    damping: f64,
+    stiffness: f64,
+    rest_rad: f64,
+    closed_n_m_rad: f64,
+}
+
+/// A rig with its own numbers and its secrets.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    pub rig: Rig,
+    pub calibration: Calibration,
+    pub muscles: Vec<MuscleSecrets>,
+    pub mechanism: MechanismSecrets,
+    /// Time since the first run began, s: some things age.
+    pub begun_s: f64,
+}
+
+const HINGES: f64 = 8.0;
+
+impl Plant {
+    pub fn new(rig: Rig, calibration: Calibration) -> Self {
+        let muscles = vec![MuscleSecrets::default(); rig.muscles()];
+        Self { rig, calibration, muscles, mechanism: MechanismSecrets::default(), begun_s: 0.0 }
+    }
+
+    fn joints(&self) -> &'static [Joint] {
+        const PULLEY: Joint =
+            Joint { inertia: 2.5e-7, damping: 2e-6, stiffness: 0.0, rest_rad: 0.0, closed_n_m_rad: 0.0 };
+        const BEND: Joint =
+            Joint { inertia: 0.7e-8, damping: 2e-5, stiffness: 1.05e-3, rest_rad: 0.0, closed_n_m_rad: 0.0 };
+        const JAW: Joint =
+            Joint { inertia: 2e-9, damping: 2e-6, stiffness: 0.9e-3, rest_rad: 0.7, closed_n_m_rad: 0.05 };
+        match self.rig {
+            Rig::MuscleBench => &[],
+            Rig::AntagonisticPulley => &[PULLEY],
+            Rig::BendingCatheter => &[BEND, JAW],
+        }
+    }
+
+    fn first_joint(&self) -> usize {
+        self.muscles.len() * MUSCLE_STATES
+    }
+
+    pub fn states(&self) -> usize {
+        self.first_joint() + self.joints().len() * JOINT_STATES
+    }
+
+    /// What one unit of each scaled state stands for, SI.
+    pub fn scales(&self) -> Vec<f64> {
+        let mut scales = MUSCLE_SCALE.repeat(self.muscles.len());
+        scales.extend(JOINT_SCALE.repeat(self.joints().len()));
+        scales
+    }
+
+    /// The state at rest before the first sample, SI.
+    pub fn start(&self) -> Vec<f64> {
+        let mut x = vec![0.0; self.states()];
+        let e = self.rig.start_elongation_m();
+        for muscle in 0..self.muscles.len() {
+            let m = &mut x[muscle * MUSCLE_STATES..];
+            let (wall, energy) = pull_and_energy(self.calibration.tube_c1_pa, e);
+            let pressure = if e > 0.0 { (wall + COIL_STIFFNESS_N_M * e) / COIL_AREA_M2 } else { 0.0 };
+            (m[P_S], m[P_M], m[E]) = (pressure, pressure, e);
+            (m[BRANCH], m[BRANCH_2], m[GREATEST]) = (e, e, energy);
+            m[BARREL] = self.muscles[muscle].barrel_m3_pa * pressure;
+        }
+        for (i, joint) in self.joints().iter().enumerate() {
+            x[self.first_joint() + i * JOINT_STATES] = joint.rest_rad;
+        }
+        x
+    }
+
+    /// `dx/dt`, SI.
+    pub fn rates(&self, t: f64, x: &[f64], drives: &[Drive], dx: &mut [f64]) {
+        let tensions = self.tensions(x);
+        for (i, drive) in drives.iter().enumerate() {
+            let own = i * MUSCLE_STATES..(i + 1) * MUSCLE_STATES;
+            self.muscle_rates(i, t, &x[own.clone()], drive, tensions[i], &mut dx[own]);
+        }
+        for i in 0..self.joints().len() {
+            self.joint_rates(i, x, tensions, dx);
+        }
+    }
+
+    /// Outputs of the rig in its columns' units, before any sensor's error.
+    pub fn outputs(&self, x: &[f64]) -> Vec<f64> {
+        let pressure = |muscle: usize| 1e-3 * x[muscle * MUSCLE_STATES + P_S];
+        let degrees = |joint: usize| x[self.first_joint() + joint * JOINT_STATES].to_degrees();
+        match self.rig {
+            Rig::MuscleBench => vec![1e3 * x[E], pressure(0)],
+            Rig::AntagonisticPulley => vec![degrees(0), pressure(0), pressure(1)],
+            Rig::BendingCatheter => vec![degrees(0), degrees(1), pressure(0), pressure(1)],
+        }
+    }
+
+    /// How far each joint lets the cable of a muscle in, m per rad.
+    fn lever_m(&self, muscle: usize, joint: usize) -> f64 {
+        match (self.rig, muscle, joint) {
+            (Rig::AntagonisticPulley, 0, 0) => 8e-3,
+            (Rig::AntagonisticPulley, 1, 0) => -8e-3,
+            (Rig::BendingCatheter, 0, 0) => 2.62e-3,
+            (Rig::BendingCatheter, 1, 1) => -1.5e-3,
+            _ => 0.0,
+        }
+    }
+
+    /// Tension of each muscle's cable; on the bench the string's load.
+    fn tensions(&self, x: &[f64]) -> [f64; 2] {
+        if self.rig == Rig::MuscleBench {
+            return [STRING_LOAD_N, 0.0];
+        }
+        let mut tensions = [0.0; 2];
+        for (i, tension) in tensions.iter_mut().enumerate() {
+            let muscle = &x[i * MUSCLE_STATES..];
+            let mut stretch = self.rig.start_elongation_m() - muscle[E] - self.mechanism.slack_m[i];
+            let mut rate = -muscle[V];
+            for (j, joint) in self.joints().iter().enumerate() {
+                let at = self.first_joint() + j * JOINT_STATES;
+                stretch -= self.lever_m(i, j) * (x[at] - joint.rest_rad);
+                rate -= self.lever_m(i, j) * x[at + 1];
+            }
+            if stretch > 0.0 {
+                *tension = (CABLE_N_M * stretch + CABLE_N_S_M * rate).max(0.0);
+            }
+        }
+        tensions
+    }
+
+    fn muscle_rates(&self, i: usize, t: f64, x: &[f64], drive: &Drive, tension: f64, dx: &mut [f64]) {
+        let (s, c) = (&self.muscles[i], &self.calibration);
+        let ripple = s.ripple_m * std::f64::consts::TAU * s.ripple_hz * (std::f64::consts::TAU * s.ripple_hz * t).cos();
+        let piston_m_s = self.piston_speed(s, t, x, drive, dx) + ripple;
+        dx[BARREL] = if s.barrel_s > 0.0 { (s.barrel_m3_pa * x[P_S] - x[BARREL]) / s.barrel_s } else { 0.0 };
+        let entering = SYRINGE_AREA_M2 * piston_m_s - dx[BARREL];
+        dx[P_S] = (entering - x[Q]) / (c.upstream_compliance_m3_pa + vapour_compliance(x[P_S]));
+        let returning = if x[Q] < 0.0 { s.return_restriction } else { 0.0 };
+        let resistance =
+            line_resistance() * (1.0 + (s.restriction + returning) * (1.0 + s.restriction_growth_s_m3 * x[Q].abs()));
+        dx[Q] = (x[P_S] - x[P_M] - resistance * x[Q]) / line_inertance();
+        let taken = (COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E])) * x[V];
+        let compliance = DOWNSTREAM_COMPLIANCE_M3_PA + air_compliance(s, x[P_M]) + vapour_compliance(x[P_M]);
+        dx[P_M] = (x[Q] - taken - self.lost_flow(s, t, x[P_M])) / compliance;
+        dx[E] = x[V];
+        dx[V] = (tension + s.load_n - self.pull(s, t, x)) / END_MASS_KG;
+        dx[Z] = (x[V] - x[V].abs() * x[Z]) / c.presliding_length_m;
+        memories(s, c, x, dx);
+    }
+
+    /// Speed of the piston behind its play.
+    fn piston_speed(&self, s: &MuscleSecrets, t: f64, x: &[f64], drive: &Drive, dx: &mut [f64]) -> f64 {
+        let (position, speed) = drive.at(t);
+        if s.play_m == 0.0 {
+            dx[PISTON] = 0.0;
+            return speed;
+        }
+        let ahead = position - x[PISTON];
+        let gap = 0.5 * s.play_m;
+        dx[PISTON] = (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
+        dx[PISTON]
+    }
+
+    /// Leak minus growth of the fluid, m³/s.
+    fn lost_flow(&self, s: &MuscleSecrets, t: f64, pressure_pa: f64) -> f64 {
+        let fading = if s.growth_fades_s > 0.0 { (-(self.begun_s + t) / s.growth_fades_s).exp() } else { 1.0 };
+        s.leak * pressure_pa * (1.0 + s.leak_growth_1_pa * pressure_pa) - s.growth_m3_s * fading
+    }
+
+    /// Pull of a muscle on its end, N.
+    fn pull(&self, s: &MuscleSecrets, t: f64, x: &[f64]) -> f64 {
+        let c = &self.calibration;
+        let age_s = self.begun_s + t;
+        let e = x[E] - x[SET];
+        let (wall, energy) = pull_and_energy(c.tube_c1_pa, e);
+        let coil = COIL_STIFFNESS_N_M * (1.0 - s.coil_loss_1_s * age_s) * e + preload(s, x[E]);
+        let fibre = if age_s < s.fibre_breaks_s { s.fibre_n_m * e } else { 0.0 };
+        let branch = |(k, _): (f64, f64), dashpot: f64| {
+            let stretch = x[E] - dashpot;
+            k * stretch * (1.0 + s.branch_hardening_1_m2 * stretch * stretch)
+        };
+        let branches = branch(s.branches[0], x[BRANCH]) + branch(s.branches[1], x[BRANCH_2]);
+        let friction = (c.friction_m0_n + c.friction_m1_n_pa * x[P_M].max(0.0)) * x[Z];
+        let rate = s.rate_force_n * (x[V] / 2e-4).asinh();
+        let closed = if x[E] < 0.0 { (-CLOSED_COIL_N_M * x[E] - CLOSED_COIL_N_S_M * x[V]).max(0.0) } else { 0.0 };
+        let pushed = x[P_M] * COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]);
+        wall * softening(s, x[GREATEST] - energy) + coil + fibre + branches + s.cubic_n_m3 * e.powi(3) + friction + rate
+            - pushed
+            + AXIAL_DAMPING_N_S_M * x[V]
+            - closed
+    }
+
+    fn joint_rates(&self, i: usize, x: &[f64], tensions: [f64; 2], dx: &mut [f64]) {
+        let joint = self.joints()[i];
+        let at = self.first_joint() + i * JOINT_STATES;
+        let (angle, speed, sliding) = (x[at], x[at + 1], x[at + 2]);
+        let m = &self.mechanism;
+        let mut torque = -joint.damping * speed - joint.stiffness * (angle - joint.rest_rad);
+        if angle < 0.0 {
+            torque -= joint.closed_n_m_rad * angle;
+        }
+        for (muscle, tension) in tensions.iter().enumerate().take(self.muscles.len()) {
+            torque += self.lever_m(muscle, i) * tension * self.capstan_share(i, angle, speed, sliding);
+        }
+        if i == 0 {
+            torque += self.hidden_torque(angle, speed, sliding, tensions);
+        }
+        let presliding = if m.capstan > 0.0 { 1e-4 / 2.62e-3 } else { m.bearing_rad.max(1e-3) };
+        dx[at] = speed;
+        dx[at + 1] = torque / joint.inertia;
+        dx[at + 2] = (speed - speed.abs() * sliding) / presliding;
+    }
+
+    /// Tension left at the hinges over that at the muscle: each hinge sees the wrap before it.
+    fn capstan_share(&self, joint: usize, angle: f64, speed: f64, sliding: f64) -> f64 {
+        let m = &self.mechanism;
+        if m.capstan == 0.0 || joint > 0 || self.rig != Rig::BendingCatheter {
+            return 1.0;
+        }
+        let way = if m.capstan_by_speed { (speed / 0.02).tanh() } else { sliding };
+        let at = |hinge: i32| (-m.capstan * way * angle.abs() * f64::from(hinge) / HINGES).exp();
+        (1..=HINGES as i32).map(at).sum::<f64>() / HINGES
+    }
+
+    fn hidden_torque(&self, angle: f64, speed: f64, sliding: f64, tensions: [f64; 2]) -> f64 {
+        let m = &self.mechanism;
+        let way = if m.bearing_by_speed { (speed / 0.02).tanh() } else { sliding };
+        let beyond = (angle - m.wall_rad).max(0.0);
+        let wall = m.wall_n_m_rad * if m.wall_power > 1.0 { beyond.powf(m.wall_power) } else { beyond };
+        let closed = (angle / HINGES - m.notch_rad).max(0.0) * m.notch_n_m_rad;
+        m.load_n_m + m.coupling_m * tensions[1] - m.bearing_n_m * way - wall - closed
+    }
+}
+
+fn memories(s: &MuscleSecrets, c: &Calibration, x: &[f64], dx: &mut [f64]) {
+    for (state, (_, time_s)) in [BRANCH, BRANCH_2].into_iter().zip(s.branches) {
+        dx[state] = if time_s > 0.0 { (x[E] - x[state]) / time_s } else { 0.0 };
+    }
+    let over = (x[E] - s.set_threshold_m).max(0.0);
+    dx[SET] = if s.set_rate_1_s == 0.0 {
+        0.0
+    } else if s.set_power > 1.0 {
+        s.set_rate_1_s * s.set_threshold_m * (over / s.set_threshold_m).powf(s.set_power)
+    } else {
+        s.set_rate_1_s * over
+    };
+    dx[GREATEST] = if s.softening == 0.0 {
+        0.0
+    } else {
+        (pull_and_energy(c.tube_c1_pa, x[E] - x[SET]).1 - x[GREATEST]).max(0.0) / GREATEST_S
+    };
+}
+
+/// Share of the wall's force left `below` its greatest energy, J.
+fn softening(s: &MuscleSecrets, below: f64) -> f64 {
+    let depth = below.max(0.0) / 0.02;
+    let grown = if s.softens_exponentially { 1.0 - (-depth).exp() } else { depth.tanh() };
+    1.0 - s.softening * grown
+}
+
+fn preload(s: &MuscleSecrets, e: f64) -> f64 {
+    let share = if s.preload_exponential { e.signum() * (1.0 - (-e.abs() / 3e-4).exp()) } else { (e / 2.5e-4).tanh() };
+    s.preload_n * share
+}
+
+fn air_compliance(s: &MuscleSecrets, pressure_pa: f64) -> f64 {
+    if s.air_m3 == 0.0 {
+        return 0.0;
+    }
+    let ratio = ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure_pa).max(1e3);
+    s.air_m3 / (s.air_exponent * ATMOSPHERE_PA) * ratio.powf(1.0 / s.air_exponent + 1.0)
+}
+
+/// A boiling node gives way: a great compliance stands for its vapour.
+fn vapour_compliance(pressure_pa: f64) -> f64 {
+    if pressure_pa < BOILING_PA { 1e-11 } else { 0.0 }
+}

@@ -1,0 +1,55 @@
+//! A case as files: what everyone may see, what is kept back, and the sealed answer.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::ConcealError;
+use super::case::Drawn;
+use super::seal::{seal, sealed_text};
+use crate::recording::write_whole;
+
+/// Folder of sealed answers inside a folder of cases.
+pub const SEALED: &str = "sealed";
+
+/// Writes `NAME/` (recordings), `NAME.holdout.csv` (kept back) and `sealed/NAME.json` (the answer) into `folder`; returns
+/// the seal.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn write_case(drawn: &Drawn, folder: &Path) -> Result<String, ConcealError> {
+    let name = &drawn.truth.name;
+    let text = sealed_text(&drawn.truth).map_err(|e| ConcealError::Solver(e.to_string()))?;
+    let own = folder.join(name);
+    for (file, recording) in &drawn.runs {
+        recording.write_csv(&own.join(file))?;
+    }
+    drawn.holdout.write_csv(&folder.join(format!("{name}.holdout.csv")))?;
+    write(&folder.join(SEALED).join(format!("{name}.json")), &text)?;
+    // Last: a folder with this file is whole.
+    write(&own.join("recordings.toml"), &recordings_toml(drawn))?;
+    Ok(seal(&text))
+}
+
+fn recordings_toml(drawn: &Drawn) -> String {
+    let truth = &drawn.truth;
+    let mut text = format!("format = 1\nscene = \"{}\"\n", truth.rig.scene());
+    for column in truth.rig.inputs() {
+        let _ = write!(text, "\n[[channel]]\ncolumn = \"{column}\"\nrole = \"input\"\n");
+    }
+    for (output, noise) in truth.rig.outputs().iter().zip(&truth.noise) {
+        if drawn.holdout.find(output.column).is_some() {
+            let _ = write!(text, "\n[[channel]]\ncolumn = \"{}\"\nrole = \"output\"\n", output.column);
+            if truth.is_noise_stated {
+                let _ = writeln!(text, "noise_sd = {:.4}", noise.sd);
+            }
+        }
+    }
+    for (file, _) in &drawn.runs {
+        let _ = write!(text, "\n[[run]]\nfile = \"{file}\"\n");
+    }
+    text
+}
+
+fn write(path: &Path, text: &str) -> Result<(), ConcealError> {
+    write_whole(path, text).map_err(|source| ConcealError::Write { file: path.to_path_buf(), source })
+}

@@ -1,0 +1,59 @@
+//! What a corrected scene is worth on the recording that nobody saw.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::ProofError;
+use crate::conceal::Truth;
+use crate::identify::{RecordedRun, replay};
+use crate::recording::{Recording, Run, RunUse, read_csv, write_whole};
+
+/// Mean squared residual of each output over the noise's variance: baseline, corrected.
+type Errors = BTreeMap<String, [f64; 2]>;
+
+/// Share of the gap between the calibrated scene and the noise that the corrected scene closes; kept beside the answer.
+///
+/// # Errors
+/// Scenes that cannot be run, files that cannot be read.
+pub fn gap_on_holdout(truth: &Truth, answer: &Path, holdout: &Path) -> Result<f64, ProofError> {
+    let path = answer.join("holdout.json");
+    let known = std::fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str::<Errors>(&text).ok());
+    let errors = match known {
+        Some(errors) => errors,
+        None => {
+            let errors = errors(truth, answer, holdout)?;
+            let text = serde_json::to_string_pretty(&errors)
+                .map_err(|e| ProofError::Format { file: path.clone(), message: e.to_string() })?;
+            write_whole(&path, &text).map_err(|source| ProofError::Write { file: path, source })?;
+            errors
+        }
+    };
+    let mean = |which: usize| errors.values().map(|e| e[which]).sum::<f64>() / errors.len().max(1) as f64;
+    // Below a few hundredths of the noise there is no gap to close.
+    let gap = (mean(0) - 1.0).max(0.02);
+    Ok((mean(0) - mean(1)) / gap)
+}
+
+fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Errors, ProofError> {
+    let recording = read_csv(holdout)?;
+    let run = RecordedRun {
+        run: Run { file: holdout.display().to_string(), run_use: Some(RunUse::Holdout), conditions: BTreeMap::new() },
+        recording,
+    };
+    let simulate = |scene: &str| replay(&answer.join(scene).display().to_string(), &[], &run, 1);
+    let (baseline, corrected) = (simulate("baseline.toml")?, simulate("scene.toml")?);
+    let outputs = truth.rig.outputs().iter().zip(&truth.noise);
+    let shown = outputs.filter(|(o, _)| run.recording.find(o.column).is_some());
+    shown
+        .map(|(o, noise)| {
+            let squares = |simulated: &Recording| mean_square(&run.recording, simulated, o.column, noise.sd);
+            Ok((o.column.to_owned(), [squares(&baseline)?, squares(&corrected)?]))
+        })
+        .collect()
+}
+
+fn mean_square(measured: &Recording, simulated: &Recording, column: &str, sd: f64) -> Result<f64, ProofError> {
+    let (was, is) = (&measured.channel(column)?.values, &simulated.channel(column)?.values);
+    let there: Vec<f64> = was.iter().zip(is).map(|(w, s)| (w - s) / sd).filter(|r| r.is_finite()).collect();
+    Ok(there.iter().map(|r| r * r).sum::<f64>() / there.len().max(1) as f64)
+}

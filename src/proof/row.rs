@@ -1,0 +1,135 @@
+//! One case with its truth and its answer.
+
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::ProofError;
+use super::campaign::Folders;
+use super::holdout::gap_on_holdout;
+use crate::conceal::{Decoy, Hiding, Rig, SEALED, Secret, Truth, seal};
+use crate::diagnose::{Diagnosis, Verdict};
+
+/// An effect as somebody named it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answered {
+    pub name: String,
+    pub element: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<String>,
+    pub probability: f64,
+    /// Its first number with its 95 % interval, where one was given: value, from, to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<[f64; 3]>,
+}
+
+impl Answered {
+    /// Whether this is what was hidden.
+    pub fn is(&self, secret: &Secret) -> bool {
+        self.name == secret.name && self.element == secret.element && self.channel == secret.channel
+    }
+}
+
+/// One case of a proof, opened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    pub name: String,
+    pub rig: Rig,
+    pub hiding: Hiding,
+    pub secrets: Vec<Secret>,
+    pub is_noise_coloured: bool,
+    pub is_noise_stated: bool,
+    pub decoys: Vec<Decoy>,
+    pub verdict: Verdict,
+    pub element: Option<String>,
+    pub effects: Vec<Answered>,
+    /// Misfit per sample of the refitted baseline, in units of the noise's variance.
+    pub excess: f64,
+    /// Share of the gap between baseline and noise that is closed on the recording kept back.
+    pub gap_closed: Option<f64>,
+    pub seconds: f64,
+}
+
+impl Row {
+    /// Whether it was said that something is missing.
+    pub fn is_detected(&self) -> bool {
+        matches!(self.verdict, Verdict::MissingPhysics | Verdict::Ambiguous | Verdict::UnknownPhysics)
+    }
+
+    /// Probability that the answer gives to a secret.
+    pub fn probability_of(&self, secret: &Secret) -> f64 {
+        self.effects.iter().filter(|e| e.is(secret)).map(|e| e.probability).fold(0.0, f64::max)
+    }
+
+    /// The most probable effect of the answer.
+    pub fn first(&self) -> Option<&Answered> {
+        self.effects.iter().max_by(|a, b| a.probability.total_cmp(&b.probability))
+    }
+
+    /// Whether an effect is named with confidence that is not there.
+    pub fn is_confidently_wrong(&self) -> bool {
+        let named = self.verdict == Verdict::MissingPhysics || self.verdict == Verdict::Ambiguous;
+        let is_wrong = |e: &&Answered| e.probability > 0.9 && !self.secrets.iter().any(|s| e.is(s));
+        named && self.effects.iter().any(|e| is_wrong(&e))
+    }
+}
+
+/// Opens the seal of a case; `seal_line` is what was published before anyone answered.
+///
+/// # Errors
+/// An answer under the seal that is not the one that was sealed.
+pub fn open(name: &str, published: &str, folders: &Folders) -> Result<Truth, ProofError> {
+    let path = folders.cases.join(SEALED).join(format!("{name}.json"));
+    let text = read(&path)?;
+    if seal(&text) != published {
+        return Err(ProofError::Broken { file: path, name: name.to_owned() });
+    }
+    serde_json::from_str(&text).map_err(|e| ProofError::Format { file: path, message: e.to_string() })
+}
+
+/// The row of a case that was answered.
+///
+/// # Errors
+/// Files that are not there or hold something else.
+pub fn row(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
+    let folder = folders.answers.join(&truth.name);
+    let path = folder.join("diagnosis.json");
+    let diagnosis: Diagnosis = serde_json::from_str(&read(&path)?)
+        .map_err(|e| ProofError::Format { file: path.clone(), message: e.to_string() })?;
+    let hides = truth.hiding != Hiding::Nothing && folder.join("scene.toml").is_file();
+    let gap_closed = if hides { Some(gap_on_holdout(truth, &folder, &folders.holdout(&truth.name))?) } else { None };
+    Ok(Row {
+        name: truth.name.clone(),
+        rig: truth.rig,
+        hiding: truth.hiding,
+        secrets: truth.secrets.clone(),
+        is_noise_coloured: truth.is_noise_coloured,
+        is_noise_stated: truth.is_noise_stated,
+        decoys: truth.decoys.clone(),
+        verdict: diagnosis.verdict,
+        element: diagnosis.location.element.clone(),
+        effects: diagnosis.effects.iter().map(|e| answered(e, truth)).collect(),
+        excess: diagnosis.detection.excess_chi2_per_sample,
+        gap_closed,
+        seconds: folders.seconds(&truth.name).unwrap_or(f64::NAN),
+    })
+}
+
+fn answered(e: &crate::diagnose::NamedEffect, truth: &Truth) -> Answered {
+    let mut answered = Answered {
+        name: e.name.clone(),
+        element: e.element.clone(),
+        channel: e.channel.clone(),
+        probability: e.probability,
+        size: None,
+    };
+    let secret = truth.secrets.iter().find(|s| answered.is(s));
+    let number = secret.and_then(|s| e.parameters.get(&s.key));
+    answered.size = number.map(|n| [n.value, n.ci95[0], n.ci95[1]]);
+    answered
+}
+
+pub(super) fn read(path: &Path) -> Result<String, ProofError> {
+    fs::read_to_string(path).map_err(|source| ProofError::Read { file: path.to_path_buf(), source })
+}

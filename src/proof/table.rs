@@ -1,0 +1,144 @@
+//! A proof as a page of Markdown.
+
+use std::fmt::Write as _;
+
+use super::metrics::{Metric, VISIBLE, wilson};
+use super::row::Row;
+use crate::conceal::{Hiding, Secret};
+
+/// Table of the figures, results by misfit, reliability, and every wrong answer.
+pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
+    let mut text = String::from("| figure | target | reached | 95 % interval | cases | |\n|---|---|---|---|---|---|\n");
+    for m in metrics {
+        let number = |v: f64| if m.key == "set_size" { format!("{v:.2}") } else { format!("{:.1} %", 100.0 * v) };
+        let mark = if m.cases == 0 {
+            "none"
+        } else if m.is_met {
+            "met"
+        } else {
+            "**not met**"
+        };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} to {} | {} | {mark} |",
+            m.what,
+            m.target,
+            number(m.value),
+            number(m.interval[0]),
+            number(m.interval[1]),
+            m.cases
+        );
+    }
+    by_misfit(&mut text, rows);
+    by_effect(&mut text, rows);
+    reliability(&mut text, rows);
+    wrong(&mut text, rows);
+    text
+}
+
+/// Edges of the bins of misfit per sample.
+const BINS: [f64; 7] = [0.0, 0.01, 0.03, VISIBLE, 0.3, 1.0, 10.0];
+
+fn by_misfit(text: &mut String, rows: &[Row]) {
+    text.push_str("\n### By misfit per sample after the baseline's refit\n\n");
+    text.push_str(
+        "| excess chi2/n | cases with something missing | detected | one effect: right |\n|---|---|---|---|\n",
+    );
+    for (i, low) in BINS.iter().enumerate() {
+        let high = BINS.get(i + 1).copied().unwrap_or(f64::INFINITY);
+        let inside = |r: &&Row| r.hiding != Hiding::Nothing && r.excess >= *low && r.excess < high;
+        let own: Vec<&Row> = rows.iter().filter(inside).collect();
+        let one: Vec<&&Row> = own.iter().filter(|r| r.hiding == Hiding::One).collect();
+        let detected = own.iter().filter(|r| r.is_detected()).count();
+        let right = one.iter().filter(|r| r.first().is_some_and(|e| r.secrets.iter().any(|s| e.is(s)))).count();
+        let name = if high.is_finite() { format!("{low} to {high}") } else { format!("above {low}") };
+        let _ = writeln!(text, "| {name} | {} | {} | {} |", own.len(), of(detected, own.len()), of(right, one.len()));
+    }
+}
+
+fn of(hits: usize, count: usize) -> String {
+    if count == 0 {
+        return "-".to_owned();
+    }
+    let [from, to] = wilson(hits, count);
+    format!("{hits}/{count} ({:.0} to {:.0} %)", 100.0 * from, 100.0 * to)
+}
+
+fn by_effect(text: &mut String, rows: &[Row]) {
+    text.push_str("\n### By what was hidden, alone (visible cases)\n\n| hidden | cases | detected | named | said to be unknown |\n|---|---|---|---|---|\n");
+    let alone = |r: &&Row| matches!(r.hiding, Hiding::One | Hiding::Unlisted) && r.excess >= VISIBLE;
+    let mut names: Vec<&str> = rows.iter().filter(alone).flat_map(|r| &r.secrets).map(|s| s.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    for name in names {
+        let own: Vec<&Row> = rows.iter().filter(alone).filter(|r| r.secrets[0].name == name).collect();
+        let count = |is: &dyn Fn(&Row) -> bool| own.iter().filter(|r| is(r)).count();
+        let named = count(&|r| r.first().is_some_and(|e| e.is(&r.secrets[0])));
+        let unknown = count(&|r| r.verdict == crate::diagnose::Verdict::UnknownPhysics);
+        let listed = if own[0].secrets[0].in_catalogue { "" } else { " (not listed)" };
+        let _ =
+            writeln!(text, "| {name}{listed} | {} | {} | {named} | {unknown} |", own.len(), count(&Row::is_detected));
+    }
+}
+
+fn reliability(text: &mut String, rows: &[Row]) {
+    text.push_str("\n### Reliability: probability given against share that was right\n\n| probability | effects named | right |\n|---|---|---|\n");
+    for (low, high) in reliability_bins() {
+        let (right, count) = in_bin(rows, low, high);
+        let _ = writeln!(text, "| {low:.1} to {high:.1} | {count} | {} |", of(right, count));
+    }
+}
+
+pub(super) fn reliability_bins() -> [(f64, f64); 6] {
+    [(0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95), (0.95, 1.0)]
+}
+
+/// Named effects whose probability lies in a bin: how many are right, how many there are.
+pub(super) fn in_bin(rows: &[Row], low: f64, high: f64) -> (usize, usize) {
+    let inside = |p: f64| p >= low && (p < high || high == 1.0);
+    let named = rows.iter().flat_map(|r| r.effects.iter().map(move |e| (r, e)));
+    let own: Vec<_> = named.filter(|(r, e)| r.hiding != Hiding::Unlisted && inside(e.probability)).collect();
+    (own.iter().filter(|(r, e)| r.secrets.iter().any(|s| e.is(s))).count(), own.len())
+}
+
+fn wrong(text: &mut String, rows: &[Row]) {
+    text.push_str("\n### Answers that are wrong\n\n| case | hidden | excess | answer |\n|---|---|---|---|\n");
+    for r in rows.iter().filter(|r| is_wrong(r)) {
+        let hidden: Vec<String> = r.secrets.iter().map(secret_words).collect();
+        let named: Vec<String> = r
+            .effects
+            .iter()
+            .map(|e| format!("{} {} {:.2}", e.name, place(&e.element, &e.channel), e.probability))
+            .collect();
+        let verdict = format!("{:?}", r.verdict);
+        let _ = writeln!(
+            text,
+            "| {} {} | {} | {:.3} | {verdict}: {} |",
+            r.name,
+            r.rig.scene(),
+            hidden.join(", "),
+            r.excess,
+            named.join(", ")
+        );
+    }
+}
+
+/// A false alarm, something visible that was missed, or something named that is not there and nothing that is.
+fn is_wrong(r: &Row) -> bool {
+    match r.hiding {
+        Hiding::Nothing => r.is_detected(),
+        _ if r.excess >= VISIBLE && !r.is_detected() => true,
+        Hiding::Unlisted => r.is_confidently_wrong(),
+        Hiding::One => r.is_detected() && !r.first().is_some_and(|e| e.is(&r.secrets[0])),
+        Hiding::Several => r.is_confidently_wrong(),
+    }
+}
+
+fn secret_words(s: &Secret) -> String {
+    let form = if s.is_altered { ", altered" } else { "" };
+    format!("{} {} {:.2e}{form}", s.name, place(&s.element, &s.channel), s.size)
+}
+
+fn place(element: &str, channel: &Option<String>) -> String {
+    channel.clone().unwrap_or_else(|| element.to_owned())
+}
