@@ -39,32 +39,4 @@ pub enum ConcealError {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::SeedableRng;
-    #[test]
-    fn speed() {
-        for rig in stock::Rig::ALL {
-            for wave in [programme::Wave::Sine, programme::Wave::Steps] {
-                let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(1);
-                let drives = programme::programme(rig, wave, &mut r);
-                let plant = plant::Plant::new(rig, stock::Calibration::STOCK);
-                let t = std::time::Instant::now();
-                let out = solve::solve(&plant, &drives);
-                match out {
-                    Ok(o) => println!(
-                        "{rig:?} {wave:?} {:?} {:?}",
-                        t.elapsed(),
-                        o.iter()
-                            .map(|c| (
-                                c.iter().cloned().fold(f64::MAX, f64::min),
-                                c.iter().cloned().fold(f64::MIN, f64::max)
-                            ))
-                            .collect::<Vec<_>>()
-                    ),
-                    Err(e) => println!("{rig:?} {wave:?} {:?} {e}", t.elapsed()),
-                }
-            }
-        }
-    }
-}
+mod tests;

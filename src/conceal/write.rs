@@ -20,6 +20,7 @@ pub fn write_case(drawn: &Drawn, folder: &Path) -> Result<String, ConcealError> 
     let name = &drawn.truth.name;
     let text = sealed_text(&drawn.truth).map_err(|e| ConcealError::Solver(e.to_string()))?;
     let own = folder.join(name);
+    std::fs::create_dir_all(&own).map_err(|source| ConcealError::Write { file: own.clone(), source })?;
     for (file, recording) in &drawn.runs {
         recording.write_csv(&own.join(file))?;
     }

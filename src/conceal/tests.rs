@@ -1,0 +1,77 @@
+//! The concealing plant against closed forms and the paper's figures, and cases as a whole.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::plant::Plant;
+use super::programme::{Drive, SAMPLE_S, Wave, programme};
+use super::solve::solve;
+use super::stock::{Calibration, Rig};
+use super::{Hiding, draw, seal, sealed_text};
+
+/// A plunger that goes to a position over three seconds and stays for seven.
+fn held(to_m: f64) -> Vec<Drive> {
+    let at = |k: usize| to_m * (k as f64 * SAMPLE_S / 3.0).min(1.0);
+    vec![Drive { positions_m: (0..1000).map(at).collect() }]
+}
+
+/// Drawn: 3 mm of plunger give about 27 mm; unloading lies above loading.
+#[test]
+fn the_stock_muscle_moves_as_the_paper_says() {
+    let plant = Plant::new(Rig::MuscleBench, Calibration::STOCK);
+    let out = solve(&plant, &held(2.9e-3)).expect("a stock muscle");
+    let end = out[0].last().copied().unwrap_or(0.0);
+    assert!((25.0..30.0).contains(&end), "{end} mm");
+    assert!((1900.0..2400.0).contains(&out[1][999]), "{} kPa", out[1][999]);
+}
+
+/// Fluid is not lost: what leaves the syringe fills the muscle and the compliances; a leak takes the rest.
+#[test]
+fn a_leak_takes_what_it_says() {
+    let mut plant = Plant::new(Rig::MuscleBench, Calibration::STOCK);
+    let tight = solve(&plant, &held(2.0e-3)).expect("a stock muscle");
+    plant.muscles[0].leak = 2e-16;
+    let leaking = solve(&plant, &held(2.0e-3)).expect("a leaking muscle");
+    // Lost volume: the integral of G p; it shows as elongation and as relieved compliances.
+    let lost_m3: f64 = leaking[1].iter().map(|p| 2e-16 * p * 1e3 * SAMPLE_S).sum();
+    let (de, dp) = (1e-3 * (tight[0][999] - leaking[0][999]), 1e3 * (tight[1][999] - leaking[1][999]));
+    let seen_m3 = super::stock::COIL_AREA_M2 * de + (8.0e-15 + 2.6e-15) * dp;
+    assert!((seen_m3 / lost_m3 - 1.0).abs() < 0.02, "{seen_m3:e} {lost_m3:e}");
+}
+
+#[test]
+fn mechanisms_start_in_balance_and_stay_there() {
+    for rig in [Rig::AntagonisticPulley, Rig::BendingCatheter] {
+        let plant = Plant::new(rig, Calibration::STOCK);
+        let still = vec![Drive { positions_m: vec![0.0; 50] }; 2];
+        let out = solve(&plant, &still).expect("a rig at rest");
+        for channel in out {
+            let moved = channel.iter().fold(0.0f64, |m, x| m.max((x - channel[0]).abs()));
+            assert!(moved < 1e-3, "{rig:?} moved by {moved}");
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_hides_the_same() {
+    let text =
+        |seed| sealed_text(&draw("a", Rig::MuscleBench, Hiding::Nothing, seed).expect("a case").truth).expect("JSON");
+    assert_eq!(seal(&text(7)), seal(&text(7)));
+    assert_ne!(seal(&text(7)), seal(&text(8)));
+}
+
+/// Programmes begin at rest and stay within the stroke.
+#[test]
+fn programmes_stay_within_the_stroke() {
+    for rig in Rig::ALL {
+        for wave in [Wave::Sine, Wave::Steps, Wave::Chirp, Wave::Triangle, Wave::Wander, Wave::TwoTone] {
+            let drives = programme(rig, wave, &mut ChaCha8Rng::seed_from_u64(5));
+            for (drive, (low, high)) in drives.iter().zip(rig.strokes_m()) {
+                let slack = 0.06 * (high - low);
+                assert!(drive.positions_m[0].abs() < 1e-12, "{rig:?} {wave:?}");
+                let inside = |x: &f64| (low - slack..=high + slack).contains(x);
+                assert!(drive.positions_m.iter().all(inside), "{rig:?} {wave:?}");
+            }
+        }
+    }
+}
