@@ -13,6 +13,7 @@ mod events;
 mod expect;
 mod extras;
 mod graph;
+mod influence;
 mod inputs;
 mod install;
 mod ldl;
@@ -32,6 +33,7 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
+pub use influence::{Influence, influence};
 pub use inputs::InputSource;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
