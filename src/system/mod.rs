@@ -6,6 +6,7 @@ mod axis;
 mod build;
 mod channels;
 mod contact;
+mod effect_energy;
 mod elastic;
 mod energy;
 mod error;
