@@ -280,6 +280,18 @@ fn compare_names_what_does_not_fit_together() {
     assert_eq!(listing(here.path()), ["rig"]);
 }
 
+/// Said at once, not after a diagnosis of minutes.
+#[cfg(not(feature = "viz"))]
+#[test]
+fn a_build_without_the_viewer_says_so() {
+    let here = folder();
+    for flag in ["--rrd", "--view"] {
+        let output = smam(&["diagnose", "nowhere", flag], here.path());
+        refused(&output, &["--rrd and --view need the viewer", "build with the default features"]);
+    }
+    assert!(listing(here.path()).is_empty());
+}
+
 #[test]
 fn an_effect_is_said_and_drawn() {
     let here = folder();

@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod diagnose;
+mod diagnose_view;
 mod effects;
 mod error;
 mod files;

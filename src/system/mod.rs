@@ -19,6 +19,7 @@ mod inputs;
 mod install;
 mod ldl;
 mod lift;
+mod measured_pose;
 pub mod observe;
 mod plant;
 mod rosenbrock;
@@ -36,6 +37,7 @@ pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
 pub use influence::{Influence, influence};
 pub use inputs::InputSource;
+pub use measured_pose::measured_poses;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
     PlantState,
