@@ -19,8 +19,8 @@ enum Flow {
     Gravity,
     Expansion,
     Coupling,
-    HypotheticalForce,
-    HypotheticalFlow,
+    UnknownPull,
+    UnknownOutflow,
     Leak,
     Restriction,
     Relaxation,
@@ -165,10 +165,10 @@ fn muscle_flows(
     flows.add(Flow::Leak, x.leak_m3_s_pa.map_or(0.0, |g| g * p * p));
     flows.add(Flow::Expansion, x.growth_m3_s.map_or(0.0, |q| q * p));
     for flow in &x.flows {
-        flows.add(Flow::HypotheticalFlow, -flow.flow_m3_s(p) * p);
+        flows.add(Flow::UnknownOutflow, -flow.flow_m3_s(p) * p);
     }
     for force in &x.forces {
-        flows.add(Flow::HypotheticalForce, -force.pull_and_stiffness(f.elongation_m, p).0 * f.speed_m_s);
+        flows.add(Flow::UnknownPull, -force.pull_and_stiffness(f.elongation_m, p).0 * f.speed_m_s);
     }
     for (branch, &dashpot) in x.branches.iter().zip(slow) {
         flows.add(Flow::Relaxation, branch.dissipation_w(f.elongation_m, dashpot));

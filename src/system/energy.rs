@@ -6,7 +6,7 @@
 
 use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
-use super::plant::{CoordinateStop, Drive, InputSpan, MusclePlant, Plant, PlantState, dot};
+use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
 
 /// Powers at one state, W.
 #[derive(Clone, Copy, Debug, Default)]
@@ -95,11 +95,13 @@ impl EnergyBook {
 
     /// Work of pistons that have play over that of plungers without, J: the piston is what the fluid sees.
     fn work_in_play(&self, plant: &Plant<f64>, state: &PlantState<f64>) -> f64 {
-        let work = |(muscle, (b, a)): (&MusclePlant<f64>, (&(f64, f64), (f64, f64)))| match &muscle.drive {
-            Drive::Hydraulic { syringe_area_m2, .. } => (b.0 + a.0) / 2.0 * syringe_area_m2 * (a.1 - b.1),
-            Drive::Pressure { .. } => 0.0,
-        };
-        plant.muscles.iter().zip(self.pistons_before.iter().zip(pistons(state))).map(work).sum()
+        let mut work_j = 0.0;
+        for (muscle, (before, after)) in plant.muscles.iter().zip(self.pistons_before.iter().zip(pistons(state))) {
+            if let Drive::Hydraulic { syringe_area_m2, .. } = &muscle.drive {
+                work_j += (before.0 + after.0) / 2.0 * syringe_area_m2 * (after.1 - before.1);
+            }
+        }
+        work_j
     }
 
     /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
