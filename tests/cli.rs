@@ -280,6 +280,37 @@ fn compare_names_what_does_not_fit_together() {
     assert_eq!(listing(here.path()), ["rig"]);
 }
 
+/// Said at once, not after a diagnosis of minutes.
+#[cfg(not(feature = "viz"))]
+#[test]
+fn a_build_without_the_viewer_says_so() {
+    let here = folder();
+    for flag in ["--rrd", "--view"] {
+        let output = smam(&["diagnose", "nowhere", flag], here.path());
+        refused(&output, &["--rrd and --view need the viewer", "build with the default features"]);
+    }
+    assert!(listing(here.path()).is_empty());
+}
+
+#[test]
+fn an_effect_is_said_and_drawn() {
+    let here = folder();
+    let output = smam(&["effects", "leak"], here.path());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(printed(&output).contains("Q_leak = G p_m") && said(&output).contains("picture: out/effects/leak.svg"));
+    let svg = std::fs::read_to_string(here.path().join("out/effects/leak.svg")).expect("written");
+    for text in [">muscle_bench, leak in line<", ">bending_catheter, leak in line_1<", ">conductance_m3_s_pa = 2e-16<"]
+    {
+        assert!(svg.contains(text), "no {text}");
+    }
+    assert!(svg.contains(">elongation (mm)<") && svg.contains(">change (°)<") && svg.contains(">time (s)<"));
+    // Two laws share this name: each has its picture.
+    let output = smam(&["effects", "sensor_lag", "--out", "new"], here.path());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(listing(&here.path().join("new")), ["sensor_lag.svg", "sensor_lag_delay_s.svg"]);
+    refused(&smam(&["effects", "leek"], here.path()), &["leek: no such effect", "`smam effects` lists them"]);
+}
+
 #[test]
 fn a_model_is_written_whole() {
     let here = folder();

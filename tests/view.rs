@@ -1,4 +1,4 @@
-//! Contract: a ten-second run of a synthetic catheter becomes an `.rrd` file that ends properly.
+//! Contract: a ten-second run of a synthetic catheter, and a diagnosis of two, become `.rrd` files that end properly.
 //!
 //! To look at it, name the file: `SMAM_VIEW_RRD=f.rrd cargo test --release --test view`, then
 //! `rerun f.rrd`, or `rerun f.rrd --headless --screenshot-to f.png --window-size 1600x900`.
@@ -8,8 +8,10 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::PathBuf;
 
 use smam::mechanism::geometry::{Contact, Pose, Shape, Visual};
-use smam::system::observe::{CableFrame, Frame, MuscleFrame, MuscleGraph, Observer, SceneGraph};
-use smam::view::{ViewOptions, ViewSink, Viewer};
+use smam::system::observe::{
+    CableFrame, Frame, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+};
+use smam::view::{ViewOptions, ViewSink, Viewer, show_diagnosis};
 
 const LINKS: usize = 8;
 const LINK_M: f64 = 0.018;
@@ -33,6 +35,52 @@ fn a_bending_catheter_becomes_a_complete_file() {
     let bytes = std::fs::read(&file).unwrap();
     assert!(bytes.starts_with(b"RRF2"), "an .rrd file's head");
     assert!(bytes.len() < 4_000_000, "{} bytes for 1001 frames", bytes.len());
+}
+
+/// Two runs of ten seconds: what was measured bends further than the calibrated scene, the corrected one almost so.
+#[test]
+fn a_diagnosis_becomes_a_complete_file() {
+    let file = std::env::var_os("SMAM_DIAGNOSIS_RRD")
+        .map_or_else(|| PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("diagnosis.rrd"), PathBuf::from);
+    let runs = [compared("sine.csv"), compared("steps.csv (sealed)")];
+    let sink = ViewSink::File(file.clone());
+    let said = show_diagnosis(&sink, "Diagnosis", "Something is missing.", &runs, &ViewOptions::default()).unwrap();
+    assert!(said.contains("`rerun "));
+    let bytes = std::fs::read(&file).unwrap();
+    assert!(bytes.starts_with(b"RRF2"), "an .rrd file's head");
+    assert!(bytes.len() < 4_000_000, "{} bytes for 2 runs of 1001 frames", bytes.len());
+    let none = show_diagnosis(&sink, "Diagnosis", "", &[], &ViewOptions::default()).unwrap_err().to_string();
+    assert!(none.contains("at least one"), "{none}");
+    let mut wrong = compared("sine.csv");
+    wrong.measured[0].values.pop();
+    let error = show_diagnosis(&sink, "Diagnosis", "", &[wrong], &ViewOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("1000 measured samples") && error.contains("1001"), "{error}");
+}
+
+fn compared(run: &str) -> SideBySide {
+    let frames = |share: f64| -> Vec<Frame> {
+        let scaled = |time_s: f64| {
+            let mut frame = frame(time_s);
+            frame.channels[6] *= share;
+            frame.link_poses = poses(share * frame.channels[6].to_radians());
+            frame
+        };
+        (0..=1000).map(|n| scaled(f64::from(n) * 0.01)).collect()
+    };
+    let (measured, calibrated, corrected) = (frames(1.0), frames(0.8), frames(0.98));
+    SideBySide {
+        run: run.to_owned(),
+        graph: graph(),
+        measured: vec![MeasuredChannel {
+            channel: 6,
+            values: measured.iter().map(|frame| frame.channels[6]).collect(),
+            noise_sd: 0.5,
+        }],
+        measured_poses: measured.into_iter().map(|frame| frame.link_poses).collect(),
+        calibrated,
+        corrected,
+        windows_s: vec![(2.0, 4.5), (6.0, 8.0)],
+    }
 }
 
 fn graph() -> SceneGraph {

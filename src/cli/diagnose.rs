@@ -9,6 +9,7 @@ use smam::report::diagnosis_page;
 use smam::scene::Override;
 
 use super::CliError;
+use super::diagnose_view::Shown;
 use super::files::write;
 
 /// Arguments of `smam diagnose`.
@@ -26,6 +27,12 @@ pub struct DiagnoseArguments {
     /// Where to write diagnosis.json, report.html, scene.toml and baseline.toml [default: out/diagnose_DIR]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write diagnosis.rrd beside them: measured, calibrated and corrected scene side by side, for the Rerun viewer
+    #[arg(long)]
+    rrd: bool,
+    /// Open the Rerun viewer on the same
+    #[arg(long)]
+    view: bool,
     /// Of the bootstrap's draws; the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -36,6 +43,8 @@ pub struct DiagnoseArguments {
 
 /// Runs the command. Exit code 0 whatever the verdict, but 1 when the recordings cannot be diagnosed.
 pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
+    let shown = Shown { in_file: arguments.rrd, in_window: arguments.view };
+    shown.check()?;
     if let Some(threads) = arguments.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|e| CliError::Usage(format!("--threads {threads}: {e}")))?;
@@ -49,6 +58,7 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     write(&out.join("report.html"), &diagnosis_page(&outcome))?;
     print_diagnosis(&outcome.diagnosis);
     eprintln!("written: {}", out.display());
+    shown.show(&outcome, &out)?;
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
     Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }

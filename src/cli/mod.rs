@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod conceal;
 mod diagnose;
+mod diagnose_view;
 mod effects;
 mod error;
 mod files;

@@ -45,14 +45,7 @@ pub fn agreement(case: &Case, runs: &[FullRun]) -> FullScene {
 }
 
 fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRun, DiagnoseError> {
-    let scene = corrected_run_scene(case, fit, &run.scene)?;
-    let columns: Vec<String> = scene.file.input.iter().map(|i| i.channel.clone()).collect();
-    let mut simulation = Simulation::new(scene)?;
-    for (column, values) in columns.iter().zip(&run.drive.inputs) {
-        if let Some(line) = PiecewiseLinear::new(&run.drive.times_s, values) {
-            simulation.set_input(column, InputSource::Recorded(line));
-        }
-    }
+    let mut simulation = full_simulation(case, fit, run)?;
     let shown = record(&mut simulation, &Schedule(run.drive.times_s.clone()))?;
     let mut values = Vec::new();
     for channel in &case.channels {
@@ -67,6 +60,22 @@ fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRu
     };
     let difference_over_noise = (0..values.len()).map(difference).collect();
     Ok(FullRun { is_sealed: run.is_sealed, values, difference_over_noise })
+}
+
+/// The full scene of a run with the numbers of a fit, driven by what was recorded.
+///
+/// # Errors
+/// Numbers that the scene's own checks refuse.
+pub fn full_simulation(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Simulation, DiagnoseError> {
+    let scene = corrected_run_scene(case, fit, &run.scene)?;
+    let columns: Vec<String> = scene.file.input.iter().map(|i| i.channel.clone()).collect();
+    let mut simulation = Simulation::new(scene)?;
+    for (column, values) in columns.iter().zip(&run.drive.inputs) {
+        if let Some(line) = PiecewiseLinear::new(&run.drive.times_s, values) {
+            simulation.set_input(column, InputSource::Recorded(line));
+        }
+    }
+    Ok(simulation)
 }
 
 fn rms(difference: &[f64], has_free_zero: bool) -> f64 {

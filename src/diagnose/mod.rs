@@ -25,6 +25,7 @@ mod preflight;
 pub mod programme;
 mod prove;
 mod search;
+mod side_by_side;
 mod steady;
 mod summary;
 mod thin;
@@ -41,6 +42,7 @@ pub use fit::Fit;
 pub use model::{Model, Placed};
 pub use noise::Noise;
 pub use search::title;
+pub use side_by_side::side_by_side;
 
 use confirm::Confirmed;
 use fit::Problem;

@@ -17,6 +17,12 @@ impl<D: Scalar> Wall<D> {
         if self.is_met(angle_rad) { -(self.stiffness_n_m_rad * (angle_rad - self.angle_rad)) } else { D::constant(0.0) }
     }
 
+    /// Energy in the spring, J.
+    pub fn energy_j(&self, angle_rad: D) -> D {
+        let depth = angle_rad - self.angle_rad;
+        if self.is_met(angle_rad) { self.stiffness_n_m_rad * depth * depth / 2.0 } else { D::constant(0.0) }
+    }
+
     /// Whether the spring is touched.
     pub fn is_met(&self, angle_rad: D) -> bool {
         let depth = angle_rad.value() - self.angle_rad.value();
@@ -34,5 +40,6 @@ mod tests {
             (Wall { angle_rad: 0.5, stiffness_n_m_rad: 2.0 }, Wall { angle_rad: -0.5, stiffness_n_m_rad: 2.0 });
         assert_eq!((above.torque_n_m(0.4), above.torque_n_m(1.0)), (0.0, -1.0));
         assert_eq!((below.torque_n_m(-0.4), below.torque_n_m(-1.0)), (0.0, 1.0));
+        assert_eq!((below.energy_j(-0.4), below.energy_j(-1.0)), (0.0, 0.25));
     }
 }

@@ -32,6 +32,21 @@ impl<D: Scalar> TrappedAir<D> {
         };
         self.free_volume_m3 / (self.kappa * ATMOSPHERE_PA) * share
     }
+
+    /// Energy taken up since `p = 0`, the integral of `p (-dV/dp)`, J: what the air and the atmosphere behind it hold.
+    pub fn energy_j(&self, pressure_pa: D) -> D {
+        let bound = D::constant((VACUUM_SHARE - 1.0) * ATMOSPHERE_PA);
+        if pressure_pa.value() < bound.value() {
+            // Below the bound the compliance is constant.
+            let compliance = self.compliance_m3_pa(bound);
+            return self.energy_j(bound) + compliance * (pressure_pa * pressure_pa - bound * bound) / 2.0;
+        }
+        let absolute = pressure_pa / ATMOSPHERE_PA + 1.0;
+        let m = self.kappa.recip();
+        let left = (-(absolute.ln() * m)).exp();
+        let expansion = if m.value() == 1.0 { absolute.ln() } else { (absolute * left - 1.0) / (-m + 1.0) };
+        self.free_volume_m3 * m * ATMOSPHERE_PA * (expansion + (left - 1.0) / m)
+    }
 }
 
 #[cfg(test)]
@@ -46,6 +61,19 @@ mod tests {
             for p in [-5e4, 0.0, 3e5, 2e6] {
                 let slope = (volume(p - 1.0) - volume(p + 1.0)) / 2.0;
                 assert!((air.compliance_m3_pa(p) / slope - 1.0).abs() < 1e-5, "kappa {kappa}, p {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn energy_is_the_work_on_the_volume() {
+        for kappa in [1.0, 1.2, 1.4] {
+            let air = TrappedAir { free_volume_m3: 2e-9, kappa };
+            assert_eq!(air.energy_j(0.0), 0.0);
+            for p in [-1.005e5_f64, -9e4, -5e4, 3e5, 2e6] {
+                let slope = (air.energy_j(p + 1.0) - air.energy_j(p - 1.0)) / 2.0;
+                let work: f64 = p * air.compliance_m3_pa(p);
+                assert!((slope / work - 1.0).abs() < 1e-4, "kappa {kappa}, p {p}: {slope} {work}");
             }
         }
     }

@@ -15,6 +15,7 @@ mod mullins;
 mod plastic;
 mod preload;
 mod sensor;
+mod smooth;
 mod spec;
 mod table;
 mod tendon;

@@ -1,5 +1,6 @@
 //! Softening of the silicone by its first stretch.
 
+use super::smooth::ln_cosh;
 use crate::scalar::Scalar;
 
 /// The wall's force times `1 - d tanh((W_max - W)/W_m)`, `W` its energy (J), `W_max` the greatest so far, `W_m` 0.02 J.
@@ -23,6 +24,19 @@ impl<D: Scalar> Mullins<D> {
         let slope = (-(share * share) + 1.0) * self.softening_ratio / self.energy_scale_j;
         (-(self.softening_ratio * share) + 1.0, slope)
     }
+
+    /// Of the energy that the wall took up to its greatest stretch, what it has not given back on the way to `W`, J:
+    /// `d W_m ln cosh((W_max - W)/W_m)`.
+    pub fn withheld_j(&self, energy_j: D, greatest_j: D) -> D {
+        let below = greatest_j - energy_j;
+        let below = if below.value() > 0.0 { below } else { D::constant(0.0) };
+        self.softening_ratio * self.energy_scale_j * ln_cosh(below / self.energy_scale_j)
+    }
+
+    /// What the wall will not give back on the whole way to rest, J: lost when it was stretched.
+    pub fn lost_j(&self, greatest_j: D) -> D {
+        self.withheld_j(D::constant(0.0), greatest_j)
+    }
 }
 
 #[cfg(test)]
@@ -38,5 +52,9 @@ mod tests {
         assert!((deep - 0.8).abs() < 1e-6 && slope > 0.0);
         let difference = (law.factor(0.03 + 1e-7, 0.05).0 - law.factor(0.03 - 1e-7, 0.05).0) / 2e-7;
         assert!((difference / law.factor(0.03, 0.05).1 - 1.0).abs() < 1e-6);
+        // What is withheld over dW is the part of the force that is missing.
+        let slope = (law.withheld_j(0.03 + 1e-7, 0.05) - law.withheld_j(0.03 - 1e-7, 0.05)) / 2e-7;
+        assert!((slope - (law.factor(0.03, 0.05).0 - 1.0)).abs() < 1e-6);
+        assert_eq!(law.withheld_j(0.05, 0.05), 0.0);
     }
 }

@@ -1,5 +1,6 @@
 //! A coil wound tight.
 
+use super::smooth::ln_cosh;
 use crate::scalar::Scalar;
 
 /// Elongation over which the turns come apart, m.
@@ -19,6 +20,11 @@ impl<D: Scalar> CoilPreload<D> {
         let share = (elongation_m / OPENING_M).tanh();
         (self.preload_n * share, self.preload_n * (-(share * share) + 1.0) / OPENING_M)
     }
+
+    /// Energy held, J: the integral of the pull.
+    pub fn energy_j(&self, elongation_m: D) -> D {
+        self.preload_n * ln_cosh(elongation_m / OPENING_M) * OPENING_M
+    }
 }
 
 #[cfg(test)]
@@ -31,5 +37,7 @@ mod tests {
         assert_eq!(law.pull_and_stiffness(0.0), (0.0, 0.1 / OPENING_M));
         assert!((law.pull_and_stiffness(5e-3).0 - 0.1).abs() < 1e-12);
         assert_eq!(law.pull_and_stiffness(1e-4).0, -law.pull_and_stiffness(-1e-4).0);
+        let slope = (law.energy_j(2e-4 + 1e-8) - law.energy_j(2e-4 - 1e-8)) / 2e-8;
+        assert!((slope / law.pull_and_stiffness(2e-4).0 - 1.0).abs() < 1e-6);
     }
 }

@@ -17,6 +17,17 @@ impl<D: Scalar> MaxwellBranch<D> {
         self.stiffness_n_m * (elongation_m - dashpot_m)
     }
 
+    /// Energy in the spring, J.
+    pub fn energy_j(&self, elongation_m: D, dashpot_m: D) -> D {
+        let stretch = elongation_m - dashpot_m;
+        self.stiffness_n_m * stretch * stretch / 2.0
+    }
+
+    /// Heat in the dashpot, W.
+    pub fn dissipation_w(&self, elongation_m: D, dashpot_m: D) -> D {
+        self.pull_n(elongation_m, dashpot_m) * self.rate_m_s(elongation_m, dashpot_m)
+    }
+
     /// `de_i/dt`, m/s.
     pub fn rate_m_s(&self, elongation_m: D, dashpot_m: D) -> D {
         (elongation_m - dashpot_m) / self.relaxation_time_s

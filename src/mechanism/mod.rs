@@ -20,6 +20,7 @@ mod kinematics;
 mod model;
 mod notch;
 mod notched_tube;
+mod place;
 mod reduce;
 mod route;
 mod shapes;

@@ -5,12 +5,14 @@ mod compare_figure;
 mod decimate;
 mod diagnosis_map;
 mod diagnosis_page;
+mod effect_figure;
 mod html;
 mod panel;
 mod svg;
 
 pub use compare_figure::{ComparedChannel, ComparedRun, compare_svg};
 pub use diagnosis_page::diagnosis_page;
+pub use effect_figure::{AffectedScene, effect_svg};
 pub use html::HtmlPage;
 pub use panel::{Band, Panel, Series, figure_svg};
 pub use svg::{BLUE, GREEN, GREY, ORANGE, PURPLE, Rect, VERMILION};

@@ -48,6 +48,8 @@ pub struct Panel {
     pub x_label: String,
     /// Text beside the y axis, with the unit.
     pub y_label: String,
+    /// Drawn broad and first: what the lines are to be compared with.
+    pub behind: Vec<Series>,
     /// Drawn in this order.
     pub series: Vec<Series>,
     /// Drawn below the lines.
@@ -57,7 +59,7 @@ pub struct Panel {
 impl Panel {
     /// What has a name in the legend, with its colour and opacity.
     pub(super) fn legend(&self) -> Vec<(&str, &'static str, f64)> {
-        let lines = self.series.iter().map(|s| (s.label.as_str(), s.colour, 1.0));
+        let lines = self.lines().map(|(s, _)| (s.label.as_str(), s.colour, 1.0));
         let bands = self.bands.iter().map(|b| (b.label.as_str(), b.colour, 0.25));
         lines.chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
     }
@@ -65,8 +67,7 @@ impl Panel {
     /// Draws title, axes and lines within a rectangle.
     pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
         let plot = self.plot_area(outer);
-        let x_axis =
-            Axis::over(self.series.iter().flat_map(|s| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
+        let x_axis = Axis::over(self.lines().flat_map(|(s, _)| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
         let y_axis = Axis::over(self.y_values(), 0.05, (plot.height / 32.0) as usize);
         self.draw_text(svg, outer, plot);
         draw_x_ticks(svg, plot, &x_axis);
@@ -80,17 +81,22 @@ impl Panel {
             let rect = Rect { y: top, height: bottom - top, ..plot };
             svg.fill(rect, band.colour, 0.25);
         }
-        for series in &self.series {
+        for (series, width) in self.lines() {
             for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
                 let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&points, series.colour, 1.2);
+                svg.polyline(&points, series.colour, width);
             }
         }
         svg.frame(plot, GREY);
     }
 
+    /// Every line with its width, px, in the order of drawing.
+    fn lines(&self) -> impl Iterator<Item = (&Series, f64)> {
+        self.behind.iter().map(|s| (s, 3.6)).chain(self.series.iter().map(|s| (s, 1.2)))
+    }
+
     fn y_values(&self) -> impl Iterator<Item = f64> {
-        let lines = self.series.iter().flat_map(|s| s.y.iter().copied());
+        let lines = self.lines().flat_map(|(s, _)| s.y.iter().copied());
         lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
     }
 
@@ -190,7 +196,7 @@ mod tests {
                 x: vec![0.0, 1.0, 2.0, 3.0],
                 y: vec![1.0, f64::NAN, 2.0, 3.0],
             }],
-            bands: vec![],
+            ..Panel::default()
         };
         let svg = figure_svg(&[panel], 640.0, 300.0);
         for text in ["Force &amp; stroke", ">stroke (mm)<", ">force (N)<", ">measured<"] {

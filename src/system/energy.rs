@@ -1,8 +1,10 @@
 //! The energy book: where the plunger's work went.
 //!
 //! Powers are integrated by the trapezoid rule over the fine steps; stored energies are read off the states. What
-//! is left between the two is the integrator's own error and stands in the book as a line of its own.
+//! is left between the two is the integrator's own error and stands in the book as a line of its own. Effects have
+//! lines of their own (`effect_energy.rs`), which a book without them does not show.
 
+use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
 use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
 
@@ -33,12 +35,19 @@ pub struct EnergyBook {
     /// Integral of the absolute plunger power, J: the scale of the run.
     turnover: f64,
     before: Powers,
+    effects: EffectFlows,
+    effects_before: EffectFlows,
+    held_0: EffectStores,
+    held: EffectStores,
+    /// Of each muscle, before the step: pressure at its syringe, Pa, and how far its piston is ahead, m.
+    pistons_before: Vec<(f64, f64)>,
 }
 
 impl EnergyBook {
     /// Opens the book at a state; `inputs` as they will be over the first step.
     pub fn open(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Self {
         let stored = stored(plant, state, inputs, 0.0);
+        let held = effect_stores(plant, state, inputs, 0.0);
         Self {
             stored_0: stored,
             stored,
@@ -46,12 +55,20 @@ impl EnergyBook {
             engine: 0.0,
             turnover: 0.0,
             before: Powers::default(),
+            effects: EffectFlows::default(),
+            effects_before: EffectFlows::default(),
+            held_0: held,
+            held,
+            pistons_before: Vec::new(),
         }
     }
 
     /// To be called before each fine step.
     pub fn before(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
         self.before = powers(plant, state, inputs, 0.0);
+        self.effects_before = effect_flows(plant, state, inputs, 0.0);
+        self.pistons_before.clear();
+        self.pistons_before.extend(pistons(state));
     }
 
     /// To be called after it.
@@ -69,7 +86,22 @@ impl EnergyBook {
         s.joint_damping += mean(b.joint_damping, a.joint_damping);
         s.stop_damping += mean(b.stop_damping, a.stop_damping);
         self.turnover += mean(b.input.abs(), a.input.abs());
+        self.sums.input += self.work_in_play(plant, state);
+        let effects = effect_flows(plant, state, inputs, h);
+        self.effects.integrate(&self.effects_before, &effects, h);
         self.stored = stored(plant, state, inputs, h);
+        self.held = effect_stores(plant, state, inputs, h);
+    }
+
+    /// Work of pistons that have play over that of plungers without, J: the piston is what the fluid sees.
+    fn work_in_play(&self, plant: &Plant<f64>, state: &PlantState<f64>) -> f64 {
+        let mut work_j = 0.0;
+        for (muscle, (before, after)) in plant.muscles.iter().zip(self.pistons_before.iter().zip(pistons(state))) {
+            if let Drive::Hydraulic { syringe_area_m2, .. } = &muscle.drive {
+                work_j += (before.0 + after.0) / 2.0 * syringe_area_m2 * (after.1 - before.1);
+            }
+        }
+        work_j
     }
 
     /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
@@ -81,8 +113,10 @@ impl EnergyBook {
         elapsed_s: f64,
     ) {
         let now = stored(plant, state, inputs, elapsed_s);
-        self.engine += now - self.stored;
+        let held = effect_stores(plant, state, inputs, elapsed_s);
+        self.engine += now - self.stored + (held.total() - self.held.total());
         self.stored = now;
+        self.held = held;
     }
 
     /// What is not accounted for, J: the integrator's own error.
@@ -94,7 +128,8 @@ impl EnergyBook {
             + s.cable_damping
             + s.joint_damping
             + s.stop_damping;
-        s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost
+        let stock = s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost;
+        stock + self.effects.net() - (self.held.total() - self.held_0.total())
     }
 
     /// Integral of the absolute plunger power, J.
@@ -103,25 +138,36 @@ impl EnergyBook {
     }
 
     /// All lines, J, in a fixed order: what came in, what is stored, what was lost, what is left over.
+    ///
+    /// Lines of effects stand only where there is something on them.
     pub fn lines(&self) -> Vec<(String, f64)> {
         let s = &self.sums;
-        [
-            ("input_work", s.input),
-            ("load_work", s.loads),
+        let mut lines = vec![("input_work", s.input), ("load_work", s.loads)];
+        lines.extend(self.effects.lines(Side::Brought));
+        lines.extend([
             ("pressure_friction_exchange", s.pressure_friction),
             ("engine_and_contacts", self.engine),
             ("stored", self.stored - self.stored_0),
+        ]);
+        lines.extend(self.held.lines(&self.held_0, "stored"));
+        lines.extend([
             ("lost_line_viscosity", s.line_viscosity),
             ("lost_muscle_friction", s.muscle_friction),
             ("lost_muscle_damping", s.muscle_damping),
             ("lost_cable_damping", s.cable_damping),
             ("lost_joint_damping", s.joint_damping),
             ("lost_stop_damping", s.stop_damping),
-            ("unaccounted_integrator", self.unaccounted_j()),
-        ]
-        .map(|(name, value)| (name.to_owned(), value))
-        .to_vec()
+        ]);
+        lines.extend(self.effects.lines(Side::Lost));
+        lines.extend(self.held.lines(&self.held_0, "lost"));
+        lines.push(("unaccounted_integrator", self.unaccounted_j()));
+        lines.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
+}
+
+/// Pressure at each syringe, Pa, and how far its piston is ahead of the plunger, m.
+fn pistons(state: &PlantState<f64>) -> impl Iterator<Item = (f64, f64)> {
+    state.chains.iter().map(|c| c.pressure_pa[0]).zip(state.piston_ahead_m.iter().copied())
 }
 
 fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Powers {
@@ -170,7 +216,7 @@ fn muscle_powers(
         Drive::Hydraulic { chain, syringe_area_m2, plunger } => {
             let s = &state.chains[i];
             p.input += s.pressure_pa[0] * syringe_area_m2 * inputs[*plunger].slope;
-            p.line_viscosity += chain.dissipation_w(s);
+            p.line_viscosity += chain.dissipation_w(s) - restriction_w(muscle, chain, &s.flow_m3_s);
             let n = chain.segments();
             let net = s.flow_m3_s[n - 1] - f.port.outflow_m3_s;
             if s.boiling[n] { 0.0 } else { net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa) }
@@ -205,7 +251,7 @@ fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let e = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
         let p = plant.muscle_pressure(i, state, inputs, elapsed_s);
-        energy += elastic_energy(&muscle.elastic, e, p);
+        energy += elastic_energy(&muscle.elastic, e - muscle.extras.set_m(muscle.slow(state)), p);
         energy += muscle.stop.as_ref().map_or(0.0, |s| s.energy_j(e));
         energy += muscle.friction.as_ref().map_or(0.0, |f| f.stored_energy_j(state.z[i], p));
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {

@@ -16,6 +16,8 @@ pub struct MuscleExtras<D> {
     pub air: Option<TrappedAir<D>>,
     /// Conductance of a leak after the line, m³/(s Pa).
     pub leak_m3_s_pa: Option<D>,
+    /// How much of the line's own resistance a restriction adds, 1; the chain has it in its numbers already.
+    pub restriction_ratio: Option<D>,
     /// Growth of the fluid's volume, m³/s.
     pub growth_m3_s: Option<D>,
     pub branches: Vec<MaxwellBranch<D>>,
@@ -32,6 +34,7 @@ impl<D> Default for MuscleExtras<D> {
             backlash: None,
             air: None,
             leak_m3_s_pa: None,
+            restriction_ratio: None,
             growth_m3_s: None,
             branches: Vec::new(),
             mullins: None,

@@ -76,6 +76,7 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
         Kind::Leak => extras.leak_m3_s_pa = Some(v[0]),
         Kind::ThermalExpansion => extras.growth_m3_s = Some(v[0]),
         Kind::LineRestriction => {
+            extras.restriction_ratio = Some(v[0]);
             if let Drive::Hydraulic { chain, .. } = &mut muscle.drive {
                 chain.resistance_pa_s_m3 += chain.resistance_pa_s_m3 * v[0];
                 chain.quadratic_pa_s2_m6 += v[1] / chain.segments() as f64;

@@ -6,6 +6,7 @@ mod axis;
 mod build;
 mod channels;
 mod contact;
+mod effect_energy;
 mod elastic;
 mod energy;
 mod error;
@@ -13,10 +14,12 @@ mod events;
 mod expect;
 mod extras;
 mod graph;
+mod influence;
 mod inputs;
 mod install;
 mod ldl;
 mod lift;
+mod measured_pose;
 pub mod observe;
 mod plant;
 mod rosenbrock;
@@ -32,7 +35,9 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
+pub use influence::{Influence, influence};
 pub use inputs::InputSource;
+pub use measured_pose::measured_poses;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
     PlantState,

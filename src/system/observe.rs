@@ -73,6 +73,33 @@ pub struct MuscleFrame {
     pub pull_n: f64,
 }
 
+/// A recorded run beside two simulations of it, at the recorded times.
+#[derive(Clone, Debug, Default)]
+pub struct SideBySide {
+    /// Name of the run.
+    pub run: String,
+    pub graph: SceneGraph,
+    /// What was recorded.
+    pub measured: Vec<MeasuredChannel>,
+    /// Poses of the links as far as the recording tells them; empty where it tells none.
+    pub measured_poses: Vec<Vec<Pose>>,
+    /// The scene as calibrated, and with what it lacked; as many frames as samples.
+    pub calibrated: Vec<Frame>,
+    pub corrected: Vec<Frame>,
+    /// Where the calibrated scene is off by more than noise, s.
+    pub windows_s: Vec<(f64, f64)>,
+}
+
+/// One recorded channel.
+#[derive(Clone, Debug, Default)]
+pub struct MeasuredChannel {
+    /// Index into `SceneGraph::channels`.
+    pub channel: usize,
+    /// Samples in the channel's unit, NaN where missing.
+    pub values: Vec<f64>,
+    pub noise_sd: f64,
+}
+
 /// Watches a run. Called in order of time, at the output instants only.
 pub trait Observer {
     /// What makes it stop the run.

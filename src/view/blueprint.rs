@@ -1,9 +1,9 @@
 //! The arrangement of views for a scene: mechanism large on the left, plots along the chain on the right.
 
 use rerun::blueprint::components::{BackgroundKind, Corner2D, Eye3DKind, LinkAxis, PanelState};
-use rerun::blueprint::components::{PlayState, TextLogColumn, TimelineName};
+use rerun::blueprint::components::{LoopMode, PlayState, TextLogColumn, TimelineName};
 use rerun::blueprint::datatypes;
-use rerun::datatypes::{Range1D, Range2D};
+use rerun::datatypes::{AbsoluteTimeRange, Range1D, Range2D, TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns, TimeAxis, TimePanelBlueprint,
@@ -12,7 +12,7 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, Color, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 use super::channels::{axis_title, groups, headline, label};
-use super::layer::{TIMELINE, path};
+use super::layer::{TIMELINE, WORLD, path};
 use super::layout::{Kind, Pane, View, Writer};
 use super::legend::{SPACING, strip_count};
 use super::loops::FRAME;
@@ -24,13 +24,18 @@ const GROUND: [u8; 3] = [24, 26, 31];
 
 /// Sends the arrangement for a scene whose first frame is known.
 pub(super) fn send(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStreamResult<()> {
+    send_page(out, page(graph, first), None)
+}
+
+/// Sends an arrangement, side panels hidden. With a stretch of time (s) it is played over and over, else the end is shown.
+pub(super) fn send_page(out: &RecordingStream, page: Pane, played_s: Option<[f64; 2]>) -> RecordingStreamResult<()> {
     let Some(info) = out.store_info() else {
         return Ok(());
     };
     let (blueprint, storage) =
         RecordingStreamBuilder::new(info.application_id().clone()).blueprint().enabled(true).memory()?;
     blueprint.set_time_sequence("blueprint", 0);
-    log(&blueprint, graph, first)?;
+    log(&blueprint, page, played_s)?;
     let Some(blueprint_id) = blueprint.store_info().map(|info| info.store_id) else {
         return Ok(());
     };
@@ -39,17 +44,21 @@ pub(super) fn send(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> 
     Ok(())
 }
 
-fn log(out: &RecordingStream, graph: &SceneGraph, first: &Frame) -> RecordingStreamResult<()> {
-    let root = Writer::new(out).root(page(graph, first))?;
+fn log(out: &RecordingStream, page: Pane, played_s: Option<[f64; 2]>) -> RecordingStreamResult<()> {
+    let root = Writer::new(out).root(page)?;
     let viewport = ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
     out.log("viewport", &viewport)?;
     let hidden = PanelBlueprint::new().with_state(PanelState::Hidden);
     out.log("blueprint_panel", &hidden)?;
     out.log("selection_panel", &hidden)?;
-    let time = TimePanelBlueprint::new()
-        .with_state(PanelState::Collapsed)
-        .with_timeline(TimelineName(TIMELINE.into()))
-        .with_play_state(PlayState::Following);
+    let time = TimePanelBlueprint::new().with_state(PanelState::Collapsed).with_timeline(TimelineName(TIMELINE.into()));
+    let time = match played_s {
+        None => time.with_play_state(PlayState::Following),
+        Some([from_s, to_s]) => time
+            .with_play_state(PlayState::Playing)
+            .with_loop_mode(LoopMode::Selection)
+            .with_time_selection(AbsoluteTimeRange { min: nanoseconds(from_s), max: nanoseconds(to_s) }),
+    };
     out.log("time_panel", &time)
 }
 
@@ -112,16 +121,21 @@ fn tiles(mut panes: Vec<Pane>) -> Pane {
 
 fn space(graph: &SceneGraph) -> Pane {
     let title = if graph.name.is_empty() { "Mechanism" } else { &graph.name };
+    mechanism(graph, title, WORLD)
+}
+
+/// A mechanism under a root of its own, seen as its scene says.
+pub(super) fn mechanism(graph: &SceneGraph, title: &str, root: &str) -> Pane {
     let mut properties: Vec<(&'static str, Box<dyn AsComponents>)> =
         vec![("LineGrid3D", Box::new(LineGrid3D::new().with_visible(false))), ("Background", Box::new(ground()))];
     // Without a camera, Rerun looks at everything.
     if graph.camera_position_m != graph.camera_target_m {
         properties.push(("EyeControls3D", Box::new(eye(graph))));
     }
-    view(Kind::Space, title, path(["world"]), properties)
+    view(Kind::Space, title, path([root]), properties)
 }
 
-fn eye(graph: &SceneGraph) -> EyeControls3D {
+pub(super) fn eye(graph: &SceneGraph) -> EyeControls3D {
     EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
         .with_position(graph.camera_position_m)
@@ -157,7 +171,7 @@ fn headline_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
 }
 
 /// Path and level are the same for all events: only time and text are shown.
-fn events() -> Pane {
+pub(super) fn events() -> Pane {
     let body =
         TextLogColumn(datatypes::TextLogColumn { visible: true.into(), kind: datatypes::TextLogColumnKind::Body });
     let columns = TextLogColumns::new().with_text_log_columns([body]);
@@ -166,15 +180,29 @@ fn events() -> Pane {
 }
 
 fn series(title: &str, origin: EntityPath) -> Pane {
-    view(
-        Kind::Series,
-        title,
-        origin,
-        vec![
-            ("PlotLegend", Box::new(PlotLegend::new().with_corner(Corner2D::LeftTop))),
-            ("TimeAxis", Box::new(TimeAxis::new().with_link(LinkAxis::LinkToGlobal))),
-        ],
-    )
+    series_over(title, origin, TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
+}
+
+/// A plot from so long before the cursor to so long after it, s.
+pub(super) fn series_near(title: &str, origin: EntityPath, [before_s, after_s]: [f64; 2]) -> Pane {
+    let start = TimeRangeBoundary::CursorRelative(nanoseconds(-before_s));
+    let end = TimeRangeBoundary::CursorRelative(nanoseconds(after_s));
+    series_over(title, origin, TimeAxis::new().with_view_range(TimeRange { start, end }))
+}
+
+/// A plot over all there is.
+pub(super) fn series_whole(title: &str, origin: EntityPath) -> Pane {
+    let everything = TimeRange { start: TimeRangeBoundary::Infinite, end: TimeRangeBoundary::Infinite };
+    series_over(title, origin, TimeAxis::new().with_view_range(everything))
+}
+
+fn series_over(title: &str, origin: EntityPath, time: TimeAxis) -> Pane {
+    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
+    view(Kind::Series, title, origin, vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(time))])
+}
+
+fn nanoseconds(time_s: f64) -> TimeInt {
+    TimeInt((1e9 * time_s).round() as i64)
 }
 
 fn plane(title: &str, origin: EntityPath, bounds: Range2D) -> Pane {
@@ -190,11 +218,16 @@ fn bounds(x: [f64; 2], y: [f64; 2]) -> Range2D {
     Range2D { x_range: Range1D(x), y_range: Range1D(y) }
 }
 
-fn ground() -> Background {
+pub(super) fn ground() -> Background {
     let [red, green, blue] = GROUND;
     Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(red, green, blue))
 }
 
-fn view(kind: Kind, title: &str, origin: EntityPath, properties: Vec<(&'static str, Box<dyn AsComponents>)>) -> Pane {
+pub(super) fn view(
+    kind: Kind,
+    title: &str,
+    origin: EntityPath,
+    properties: Vec<(&'static str, Box<dyn AsComponents>)>,
+) -> Pane {
     Pane::View(View { kind, title: title.to_owned(), origin: origin.to_string(), properties })
 }

@@ -12,6 +12,11 @@ pub(super) const AXIS: Rgb = [150, 150, 150];
 /// Where a loop is now.
 pub(super) const NOW: Rgb = [255, 255, 255];
 
+/// What was measured, and what the calibrated and the corrected scene make of it.
+pub(super) const MEASURED: Rgb = [120, 230, 140];
+pub(super) const CALIBRATED: Rgb = [255, 150, 50];
+pub(super) const CORRECTED: Rgb = [90, 170, 255];
+
 const TENSION: [Rgb; 3] = [[70, 130, 255], [200, 80, 210], [255, 50, 40]];
 const PRESSURE: [Rgb; 3] = [[80, 95, 125], [50, 200, 200], [255, 230, 60]];
 const AGE: [Rgb; 3] = [[50, 70, 140], [40, 170, 170], [250, 220, 60]];

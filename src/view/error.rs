@@ -48,6 +48,9 @@ pub enum ViewError {
     )]
     BadIndex { what: &'static str, index: usize, count: usize },
 
+    #[error("no recorded run to show: a comparison needs at least one")]
+    NothingToCompare,
+
     #[error("not everything reached the viewer or file within {seconds} s: {detail}")]
     Unsent { seconds: u64, detail: String },
 

@@ -34,6 +34,9 @@ pub(super) fn time_column(times_s: impl IntoIterator<Item = f64>) -> TimeColumn 
     TimeColumn::new_duration_secs(TIMELINE, times_s)
 }
 
+/// Where the mechanism of a plain run stands.
+pub(super) const WORLD: &str = "world";
+
 /// Path of an entity; names may contain any character.
 pub(super) fn path<const N: usize>(parts: [&str; N]) -> EntityPath {
     let parts: Vec<_> = parts.iter().map(|part| EntityPathPart::new(*part)).collect();

@@ -15,6 +15,7 @@ pub(super) enum Kind {
     Space,
     Plane,
     Series,
+    States,
     Log,
     Document,
 }
@@ -49,6 +50,7 @@ impl Kind {
             Kind::Space => "3D",
             Kind::Plane => "2D",
             Kind::Series => "TimeSeries",
+            Kind::States => "StateTimeline",
             Kind::Log => "TextLog",
             Kind::Document => "TextDocument",
         }

@@ -1,32 +1,52 @@
 //! Links and free bodies: static shapes that move with their link's pose.
 
-use rerun::{EntityPath, RecordingStream, Transform3D, ViewCoordinates};
+use rerun::{EntityPath, EntityPathPart, RecordingStream, Transform3D, ViewCoordinates};
 
 use super::error::ViewError;
 use super::layer::{Layer, path, times};
-use super::solids::{quaternion, solid};
+use super::solids::{Look, quaternion, solid};
 use crate::mechanism::geometry::{Pose, Visual};
 use crate::system::observe::{Frame, SceneGraph};
 
 pub(super) struct Links {
+    place: Vec<&'static str>,
     names: Vec<String>,
     visuals: Vec<Visual>,
+    look: Look,
 }
 
 impl Links {
-    pub(super) fn new(graph: &SceneGraph) -> Self {
-        Links { names: graph.links.clone(), visuals: graph.visuals.clone() }
+    /// Links under `<root>/links`.
+    pub(super) fn new(root: &'static str, graph: &SceneGraph) -> Self {
+        Links {
+            place: vec![root, "links"],
+            names: graph.links.clone(),
+            visuals: graph.visuals.clone(),
+            look: Look::Solid,
+        }
+    }
+
+    /// See-through links under `<root>/measured`, of those alone that `moves` marks: the rest would only cover what
+    /// is there already.
+    pub(super) fn ghost(root: &'static str, graph: &SceneGraph, moves: &[bool]) -> Self {
+        let visuals = graph.visuals.iter().filter(|visual| moves[visual.link]).cloned().collect();
+        Links { place: vec![root, "measured"], names: graph.links.clone(), visuals, look: Look::Ghost }
+    }
+
+    fn entity(&self, link: &str) -> EntityPath {
+        EntityPath::from(self.place.iter().map(|part| EntityPathPart::new(*part)).collect::<Vec<_>>())
+            .join(&path([link]))
     }
 }
 
 impl Layer for Links {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
-        out.log_static("world", &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+        out.log_static(path([self.place[0]]), &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         for (number, visual) in self.visuals.iter().enumerate() {
             let name = format!("visual_{number}");
-            let entity = path(["world", "links", &self.names[visual.link], &name]);
+            let entity = self.entity(&self.names[visual.link]).join(&path([&name]));
             out.log_static(entity.clone(), &transform(visual.pose))?;
-            out.log_static(entity, solid(visual).as_ref())?;
+            out.log_static(entity, solid(visual, self.look).as_ref())?;
         }
         Ok(())
     }
@@ -34,7 +54,7 @@ impl Layer for Links {
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
         for (link, name) in self.names.iter().enumerate() {
             let poses = frames.iter().map(|frame| frame.link_poses[link]);
-            log_poses(out, path(["world", "links", name]), frames, poses)?;
+            log_poses(out, self.entity(name), frames, poses)?;
         }
         Ok(())
     }

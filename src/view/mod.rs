@@ -13,7 +13,10 @@ mod cables;
 mod channels;
 mod coil;
 mod colour;
+mod comparison;
 mod contacts;
+mod diagnosis;
+mod diagnosis_page;
 mod error;
 mod headline;
 mod layer;
@@ -33,6 +36,7 @@ mod tests;
 mod ticks;
 mod viewer;
 
+pub use diagnosis::show_diagnosis;
 pub use error::ViewError;
 pub use options::{Pace, ViewOptions};
 pub use sink::{DEFAULT_PORT, ViewSink};

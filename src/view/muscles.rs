@@ -11,28 +11,29 @@ use super::solids::quaternion;
 use crate::system::observe::{Frame, MuscleFrame, MuscleGraph, SceneGraph};
 
 pub(super) struct Muscles {
+    root: &'static str,
     muscles: Vec<MuscleGraph>,
     scale_pa: f64,
 }
 
 impl Muscles {
-    pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
-        Muscles { muscles: graph.muscles.clone(), scale_pa: options.pressure_scale_pa }
+    pub(super) fn new(root: &'static str, graph: &SceneGraph, options: &ViewOptions) -> Self {
+        Muscles { root, muscles: graph.muscles.clone(), scale_pa: options.pressure_scale_pa }
     }
 }
 
 impl Layer for Muscles {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
         let mut numbered = self.muscles.iter().enumerate();
-        numbered.try_for_each(|(number, muscle)| log_coil(out, muscle, number))
+        numbered.try_for_each(|(number, muscle)| log_coil(out, self.root, muscle, number))
     }
 
     fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
         for (number, muscle) in self.muscles.iter().enumerate() {
             let states = frames.iter().map(|frame| frame.muscles[number]);
-            log_stretch(out, muscle, frames, states.clone())?;
+            log_stretch(out, self.root, muscle, frames, states.clone())?;
             let colours = states.map(|state| opaque(pressure(state.pressure_pa, self.scale_pa)));
-            let coil = path(["world", "muscles", &muscle.name, "coil"]);
+            let coil = path([self.root, "muscles", &muscle.name, "coil"]);
             let lines = LineStrips3D::update_fields().with_colors(colours);
             out.send_columns(coil, [times(frames)], lines.columns_of_unit_batches()?)?;
         }
@@ -40,12 +41,12 @@ impl Layer for Muscles {
     }
 }
 
-fn log_coil(out: &RecordingStream, muscle: &MuscleGraph, number: usize) -> Result<(), ViewError> {
+fn log_coil(out: &RecordingStream, root: &str, muscle: &MuscleGraph, number: usize) -> Result<(), ViewError> {
     let coil = coil(muscle);
     let strip = LineStrips3D::update_fields()
         .with_strips([LineStrip3D::from_iter(&coil.points_m)])
         .with_radii([Radius::new_scene_units(coil.wire_radius_m as f32)]);
-    out.log_static(path(["world", "muscles", &muscle.name, "coil"]), &strip)?;
+    out.log_static(path([root, "muscles", &muscle.name, "coil"]), &strip)?;
     // Neighbours stand close together: names are staggered so that they do not cover each other.
     let below_m = 0.14 * muscle.rest_length_m * (number % 2) as f64;
     let name = Points3D::new([[0.0, 0.0, -below_m]])
@@ -53,13 +54,14 @@ fn log_coil(out: &RecordingStream, muscle: &MuscleGraph, number: usize) -> Resul
         .with_radii([Radius::new_ui_points(0.0)])
         .with_labels([muscle.name.as_str()])
         .with_show_labels(true);
-    out.log_static(path(["world", "muscles", &muscle.name, "name"]), &name)?;
+    out.log_static(path([root, "muscles", &muscle.name, "name"]), &name)?;
     Ok(())
 }
 
 /// A transform's columns replace each other as a whole, so each row carries all three parts.
 fn log_stretch(
     out: &RecordingStream,
+    root: &str,
     muscle: &MuscleGraph,
     frames: &[Frame],
     states: impl Iterator<Item = MuscleFrame>,
@@ -71,7 +73,7 @@ fn log_stretch(
         .with_many_translation(frames.iter().map(|_| muscle.anchor_m))
         .with_many_quaternion(frames.iter().map(|_| turned))
         .with_many_scale(stretches);
-    let entity = path(["world", "muscles", &muscle.name]);
+    let entity = path([root, "muscles", &muscle.name]);
     out.send_columns(entity, [times(frames)], transforms.columns_of_unit_batches()?)?;
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rerun::{EntityPath, RecordingStream, Scalars, SeriesLines};
 
 use super::channels::{groups, label};
-use super::colour::{opaque, series};
+use super::colour::{Rgb, opaque, series};
 use super::error::ViewError;
 use super::layer::{Layer, path, time_column, times};
 use crate::system::observe::{Frame, SceneGraph};
@@ -112,7 +112,18 @@ impl Layer for Energies {
 }
 
 fn style(out: &RecordingStream, entity: &EntityPath, name: &str, place: usize) -> Result<(), ViewError> {
-    let lines = SeriesLines::new().with_names([name]).with_colors([opaque(series(place))]).with_widths([2.0_f32]);
+    named_line(out, entity, name, series(place), 2.0)
+}
+
+/// Name, colour and width (ui points) of a line.
+pub(super) fn named_line(
+    out: &RecordingStream,
+    entity: &EntityPath,
+    name: &str,
+    colour: Rgb,
+    width: f32,
+) -> Result<(), ViewError> {
+    let lines = SeriesLines::new().with_names([name]).with_colors([opaque(colour)]).with_widths([width]);
     out.log_static(entity.clone(), &lines)?;
     Ok(())
 }

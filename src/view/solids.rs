@@ -3,25 +3,42 @@
 use rerun::components::FillMode;
 use rerun::{AsComponents, Boxes3D, Color, Cylinders3D, Ellipsoids3D, Mesh3D, Quaternion};
 
+use super::colour::MEASURED;
 use crate::mechanism::geometry::{Shape, Visual};
 
+/// How a visual is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// In its own colour.
+    Solid,
+    /// See-through, in the colour of what was measured.
+    Ghost,
+}
+
 /// A visual as Rerun draws it, without its pose.
-pub(super) fn solid(visual: &Visual) -> Box<dyn AsComponents> {
-    let colour = colour(visual.colour_rgba);
+pub(super) fn solid(visual: &Visual, look: Look) -> Box<dyn AsComponents> {
+    let (colour, fill) = match look {
+        Look::Solid => (colour(visual.colour_rgba), FillMode::Solid),
+        Look::Ghost => (ghost(), FillMode::TransparentFillMajorWireframe),
+    };
     match &visual.shape {
-        Shape::Box { size_m } => {
-            Box::new(Boxes3D::from_sizes([*size_m]).with_colors([colour]).with_fill_mode(FillMode::Solid))
-        }
+        Shape::Box { size_m } => Box::new(Boxes3D::from_sizes([*size_m]).with_colors([colour]).with_fill_mode(fill)),
         Shape::Cylinder { radius_m, length_m } => Box::new(
             Cylinders3D::from_lengths_and_radii([*length_m as f32], [*radius_m as f32])
                 .with_colors([colour])
-                .with_fill_mode(FillMode::Solid),
+                .with_fill_mode(fill),
         ),
         Shape::Sphere { radius_m } => {
-            Box::new(Ellipsoids3D::from_radii([*radius_m as f32]).with_colors([colour]).with_fill_mode(FillMode::Solid))
+            Box::new(Ellipsoids3D::from_radii([*radius_m as f32]).with_colors([colour]).with_fill_mode(fill))
         }
         Shape::Mesh { vertices_m, triangles } => Box::new(mesh(vertices_m, triangles, colour)),
     }
+}
+
+/// Pale enough to see through where a mesh is filled.
+fn ghost() -> Color {
+    let [red, green, blue] = MEASURED;
+    Color::from_unmultiplied_rgba(red, green, blue, 90)
 }
 
 /// Rerun's quaternion of ours.

@@ -5,12 +5,15 @@ use rerun::log::{Chunk, LogMsg};
 use rerun::sink::MemorySinkStorage;
 use rerun::{ComponentIdentifier, RecordingStreamBuilder};
 
+use super::diagnosis::log_diagnosis;
 use super::error::ViewError;
 use super::options::{Pace, ViewOptions};
 use super::sink::Connection;
 use super::viewer::Viewer;
 use crate::mechanism::geometry::{Contact, Pose, Shape, Visual};
-use crate::system::observe::{CableFrame, Frame, MuscleFrame, MuscleGraph, Observer, SceneGraph};
+use crate::system::observe::{
+    CableFrame, Frame, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+};
 
 const FRAMES: usize = 250;
 
@@ -96,6 +99,39 @@ fn an_empty_scene_can_be_shown() {
     viewer.begin(&SceneGraph::default()).unwrap();
     viewer.frame(&Frame::default()).unwrap();
     assert_eq!(viewer.finish().unwrap().frames, 1);
+}
+
+#[test]
+fn runs_of_a_diagnosis_follow_each_other_from_full_tens_of_seconds() {
+    let (stream, storage) = RecordingStreamBuilder::new("smam").enabled(true).memory().unwrap();
+    let frames: Vec<Frame> = (0..FRAMES).map(frame).collect();
+    let run = SideBySide {
+        run: "sine.csv".into(),
+        graph: graph(),
+        measured: vec![MeasuredChannel { channel: 1, values: vec![5.0; FRAMES], noise_sd: 0.1 }],
+        measured_poses: frames.iter().map(|frame| frame.link_poses.clone()).collect(),
+        calibrated: frames.clone(),
+        corrected: frames,
+        windows_s: vec![(0.5, 1.0)],
+    };
+    log_diagnosis(&stream, "diagnosis", "verdict", &[run.clone(), run], &ViewOptions::default()).unwrap();
+    stream.flush_blocking().unwrap();
+    let chunks = chunks(&storage);
+    // A missing value after each run keeps its line apart from the next.
+    let measured = component::<Scalar>(&chunks, "/traces/bending_angle_deg/as_measured", "Scalars:scalars");
+    assert_eq!(measured.len(), 2 * (FRAMES + 1));
+    assert!(measured[FRAMES].0.0.is_nan());
+    let at =
+        of(&chunks, "/residuals/bending_angle_deg/corrected").filter(|chunk| !chunk.is_static()).flat_map(|chunk| {
+            chunk.timelines().values().flat_map(|column| column.times_raw().to_vec()).collect::<Vec<_>>()
+        });
+    assert_eq!(at.collect::<Vec<_>>()[FRAMES + 1], 10_000_000_000);
+    // Poses come every 0.04 s, in both mechanisms and as measured.
+    for entity in ["/calibrated/links/tip link", "/corrected/links/tip link", "/calibrated/measured/tip link"] {
+        assert_eq!(rows(&chunks, entity), 2 * FRAMES.div_ceil(4), "{entity}");
+    }
+    assert_eq!(rows(&chunks, "/states/run"), 4);
+    assert_eq!(rows(&chunks, "/events"), 4);
 }
 
 /// All chunks of a synthetic run sent in stretches of a length.

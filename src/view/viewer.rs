@@ -9,7 +9,7 @@ use super::cables::Cables;
 use super::contacts::Contacts;
 use super::error::ViewError;
 use super::headline::{Events, Headline};
-use super::layer::Layer;
+use super::layer::{Layer, WORLD};
 use super::legend::Legend;
 use super::links::Links;
 use super::loops::Loop;
@@ -88,11 +88,21 @@ impl Viewer {
             }
             None => 0,
         };
-        let flushed = self.stream.flush_with_timeout(FLUSH);
-        flushed.map_err(|error| ViewError::unsent(FLUSH.as_secs(), &error))?;
-        self.stream.finalize_deferred_sinks();
+        close(&self.stream)?;
         Ok(ViewSummary { frames })
     }
+}
+
+/// Waits until everything has arrived; a file gets its footer.
+pub(super) fn close(stream: &RecordingStream) -> Result<(), ViewError> {
+    flush(stream)?;
+    stream.finalize_deferred_sinks();
+    Ok(())
+}
+
+/// Waits until everything sent so far has arrived.
+pub(super) fn flush(stream: &RecordingStream) -> Result<(), ViewError> {
+    stream.flush_with_timeout(FLUSH).map_err(|error| ViewError::unsent(FLUSH.as_secs(), &error))
 }
 
 impl Observer for Viewer {
@@ -185,9 +195,9 @@ impl Run {
 
 fn layers(graph: &SceneGraph, options: &ViewOptions) -> Vec<Box<dyn Layer>> {
     let mut layers: Vec<Box<dyn Layer>> = vec![
-        Box::new(Links::new(graph)),
-        Box::new(Cables::new(graph, options)),
-        Box::new(Muscles::new(graph, options)),
+        Box::new(Links::new(WORLD, graph)),
+        Box::new(Cables::new(WORLD, graph, options)),
+        Box::new(Muscles::new(WORLD, graph, options)),
         Box::new(Contacts::new(options)),
         Box::new(Channels::new(graph)),
         Box::new(Joints::default()),

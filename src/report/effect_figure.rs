@@ -1,0 +1,171 @@
+//! The picture of `smam effects NAME`: what an effect does to each scene that can have it.
+
+use super::axis::three_digits;
+use super::panel::{Panel, Series, draw_legend};
+use super::svg::{Anchor, BLUE, ORANGE, Rect, Svg, cut_to};
+use crate::recording::parse_column;
+
+const CELL_WIDTH: f64 = 450.0;
+const TIME_HEIGHT: f64 = 270.0;
+const LOOP_HEIGHT: f64 = 270.0;
+const CHANGE_HEIGHT: f64 = 190.0;
+const HEADER_HEIGHT: f64 = 110.0;
+const EDGE: f64 = 10.0;
+const LARGE: f64 = 16.0;
+const SMALL: f64 = 11.5;
+
+/// What the stock scene does, behind the coloured lines.
+const STOCK: &str = "#bdbdbd";
+/// The effect at its typical size and at twice that.
+const COLOURS: [&str; 2] = [BLUE, ORANGE];
+
+/// One scene without and with an effect; values in the columns' own units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AffectedScene {
+    /// Its name, and where the effect sits, in the title.
+    pub name: String,
+    /// What differs from the numbers in the picture's header; may be empty.
+    pub remark: String,
+    /// Sample times, s.
+    pub time_s: Vec<f64>,
+    /// Column of the input and its samples.
+    pub input: (String, Vec<f64>),
+    /// Column of the output and its samples without the effect.
+    pub output: (String, Vec<f64>),
+    /// The output with the effect: as many as `sizes` of [`effect_svg`].
+    pub with: Vec<Vec<f64>>,
+}
+
+/// Draws the scenes as columns: output over time, output over input, and what the effect changes over time.
+///
+/// `title` names the effect, `law` (its formula, then its symbols) is written below it, `sizes` says of each coloured
+/// line with which numbers.
+pub fn effect_svg(title: &str, law: [&str; 2], sizes: &[String], scenes: &[AffectedScene]) -> String {
+    let width = 2.0 * EDGE + CELL_WIDTH * scenes.len().max(2) as f64;
+    let cell_width = (width - 2.0 * EDGE) / scenes.len().max(1) as f64;
+    let height = HEADER_HEIGHT + TIME_HEIGHT + LOOP_HEIGHT + CHANGE_HEIGHT + EDGE;
+    let mut svg = Svg::new(width, height);
+    draw_header(&mut svg, width, title, law, sizes);
+    for (column, scene) in scenes.iter().enumerate() {
+        let mut y = HEADER_HEIGHT;
+        let panels =
+            [(over_time(scene), TIME_HEIGHT), (over_input(scene), LOOP_HEIGHT), (change(scene), CHANGE_HEIGHT)];
+        for (panel, height) in panels {
+            panel.draw(&mut svg, Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height });
+            y += height;
+        }
+    }
+    svg.finish()
+}
+
+fn draw_header(svg: &mut Svg, width: f64, title: &str, law: [&str; 2], sizes: &[String]) {
+    let left = EDGE + 12.0;
+    let room = width - 2.0 * left;
+    svg.text((left, 26.0), Anchor::Start, LARGE, &cut_to(title, LARGE, room));
+    for (line, y) in law.into_iter().zip([48.0, 67.0]) {
+        svg.text((left, y), Anchor::Start, SMALL, &cut_to(line, SMALL, room));
+    }
+    let coloured = sizes.iter().map(String::as_str).zip(COLOURS).map(|(size, colour)| (size, colour, 1.0));
+    let entries: Vec<_> = std::iter::once(("stock scene, without it", STOCK, 1.0)).chain(coloured).collect();
+    draw_legend(svg, (left, 92.0), &entries);
+}
+
+fn over_time(scene: &AffectedScene) -> Panel {
+    Panel {
+        title: [&scene.name, &scene.remark].into_iter().filter(|line| !line.is_empty()).cloned().collect(),
+        x_label: "time (s)".to_owned(),
+        ..output_over(&scene.time_s, scene)
+    }
+}
+
+fn over_input(scene: &AffectedScene) -> Panel {
+    Panel { x_label: axis_label(&scene.input.0), ..output_over(&scene.input.1, scene) }
+}
+
+/// With the effect minus without it, and the greatest change in words.
+fn change(scene: &AffectedScene) -> Panel {
+    let changes: Vec<Vec<f64>> =
+        scene.with.iter().map(|with| with.iter().zip(&scene.output.1).map(|(a, b)| a - b).collect()).collect();
+    let symbol = parse_column(&scene.output.0).map_or("", |name| name.unit.symbol);
+    let series = changes.iter().zip(COLOURS).map(|(change, colour)| line(&scene.time_s, change, colour));
+    Panel {
+        title: vec![greatest(&changes, &scene.output.1, symbol)],
+        x_label: "time (s)".to_owned(),
+        y_label: format!("change ({symbol})"),
+        // The larger one first: the smaller must not vanish behind it.
+        series: series.rev().collect(),
+        ..Panel::default()
+    }
+}
+
+/// `up to 2.31 and 4.50 mm (8.6 and 16.7 % of range)`.
+fn greatest(changes: &[Vec<f64>], stock: &[f64], symbol: &str) -> String {
+    let (low, high) = stock.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+    let most: Vec<f64> = changes.iter().map(|change| change.iter().fold(0.0_f64, |m, c| m.max(c.abs()))).collect();
+    let list = |say: &dyn Fn(f64) -> String| most.iter().map(|m| say(*m)).collect::<Vec<_>>().join(" and ");
+    // A stock output that stays where it is has no range to compare with.
+    let share = match high > low {
+        true => format!(" ({} % of range)", list(&|m| format!("{:.1}", 100.0 * m / (high - low)))),
+        false => String::new(),
+    };
+    format!("up to {} {symbol}{share}", list(&three_digits))
+}
+
+/// The stock output broad and grey; before it the coloured ones, the larger first.
+fn output_over(x: &[f64], scene: &AffectedScene) -> Panel {
+    let coloured = scene.with.iter().zip(COLOURS).map(|(y, colour)| line(x, y, colour));
+    Panel {
+        y_label: axis_label(&scene.output.0),
+        behind: vec![line(x, &scene.output.1, STOCK)],
+        series: coloured.rev().collect(),
+        ..Panel::default()
+    }
+}
+
+fn line(x: &[f64], y: &[f64], colour: &'static str) -> Series {
+    Series { label: String::new(), colour, x: x.to_vec(), y: y.to_vec() }
+}
+
+fn axis_label(column: &str) -> String {
+    parse_column(column).map_or_else(|_| column.to_owned(), |name| name.axis_label())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(name: &str) -> AffectedScene {
+        let time_s: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
+        let stock: Vec<f64> = time_s.iter().map(|t| 10.0 * t.sin()).collect();
+        let with = [0.5, 1.0].map(|more| stock.iter().map(|v| v + more).collect()).to_vec();
+        AffectedScene {
+            name: name.to_owned(),
+            remark: String::new(),
+            input: ("plunger_mm".to_owned(), time_s.clone()),
+            output: ("elongation_mm".to_owned(), stock),
+            with,
+            time_s,
+        }
+    }
+
+    #[test]
+    fn every_scene_has_its_three_panels_with_units_and_the_change_in_words() {
+        let sizes = ["1e-16 SI".to_owned(), "2e-16 SI".to_owned()];
+        let svg = effect_svg(
+            "leak",
+            ["Q = G p", "G = conductance"],
+            &sizes,
+            &[scene("muscle_bench"), scene("antagonistic_pulley")],
+        );
+        assert_eq!(svg.matches("<polyline").count(), 2 * (3 + 3 + 2));
+        for text in [">muscle_bench<", ">elongation (mm)<", ">plunger (mm)<", ">time (s)<", ">1e-16 SI<", ">Q = G p<"] {
+            assert!(svg.contains(text), "{text}");
+        }
+        assert!(svg.contains(">up to 0.500 and 1.00 mm (2.5 and 5.0 % of range)<"), "{svg}");
+    }
+
+    #[test]
+    fn no_scene_is_still_a_picture() {
+        assert!(effect_svg("", ["", ""], &[], &[]).ends_with("</svg>\n"));
+    }
+}
