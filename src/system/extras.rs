@@ -151,7 +151,7 @@ pub struct CableFriction<D> {
 impl<D: Scalar> CableFriction<D> {
     /// Speed at which the far part is drawn in, m/s.
     pub(super) fn sliding_m_s(&self, w: &[D]) -> D {
-        -dot(&self.far, w)
+        -dot::<_, 0>(&self.far, w)
     }
 
     /// Calls `with(coordinate, share)` for each joint: tension there over tension at the near end.

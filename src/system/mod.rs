@@ -19,10 +19,13 @@ mod ldl;
 mod lift;
 pub mod observe;
 mod plant;
+mod rates;
 mod rosenbrock;
 mod run;
 mod simulation;
+mod state;
 mod switching;
+mod tangents;
 mod twin;
 
 pub use axis::AxisNumber;
@@ -35,9 +38,9 @@ pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction
 pub use inputs::InputSource;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
-    PlantState,
 };
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;
+pub use state::PlantState;
 pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};
