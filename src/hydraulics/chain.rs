@@ -80,6 +80,7 @@ impl<D: Scalar> Chain<D> {
     #[inline(always)]
     fn rates_of(&self, n: usize, row: &[D], boils: &[bool], inflow: D, port: &Port<D>, out: &mut [D]) {
         let (at, out, boils) = (ChainRow::of(row, n), ChainRowMut::of(out, n), &boils[..=n]);
+        let compliance = &self.compliance_m3_pa[..=n];
         let mut entering = inflow;
         for j in 0..=n {
             let leaving = if j == n { port.outflow_m3_s } else { at.flow_m3_s[j] };
@@ -87,7 +88,8 @@ impl<D: Scalar> Chain<D> {
             (out.pressure_pa[j], out.vapour_m3[j]) = if boils[j] {
                 (D::constant(0.0), -net)
             } else {
-                (net / self.node_compliance(j, port), D::constant(0.0))
+                let added = if j == n { port.compliance_m3_pa } else { D::constant(0.0) };
+                (net / (compliance[j] + added), D::constant(0.0))
             };
             entering = leaving;
         }

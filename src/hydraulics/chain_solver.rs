@@ -11,14 +11,24 @@ use crate::scalar::Scalar;
 #[derive(Clone, Debug)]
 pub struct ChainSolver<D> {
     g: f64,
-    /// `g/I` of each segment over its pivot: `k_Qj = s_j - t_j k_pj`.
-    t: Vec<D>,
-    s: Vec<D>,
-    /// `k_pj = rho_j - sigma_j k_Q(j+1)`.
-    rho: Vec<D>,
-    sigma: Vec<D>,
-    pivot_flow: Vec<D>,
-    pivot_node: Vec<D>,
+    nodes: Vec<Node<D>>,
+    flows: Vec<Flow<D>>,
+}
+
+/// `k_pj = rho - sigma k_Q(j+1)`.
+#[derive(Clone, Copy, Debug)]
+struct Node<D> {
+    pivot: D,
+    sigma: D,
+    rho: D,
+}
+
+/// `k_Qj = s - t k_pj`; `t` is `g/I` over the pivot.
+#[derive(Clone, Copy, Debug)]
+struct Flow<D> {
+    pivot: D,
+    t: D,
+    s: D,
 }
 
 impl<D: Scalar> ChainSolver<D> {
@@ -27,12 +37,8 @@ impl<D: Scalar> ChainSolver<D> {
         let zero = D::constant(0.0);
         Self {
             g: 0.0,
-            t: vec![zero; segments],
-            s: vec![zero; segments],
-            rho: vec![zero; segments + 1],
-            sigma: vec![zero; segments + 1],
-            pivot_flow: vec![zero; segments],
-            pivot_node: vec![zero; segments + 1],
+            nodes: vec![Node { pivot: zero, sigma: zero, rho: zero }; segments + 1],
+            flows: vec![Flow { pivot: zero, t: zero, s: zero }; segments],
         }
     }
 
@@ -40,32 +46,32 @@ impl<D: Scalar> ChainSolver<D> {
     pub fn factorise(&mut self, chain: &Chain<D>, row: &[D], boils: &[bool], port: &Port<D>, g: f64) -> D {
         self.g = g;
         let n = chain.segments();
-        let flow = ChainRow::of(row, n).flow_m3_s;
+        let at = ChainRow::of(row, n);
         let over_inertance = D::constant(g) / chain.inertance_pa_s2_m3;
-        for j in 0..=n {
+        let mut inner = D::constant(0.0);
+        for (j, node) in self.nodes.iter_mut().enumerate() {
             if boils[j] {
-                self.pivot_node[j] = D::constant(1.0);
-                self.sigma[j] = D::constant(0.0);
+                (node.pivot, node.sigma) = (D::constant(1.0), D::constant(0.0));
             } else {
                 let over_compliance = D::constant(g) / chain.node_compliance(j, port);
-                let inner = if j == 0 { D::constant(0.0) } else { over_compliance * self.t[j - 1] };
-                self.pivot_node[j] = (inner + 1.0).recip();
-                self.sigma[j] = over_compliance * self.pivot_node[j];
+                node.pivot = (over_compliance * inner + 1.0).recip();
+                node.sigma = over_compliance * node.pivot;
             }
             if j < n {
-                let slope = chain.resistance_pa_s_m3 + chain.quadratic_pa_s2_m6 * flow[j].abs() * 2.0;
-                let pivot = over_inertance * (slope + self.sigma[j]) + 1.0;
-                self.pivot_flow[j] = pivot.recip();
-                self.t[j] = over_inertance * self.pivot_flow[j];
+                let slope = chain.resistance_pa_s_m3 + chain.quadratic_pa_s2_m6 * at.flow_m3_s[j].abs() * 2.0;
+                let flow = &mut self.flows[j];
+                flow.pivot = (over_inertance * (slope + node.sigma) + 1.0).recip();
+                flow.t = over_inertance * flow.pivot;
+                inner = flow.t;
             }
         }
-        self.sigma[n]
+        self.nodes[n].sigma
     }
 
     /// Forward pass with the right-hand side `r`; returns `rho_N`. `sigma_j k` per unit of `g/C_j` is reused.
     #[inline]
     pub fn eliminate(&mut self, r: &[D]) -> D {
-        match self.s.len() {
+        match self.flows.len() {
             // The stock line: loops whose length the compiler sees.
             1 => self.eliminate_of(1, r),
             n => self.eliminate_of(n, r),
@@ -75,14 +81,13 @@ impl<D: Scalar> ChainSolver<D> {
     #[inline(always)]
     fn eliminate_of(&mut self, n: usize, r: &[D]) -> D {
         let r = ChainRow::of(r, n);
-        let (t, sigma, all_s, all_rho) = (&self.t[..n], &self.sigma[..=n], &mut self.s[..n], &mut self.rho[..=n]);
-        let (pivot_flow, pivot_node) = (&self.pivot_flow[..n], &self.pivot_node[..=n]);
-        let mut rho = r.pressure_pa[0] * pivot_node[0];
-        all_rho[0] = rho;
+        let (nodes, flows) = (&mut self.nodes[..=n], &mut self.flows[..n]);
+        let mut rho = r.pressure_pa[0] * nodes[0].pivot;
+        nodes[0].rho = rho;
         for j in 0..n {
-            let s = r.flow_m3_s[j] * pivot_flow[j] + t[j] * rho;
-            rho = r.pressure_pa[j + 1] * pivot_node[j + 1] + sigma[j + 1] * s;
-            (all_s[j], all_rho[j + 1]) = (s, rho);
+            let s = r.flow_m3_s[j] * flows[j].pivot + flows[j].t * rho;
+            rho = r.pressure_pa[j + 1] * nodes[j + 1].pivot + nodes[j + 1].sigma * s;
+            (flows[j].s, nodes[j + 1].rho) = (s, rho);
         }
         rho
     }
@@ -90,7 +95,7 @@ impl<D: Scalar> ChainSolver<D> {
     /// Fills the stage `k` from the stage of the outflow; `r` is the right-hand side given to `eliminate`.
     #[inline]
     pub fn back_substitute(&self, k_out: D, r: &[D], boils: &[bool], k: &mut [D]) {
-        match self.s.len() {
+        match self.flows.len() {
             1 => self.back_substitute_of(1, k_out, r, boils, k),
             n => self.back_substitute_of(n, k_out, r, boils, k),
         }
@@ -99,11 +104,11 @@ impl<D: Scalar> ChainSolver<D> {
     #[inline(always)]
     fn back_substitute_of(&self, n: usize, k_out: D, r: &[D], boils: &[bool], k: &mut [D]) {
         let (r, k, boils) = (ChainRow::of(r, n), ChainRowMut::of(k, n), &boils[..=n]);
-        let (t, s, sigma, rho) = (&self.t[..n], &self.s[..n], &self.sigma[..=n], &self.rho[..=n]);
+        let (nodes, flows) = (&self.nodes[..=n], &self.flows[..n]);
         let mut leaving = k_out;
         for j in (0..=n).rev() {
-            let pressure = rho[j] - sigma[j] * leaving;
-            let entering = if j == 0 { D::constant(0.0) } else { s[j - 1] - t[j - 1] * pressure };
+            let pressure = nodes[j].rho - nodes[j].sigma * leaving;
+            let entering = if j == 0 { D::constant(0.0) } else { flows[j - 1].s - flows[j - 1].t * pressure };
             k.pressure_pa[j] = pressure;
             k.vapour_m3[j] = if boils[j] { r.vapour_m3[j] - (entering - leaving) * self.g } else { D::constant(0.0) };
             if j > 0 {

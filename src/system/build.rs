@@ -1,6 +1,6 @@
 //! Scene to plant: names to indices, specs to elements.
 
-use crate::hydraulics::{Chain, ChainRow};
+use crate::hydraulics::Chain;
 use crate::mechanism::{Coordinate, Mechanism, Route};
 use crate::muscle::{Coil, Friction, Stop, Wall, WallCondition, WallGeometry};
 use crate::recording::parse_column;
@@ -65,7 +65,7 @@ impl Builder<'_> {
                 cables,
                 mechanism: MechanismExtras::default(),
             },
-            state: self.start(),
+            state: self.start(displaced),
             path_0_m: vec![0.0; routes.len()],
             start_offset_m: vec![0.0; routes.len()],
             routes,
@@ -134,14 +134,16 @@ impl Builder<'_> {
         Ok(c)
     }
 
-    fn start(&self) -> PlantState<f64> {
+    fn start(&self, displaced: bool) -> PlantState<f64> {
         let mut y = vec![0.0; self.dim];
         for (y, joint) in y.iter_mut().zip(self.mechanism.iter().flat_map(|m| m.coordinates())) {
             *y = joint.initial;
         }
         let pre = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.pre_elongation_ratio * m.rest_length_m);
         y[self.joints..].fill(pre);
-        PlantState::at_rest(&y)
+        let muscles = if displaced { 0 } else { self.scene.file.muscle.len() };
+        let segments = self.scene.file.hydraulics.as_ref().map_or(0, |h| h.line.segments);
+        PlantState::at_rest(&y, muscles, segments)
     }
 
     fn cables(&self) -> Result<(Vec<CablePlant<f64>>, Vec<Route>), SystemError> {
@@ -235,7 +237,7 @@ impl Builder<'_> {
             *next_end += 1;
         }
         let pressure = elastic.holding_pressure_pa(pre, make.initial_load_n);
-        let (drive, line) = self.drive(spec, pressure)?;
+        let drive = self.drive(spec)?;
         let friction = make.friction.map(|f| Friction {
             m0_n: f.m0_n,
             m1_n_pa: f.m1_n_pa,
@@ -248,8 +250,9 @@ impl Builder<'_> {
         let stop = make.tube.as_ref().and_then(|t| t.closed_stop);
         built.muscle_index.push(Some(built.plant.muscles.len()));
         built.end_coordinate.push(end);
-        let segments = if let Drive::Hydraulic { chain, .. } = &drive { chain.segments() } else { 0 };
-        built.state.add_muscle(&line, segments);
+        if let Drive::Hydraulic { .. } = drive {
+            built.state.pressures_mut(built.plant.muscles.len()).fill(pressure);
+        }
         built.plant.muscles.push(MusclePlant {
             drive,
             elastic,
@@ -264,16 +267,15 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn drive(&self, spec: &MuscleSpec, pressure_pa: f64) -> Result<(Drive<f64>, Vec<f64>), SystemError> {
+    fn drive(&self, spec: &MuscleSpec) -> Result<Drive<f64>, SystemError> {
         let input = self.muscle_input(spec)?;
         let by_pressure = parse_column(&spec.input)?.unit.si_suffix == "pa";
         match &self.scene.file.hydraulics {
             Some(h) if !by_pressure => {
                 let chain = Chain::new(&h.line, &h.fluid, h.upstream_compliance_m3_pa, h.downstream_compliance_m3_pa);
-                let line = chain.at_rest(pressure_pa);
-                Ok((Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input }, line))
+                Ok(Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input })
             }
-            _ => Ok((Drive::Pressure { pressure: input }, vec![0.0; ChainRow::<f64>::len_of(0)])),
+            _ => Ok(Drive::Pressure { pressure: input }),
         }
     }
 

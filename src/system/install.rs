@@ -159,6 +159,7 @@ pub(super) fn settle_memory<D: Scalar>(plant: &mut Plant<D>, state: &mut PlantSt
     for muscle in &mut plant.muscles {
         let elongation = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
         muscle.slow_at = slow.len();
+        muscle.extras.count();
         slow.extend(std::iter::repeat_n(elongation, muscle.extras.branches.len()));
         slow.extend(muscle.extras.plastic.as_ref().map(|_| D::constant(0.0)));
         let softens = muscle.extras.mullins.is_some();

@@ -202,6 +202,7 @@ impl<D: Scalar> MusclePlant<D> {
     /// The forces at elongation, speed, pressure and friction state.
     ///
     /// `slow` are the muscle's slow states, `greatest_j` the greatest energy of its wall so far.
+    #[inline]
     pub fn forces(
         &self,
         elongation_m: D,
@@ -212,7 +213,7 @@ impl<D: Scalar> MusclePlant<D> {
         greatest_j: D,
     ) -> MuscleForces<D> {
         let zero = D::constant(0.0);
-        let (law, (extra_n, extra_k)) = if self.has_extras() {
+        let (law, (extra_n, extra_k)) = if self.extras.acts {
             let seen = elongation_m - self.extras.set_m(slow);
             let law = self.elastic.softened(seen, pressure_pa, self.extras.mullins.as_ref(), greatest_j);
             (law, self.extras.pull_and_stiffness(elongation_m, pressure_pa, slow))
@@ -236,19 +237,10 @@ impl<D: Scalar> MusclePlant<D> {
         }
     }
 
-    fn has_extras(&self) -> bool {
-        let x = &self.extras;
-        !x.branches.is_empty()
-            || x.mullins.is_some()
-            || x.preload.is_some()
-            || x.plastic.is_some()
-            || !x.forces.is_empty()
-    }
-
     fn port(&self, law: &super::ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
         let (mut outflow_m3_s, mut compliance_m3_pa) = (law.area_m2 * speed_m_s, law.compliance_m3_pa);
         let x = &self.extras;
-        if x.air.is_some() || x.leak_m3_s_pa.is_some() || x.growth_m3_s.is_some() || !x.flows.is_empty() {
+        if x.acts {
             let (compliance, flow) = x.line_load(pressure_pa);
             compliance_m3_pa += compliance;
             outflow_m3_s += flow;
@@ -259,7 +251,7 @@ impl<D: Scalar> MusclePlant<D> {
     /// The muscle's part of the slow states.
     #[inline]
     pub(super) fn slow<'a, const N: usize>(&self, at: &Parts<'a, D, N>) -> &'a [D] {
-        &at.slow()[self.slow_at..self.slow_at + self.extras.slow_states()]
+        if self.extras.acts { &at.slow()[self.slow_at..self.slow_at + self.extras.slow_states()] } else { &[] }
     }
 
     /// Elongation at the coordinates `y`, m.

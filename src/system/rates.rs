@@ -50,12 +50,12 @@ pub(super) fn rates<D: Scalar, const N: usize>(
             *out.z(i) = friction.rate(now.at.z(i), forces.speed_m_s);
         }
         if let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive {
-            let boils = now.state.boiling(i);
+            let boils = now.state.boiling_of::<N>(i);
             chain.rates(now.at.line(i), boils, piston_m_s[i] * *syringe_area_m2, &forces.port, out.line(i));
             boils.iter().for_each(|b| switches.note(*b));
         }
-        let slow = muscle.slow_at..muscle.slow_at + muscle.extras.slow_states();
-        if !slow.is_empty() {
+        if !out.slow().is_empty() {
+            let slow = muscle.slow_at..muscle.slow_at + muscle.extras.slow_states();
             muscle.extras.slow_rates(forces.elongation_m, muscle.slow(&now.at), &mut out.slow()[slow]);
         }
         seen.forces[i] = forces;

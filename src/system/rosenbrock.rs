@@ -57,7 +57,6 @@ impl<D: Scalar> Stepper<D> {
     pub fn new(plant: &Plant<D>, state: &PlantState<D>) -> Self {
         let muscles = 0..plant.muscles.len();
         let row = vec![D::constant(0.0); state.row.len()];
-        let segments = muscles.clone().map(|i| state.boiling(i).len() - 1);
         Self {
             r: row.clone(),
             k1: row.clone(),
@@ -66,7 +65,7 @@ impl<D: Scalar> Stepper<D> {
             piston_m_s: vec![D::constant(0.0); muscles.len()],
             piston_ahead_m: vec![D::constant(0.0); muscles.len()],
             seen: Seen::new(plant),
-            tangents: Tangents::new(plant, segments, state.parts().joint_z().len()),
+            tangents: Tangents::new(plant, state.segments(), state.parts().joint_z().len()),
             switches: Switches::default(),
             age: KEEP,
             tangent_step_s: 0.0,
@@ -84,7 +83,8 @@ impl<D: Scalar> Stepper<D> {
     /// Whether everything one-sided acted alike at both stages: where it did not, the step is too long to be trusted.
     pub(super) fn step(&mut self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan], h: f64) -> bool {
         // The fast model has few coordinates, and a step of it is made of loops over them.
-        match plant.dim() {
+        let dim = if state.layout.is_of_one_segment() { plant.dim() } else { 0 };
+        match dim {
             1 => self.step_on::<1>(plant, state, inputs, h),
             2 => self.step_on::<2>(plant, state, inputs, h),
             3 => self.step_on::<3>(plant, state, inputs, h),
@@ -194,9 +194,8 @@ fn solve<D: Scalar, const N: usize>(
         let rho = tangents.lines[i].eliminate(r.line(i));
         add_scaled::<_, N>(k_w, &muscle.jacobian, t.pull_per_rho * rho - t.friction.force_per_r * r.z(i));
     }
-    // The tangents first: there are none in a stock scene, and then nothing is looked for.
-    for ((t, direction), &r) in tangents.frictions.iter().zip(dry_frictions(plant)).zip(r.joint_z()) {
-        add_scaled::<_, 0>(k_w, direction, -(t.force_per_r * r));
+    if !tangents.frictions.is_empty() {
+        push_dry_frictions(plant, tangents, r.joint_z(), k_w);
     }
     tangents.ldl.solve::<N>(k_w);
     for i in 0..n {
@@ -206,13 +205,37 @@ fn solve<D: Scalar, const N: usize>(
         let t = &tangents.muscles[i];
         let acceleration = dot::<_, N>(&muscle.jacobian, k.w());
         *k.z(i) = t.friction.stage(r.z(i), acceleration);
-        tangents.lines[i].back_substitute(t.area * acceleration, r.line(i), state.boiling(i), k.line(i));
+        tangents.lines[i].back_substitute(t.area * acceleration, r.line(i), state.boiling_of::<N>(i), k.line(i));
     }
-    for (i, (t, direction)) in tangents.frictions.iter().zip(dry_frictions(plant)).enumerate() {
-        k.joint_z()[i] = t.stage(r.joint_z()[i], dot::<_, 0>(direction, k.w()));
+    if !tangents.frictions.is_empty() {
+        let (speeds, states) = k.w_and_joint_z();
+        stages_of_dry_frictions(plant, tangents, r.joint_z(), speeds, states);
     }
     // Slow states act back only through the forces, which are evaluated in full: no tangent needed.
-    k.slow().iter_mut().zip(r.slow()).for_each(|(k, &r)| *k = r);
+    for (k, &r) in k.slow().iter_mut().zip(r.slow()) {
+        *k = r;
+    }
+}
+
+/// Kept apart: a stock scene has none.
+#[inline(never)]
+fn push_dry_frictions<D: Scalar>(plant: &Plant<D>, tangents: &Tangents<D>, r: &[D], forces: &mut [D]) {
+    for ((t, direction), &r) in tangents.frictions.iter().zip(dry_frictions(plant)).zip(r) {
+        add_scaled::<_, 0>(forces, direction, -(t.force_per_r * r));
+    }
+}
+
+#[inline(never)]
+fn stages_of_dry_frictions<D: Scalar>(
+    plant: &Plant<D>,
+    tangents: &Tangents<D>,
+    r: &[D],
+    accelerations: &[D],
+    stages: &mut [D],
+) {
+    for (i, (t, direction)) in tangents.frictions.iter().zip(dry_frictions(plant)).enumerate() {
+        stages[i] = t.stage(r[i], dot::<_, 0>(direction, accelerations));
+    }
 }
 
 /// Turns `F(u + h k1)` into the right-hand side of the second stage.

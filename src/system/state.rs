@@ -18,18 +18,14 @@ pub struct PlantState<D> {
 
 /// Where everything stands in the row: coordinates, their rates, friction states of the muscles, lines of the muscles,
 /// dry frictions of the mechanism and the cables, slow states of the effects.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// All lines have room for the same number of segments; that of a muscle whose pressure is recorded stands empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
     dim: usize,
-    /// Of each muscle, and once more at the end: where its line begins, in the row and among the nodes.
-    lines: Vec<LineAt>,
+    muscles: usize,
+    segments: usize,
     slow_at: usize,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct LineAt {
-    number: usize,
-    node: usize,
 }
 
 /// A row to be read. `N` is the number of coordinates where that is known when compiling, else 0 ([`sized`]).
@@ -59,15 +55,13 @@ pub(super) fn sized_mut<const N: usize, T>(slice: &mut [T]) -> &mut [T] {
     if N == 0 { slice } else { &mut slice[..N] }
 }
 
-impl Layout {
-    fn muscles(&self) -> usize {
-        self.lines.len() - 1
-    }
+/// Segments of a line where the number of coordinates is known when compiling.
+const SEGMENTS: usize = 1;
 
-    /// Where the dry frictions begin.
-    #[inline]
-    fn joint_z_at(&self) -> usize {
-        self.lines[self.muscles()].number
+impl Layout {
+    /// Whether a state is small enough that loops over it are worth having for its very size.
+    pub fn is_of_one_segment(&self) -> bool {
+        self.segments == SEGMENTS
     }
 
     #[inline]
@@ -76,8 +70,30 @@ impl Layout {
     }
 
     #[inline]
-    fn line(&self, muscle: usize) -> std::ops::Range<usize> {
-        self.lines[muscle].number..self.lines[muscle + 1].number
+    fn segments<const N: usize>(&self) -> usize {
+        if N == 0 { self.segments } else { SEGMENTS }
+    }
+
+    /// Where the row of a muscle's line begins.
+    #[inline]
+    fn line_at<const N: usize>(&self, muscle: usize) -> usize {
+        2 * self.dim::<N>() + self.muscles + muscle * ChainRow::<()>::len_of(self.segments::<N>())
+    }
+
+    #[inline]
+    fn line_of<'a, D, const N: usize>(&self, row: &'a [D], muscle: usize) -> &'a [D] {
+        &row[self.line_at::<N>(muscle)..][..ChainRow::<()>::len_of(self.segments::<N>())]
+    }
+
+    #[inline]
+    fn line_of_mut<'a, D, const N: usize>(&self, row: &'a mut [D], muscle: usize) -> &'a mut [D] {
+        &mut row[self.line_at::<N>(muscle)..][..ChainRow::<()>::len_of(self.segments::<N>())]
+    }
+
+    /// Where the dry frictions begin.
+    #[inline]
+    fn joint_z_at(&self) -> usize {
+        self.line_at::<0>(self.muscles)
     }
 
     #[inline]
@@ -111,10 +127,10 @@ impl<'a, D: Copy, const N: usize> Parts<'a, D, N> {
         self.row[2 * self.layout.dim::<N>() + muscle]
     }
 
-    /// The row of a muscle's line; without segments where the pressure is recorded.
+    /// The row of a muscle's line.
     #[inline]
     pub fn line(&self, muscle: usize) -> &'a [D] {
-        &self.row[self.layout.line(muscle)]
+        self.layout.line_of::<_, N>(self.row, muscle)
     }
 
     /// Frictions of the mechanism, then the sliding state of each cable.
@@ -144,6 +160,13 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
         sized_mut::<N, D>(&mut self.row[n..2 * n])
     }
 
+    /// Rates of the coordinates, and frictions of the mechanism and the cables.
+    pub fn w_and_joint_z(&mut self) -> (&mut [D], &mut [D]) {
+        let (n, from, to) = (self.layout.dim::<N>(), self.layout.joint_z_at(), self.layout.slow_at);
+        let (moving, rest) = self.row.split_at_mut(from);
+        (&mut moving[n..2 * n], &mut rest[..to - from])
+    }
+
     #[inline]
     pub fn z(&mut self, muscle: usize) -> &mut D {
         &mut self.row[2 * self.layout.dim::<N>() + muscle]
@@ -151,7 +174,7 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
 
     #[inline]
     pub fn line(&mut self, muscle: usize) -> &mut [D] {
-        &mut self.row[self.layout.line(muscle)]
+        self.layout.line_of_mut::<_, N>(self.row, muscle)
     }
 
     #[inline]
@@ -166,39 +189,27 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
 }
 
 impl<D: Scalar> PlantState<D> {
-    /// At rest at the coordinates `y`, without muscles yet.
-    pub(super) fn at_rest(y: &[D]) -> Self {
+    /// At rest at the coordinates `y`, with muscles whose lines have so many segments.
+    pub(super) fn at_rest(y: &[D], muscles: usize, segments: usize) -> Self {
+        let mut layout = Layout { dim: y.len(), muscles, segments, slow_at: 0 };
+        layout.slow_at = layout.joint_z_at();
         let mut row = y.to_vec();
-        row.resize(2 * y.len(), D::constant(0.0));
-        let end = LineAt { number: row.len(), node: 0 };
+        row.resize(layout.slow_at, D::constant(0.0));
         Self {
-            layout: Layout { dim: y.len(), lines: vec![end], slow_at: row.len() },
             row,
-            boiling: Vec::new(),
-            greatest_j: Vec::new(),
-            piston_ahead_m: Vec::new(),
+            layout,
+            boiling: vec![false; muscles * (segments + 1)],
+            greatest_j: vec![D::constant(0.0); muscles],
+            piston_ahead_m: vec![D::constant(0.0); muscles],
         }
-    }
-
-    /// One muscle more, with the row of its line; before effects are given any memory.
-    pub(super) fn add_muscle(&mut self, line: &[D], segments: usize) {
-        let Layout { dim, lines, slow_at } = &mut self.layout;
-        self.row.insert(2 * *dim + lines.len() - 1, D::constant(0.0));
-        lines.iter_mut().for_each(|l| l.number += 1);
-        self.row.extend_from_slice(line);
-        self.boiling.resize(self.boiling.len() + segments + 1, false);
-        lines.push(LineAt { number: self.row.len(), node: self.boiling.len() });
-        *slow_at = self.row.len();
-        self.greatest_j.push(D::constant(0.0));
-        self.piston_ahead_m.push(D::constant(0.0));
     }
 
     /// The same muscles at rest on other coordinates.
     pub(super) fn on_coordinates(&self, y: &[D]) -> Self {
-        let mut state = Self::at_rest(y);
-        for muscle in 0..self.layout.muscles() {
-            state.add_muscle(self.parts().line(muscle), self.boiling(muscle).len() - 1);
-        }
+        let mut state = Self::at_rest(y, self.layout.muscles, self.layout.segments);
+        let (from, to) = (2 * self.layout.dim, 2 * y.len());
+        let len = state.row.len() - to;
+        state.row[to..].copy_from_slice(&self.row[from..from + len]);
         state
     }
 
@@ -234,26 +245,38 @@ impl<D: Scalar> PlantState<D> {
 
     /// Pressures, flows and vapour volumes of a muscle's line.
     pub fn line(&self, muscle: usize) -> ChainRow<'_, D> {
-        ChainRow::of(self.parts().line(muscle), self.boiling(muscle).len() - 1)
+        ChainRow::of(self.parts().line(muscle), self.layout.segments)
+    }
+
+    /// Number of segments of the lines.
+    pub fn segments(&self) -> usize {
+        self.layout.segments
     }
 
     /// Pressures at the nodes of a muscle's line, to be written.
     pub(super) fn pressures_mut(&mut self, muscle: usize) -> &mut [D] {
-        let (row, boils) = self.line_mut(muscle);
-        &mut row[..boils.len()]
+        let nodes = self.layout.segments + 1;
+        &mut self.line_mut(muscle).0[..nodes]
     }
 
     /// Row of a muscle's line and which of its nodes boil, to be written.
     #[inline]
     pub(super) fn line_mut(&mut self, muscle: usize) -> (&mut [D], &mut [bool]) {
-        let (from, to) = (self.layout.lines[muscle], self.layout.lines[muscle + 1]);
-        (&mut self.row[from.number..to.number], &mut self.boiling[from.node..to.node])
+        let nodes = self.layout.segments + 1;
+        let row = self.layout.line_of_mut::<_, 0>(&mut self.row, muscle);
+        (row, &mut self.boiling[muscle * nodes..][..nodes])
     }
 
     /// Which nodes of a muscle's line boil.
     #[inline]
     pub fn boiling(&self, muscle: usize) -> &[bool] {
-        &self.boiling[self.layout.lines[muscle].node..self.layout.lines[muscle + 1].node]
+        self.boiling_of::<0>(muscle)
+    }
+
+    #[inline]
+    pub(super) fn boiling_of<const N: usize>(&self, muscle: usize) -> &[bool] {
+        let nodes = self.layout.segments::<N>() + 1;
+        &self.boiling[muscle * nodes..][..nodes]
     }
 }
 
@@ -263,7 +286,7 @@ impl PlantState<f64> {
         let all = |values: &[f64]| values.iter().map(|&x| D::constant(x)).collect();
         PlantState {
             row: all(&self.row),
-            layout: self.layout.clone(),
+            layout: self.layout,
             boiling: self.boiling.clone(),
             greatest_j: all(&self.greatest_j),
             piston_ahead_m: all(&self.piston_ahead_m),

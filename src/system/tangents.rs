@@ -69,11 +69,11 @@ impl<D: Scalar> FrictionTangent<D> {
 
 impl<D: Scalar> Tangents<D> {
     /// Room for those of a plant whose lines have so many segments.
-    pub fn new(plant: &Plant<D>, segments: impl Iterator<Item = usize>, frictions: usize) -> Self {
+    pub fn new(plant: &Plant<D>, segments: usize, frictions: usize) -> Self {
         let (n, zero) = (plant.dim(), D::constant(0.0));
         let muscle = MuscleTangent { pull_per_rho: zero, area: zero, friction: FrictionTangent::none() };
         Self {
-            lines: segments.map(ChainSolver::new).collect(),
+            lines: plant.muscles.iter().map(|_| ChainSolver::new(segments)).collect(),
             muscles: vec![muscle; plant.muscles.len()],
             frictions: vec![FrictionTangent::none(); frictions],
             springs: vec![zero; n * n],
@@ -155,7 +155,7 @@ impl<D: Scalar> Tangents<D> {
         }
         let mut along = damping * g + tangent.friction.inertia();
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {
-            let sigma = self.lines[i].factorise(chain, now.at.line(i), now.state.boiling(i), &forces.port, g);
+            let sigma = self.lines[i].factorise(chain, now.at.line(i), now.state.boiling_of::<N>(i), &forces.port, g);
             tangent.pull_per_rho = pull_per_pressure * g;
             along += tangent.pull_per_rho * sigma * tangent.area;
         }
