@@ -4,11 +4,15 @@
 //! `N + 1` pressure nodes and `N` flow segments; the muscle is whatever takes fluid from the last node.
 
 mod chain;
+mod chain_row;
+mod chain_solver;
 mod fluid;
 mod line;
 #[cfg(test)]
 mod transmission_line_tests;
 
-pub use chain::{Chain, ChainRates, ChainSolver, ChainState, Port};
+pub use chain::{Chain, Port};
+pub use chain_row::{ChainRow, ChainRowMut};
+pub use chain_solver::ChainSolver;
 pub use fluid::Fluid;
 pub use line::{Line, Syringe};

@@ -57,17 +57,15 @@ impl HeldTable {
         if lambda > 0.0 && place >= 0.0 { self.cells.get(place as usize) } else { None }
     }
 
-    /// `sum c_k I_k'` and `sum c_k I_k''`; none outside the table.
-    #[inline]
-    pub fn pull_and_stiffness<D: Scalar>(&self, c: &[D; 3], lambda: D) -> Option<(D, D)> {
-        let cell = self.cell(lambda.value())?;
-        let t = (lambda - cell.start) * cell.inverse_width;
-        let p = mix(c, &cell.pull);
-        // Estrin's order: short chains, as this is the innermost law of every time step.
-        let tt = t * t;
-        let pull = (p[0] + t * p[1]) + tt * ((p[2] + t * p[3]) + tt * (p[4] + t * p[5]));
-        let slope = (p[1] + t * p[2] * 2.0) + tt * ((p[3] * 3.0 + t * p[4] * 4.0) + tt * p[5] * 5.0);
-        Some((pull, slope * cell.inverse_width))
+    /// The table of one material in one tube: `c` times `area`, over the elongation of a tube of length `rest`.
+    pub fn of_material<D: Scalar>(&self, c: &[D; 3], rest: f64, area: f64) -> MaterialTable<D> {
+        let scaled = c.map(|c| c * area);
+        let cells = self.cells.iter().map(|cell| MaterialCell {
+            start: (cell.start - 1.0) * rest,
+            inverse_width: cell.inverse_width / rest,
+            pull: mix(&scaled, &cell.pull),
+        });
+        MaterialTable { cells: cells.collect(), first: self.first, steps: STEPS * rest, rest }
     }
 
     /// `sum c_k I_k`; none outside the table.
@@ -80,6 +78,43 @@ impl HeldTable {
         }
         let [start] = mix(c, &cell.energy.map(|energy| [energy]));
         Some(start + area / cell.inverse_width)
+    }
+}
+
+/// The quintics of one cell, mixed for one material.
+#[derive(Clone, Debug)]
+struct MaterialCell<D> {
+    start: f64,
+    inverse_width: f64,
+    pull: [D; 6],
+}
+
+/// Pull and stiffness of the held wall over its elongation: the innermost law of every time step, and so a table of its
+/// own for every material.
+#[derive(Clone, Debug)]
+pub(super) struct MaterialTable<D> {
+    cells: Vec<MaterialCell<D>>,
+    first: f64,
+    steps: f64,
+    rest: f64,
+}
+
+impl<D: Scalar> MaterialTable<D> {
+    /// Pull and its slope; none outside the table.
+    #[inline]
+    pub fn pull_and_stiffness(&self, elongation: D) -> Option<(D, D)> {
+        let length = self.rest + elongation.value();
+        let place = self.first - self.steps / length;
+        if !(length > 0.0 && place >= 0.0) {
+            return None;
+        }
+        let MaterialCell { start, inverse_width, pull: p } = self.cells.get(place as usize)?;
+        let t = (elongation - *start) * *inverse_width;
+        // Estrin's order: short chains.
+        let tt = t * t;
+        let pull = (p[0] + t * p[1]) + tt * ((p[2] + t * p[3]) + tt * (p[4] + t * p[5]));
+        let slope = (p[1] + t * p[2] * 2.0) + tt * ((p[3] * 3.0 + t * p[4] * 4.0) + tt * p[5] * 5.0);
+        Some((pull, slope * *inverse_width))
     }
 }
 

@@ -5,7 +5,7 @@ mod unilateral;
 use super::error::{MuscleError, positive};
 use super::material::Material;
 use super::section::{Section, SectionEnergy};
-use super::table::{HeldTable, held_invariant};
+use super::table::{HeldTable, MaterialTable, held_invariant};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -74,6 +74,8 @@ pub struct Wall<D> {
     geometry: WallGeometry,
     material: Material<D>,
     shared: Arc<Shared>,
+    /// Pull of this material, if the law is linear in its moduli.
+    pull: Option<Arc<MaterialTable<D>>>,
 }
 
 /// What depends on the geometry alone.
@@ -117,12 +119,18 @@ impl<D: Scalar> Wall<D> {
         material.map(|x| x.value()).check()?;
         let section = Section::new(geometry.bore_share());
         let table = HeldTable::new(&section);
-        Ok(Self { geometry, material, shared: Arc::new(Shared { section, table }) })
+        Ok(Self::on(geometry, material, Arc::new(Shared { section, table })))
     }
 
     /// The same tube of another material or number type, on the same table.
     pub fn with_material<E: Scalar>(&self, material: Material<E>) -> Wall<E> {
-        Wall { geometry: self.geometry, material, shared: Arc::clone(&self.shared) }
+        Wall::on(self.geometry, material, Arc::clone(&self.shared))
+    }
+
+    fn on(geometry: WallGeometry, material: Material<D>, shared: Arc<Shared>) -> Self {
+        let (rest, area) = (geometry.rest_length_m, geometry.coil_area_m2());
+        let pull = material.linear_coefficients().map(|c| Arc::new(shared.table.of_material(&c, rest, area)));
+        Self { geometry, material, shared, pull }
     }
 
     pub fn geometry(&self) -> &WallGeometry {
@@ -160,19 +168,17 @@ impl<D: Scalar> Wall<D> {
     }
 
     /// `dU/dL` (N) and `d2U/dL2` (N/m) of the held wall.
+    #[inline]
     pub fn pull_and_stiffness(&self, elongation_m: D) -> (D, D) {
-        let lambda = self.stretch(elongation_m);
-        let tabulated =
-            self.material.linear_coefficients().and_then(|c| self.shared.table.pull_and_stiffness(&c, lambda));
-        let (pull, stiffness) = match tabulated {
-            Some(both) => both,
-            None => {
-                let section = self.held_section(lambda);
-                (section.u_l, section.u_ll)
-            }
-        };
+        let tabulated = self.pull.as_ref().and_then(|table| table.pull_and_stiffness(elongation_m));
+        tabulated.unwrap_or_else(|| self.integrated_pull_and_stiffness(elongation_m))
+    }
+
+    #[cold]
+    fn integrated_pull_and_stiffness(&self, elongation_m: D) -> (D, D) {
+        let section = self.held_section(self.stretch(elongation_m));
         let area = self.geometry.coil_area_m2();
-        (pull * area, stiffness * (area / self.geometry.rest_length_m))
+        (section.u_l * area, section.u_ll * (area / self.geometry.rest_length_m))
     }
 
     /// The wall at an elongation and a pressure, under either condition.

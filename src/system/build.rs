@@ -1,6 +1,6 @@
 //! Scene to plant: names to indices, specs to elements.
 
-use crate::hydraulics::{Chain, ChainState};
+use crate::hydraulics::Chain;
 use crate::mechanism::{Coordinate, Mechanism, Route};
 use crate::muscle::{Coil, Friction, Stop, Wall, WallCondition, WallGeometry};
 use crate::recording::parse_column;
@@ -10,7 +10,8 @@ use super::SystemError;
 use super::elastic::Elastic;
 use super::extras::{MechanismExtras, MuscleExtras};
 use super::install::{Site, install, settle_memory};
-use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant, PlantState};
+use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant};
+use super::state::PlantState;
 
 /// A plant with its starting state, and how its parts hang on the mechanism.
 pub(super) struct Built {
@@ -64,7 +65,7 @@ impl Builder<'_> {
                 cables,
                 mechanism: MechanismExtras::default(),
             },
-            state: self.start(),
+            state: self.start(displaced),
             path_0_m: vec![0.0; routes.len()],
             start_offset_m: vec![0.0; routes.len()],
             routes,
@@ -133,23 +134,16 @@ impl Builder<'_> {
         Ok(c)
     }
 
-    fn start(&self) -> PlantState<f64> {
+    fn start(&self, displaced: bool) -> PlantState<f64> {
         let mut y = vec![0.0; self.dim];
         for (y, joint) in y.iter_mut().zip(self.mechanism.iter().flat_map(|m| m.coordinates())) {
             *y = joint.initial;
         }
         let pre = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.pre_elongation_ratio * m.rest_length_m);
         y[self.joints..].fill(pre);
-        PlantState {
-            w: vec![0.0; self.dim],
-            y,
-            chains: Vec::new(),
-            z: Vec::new(),
-            joint_z: Vec::new(),
-            slow: Vec::new(),
-            greatest_j: Vec::new(),
-            piston_ahead_m: Vec::new(),
-        }
+        let muscles = if displaced { 0 } else { self.scene.file.muscle.len() };
+        let segments = self.scene.file.hydraulics.as_ref().map_or(0, |h| h.line.segments);
+        PlantState::at_rest(&y, muscles, segments)
     }
 
     fn cables(&self) -> Result<(Vec<CablePlant<f64>>, Vec<Route>), SystemError> {
@@ -230,7 +224,7 @@ impl Builder<'_> {
             } else {
                 let i = self.joint(&table, joint)?;
                 jacobian[i] = 1.0;
-                elongation_0 = pre - built.state.y[i];
+                elongation_0 = pre - built.state.y()[i];
             }
         } else {
             jacobian[*next_end] = 1.0;
@@ -243,7 +237,7 @@ impl Builder<'_> {
             *next_end += 1;
         }
         let pressure = elastic.holding_pressure_pa(pre, make.initial_load_n);
-        let (drive, chain_state) = self.drive(spec, pressure)?;
+        let drive = self.drive(spec)?;
         let friction = make.friction.map(|f| Friction {
             m0_n: f.m0_n,
             m1_n_pa: f.m1_n_pa,
@@ -256,6 +250,9 @@ impl Builder<'_> {
         let stop = make.tube.as_ref().and_then(|t| t.closed_stop);
         built.muscle_index.push(Some(built.plant.muscles.len()));
         built.end_coordinate.push(end);
+        if let Drive::Hydraulic { .. } = drive {
+            built.state.pressures_mut(built.plant.muscles.len()).fill(pressure);
+        }
         built.plant.muscles.push(MusclePlant {
             drive,
             elastic,
@@ -267,29 +264,18 @@ impl Builder<'_> {
             extras: MuscleExtras::default(),
             slow_at: 0,
         });
-        built.state.chains.push(chain_state);
-        built.state.z.push(0.0);
         Ok(())
     }
 
-    fn drive(&self, spec: &MuscleSpec, pressure_pa: f64) -> Result<(Drive<f64>, ChainState<f64>), SystemError> {
+    fn drive(&self, spec: &MuscleSpec) -> Result<Drive<f64>, SystemError> {
         let input = self.muscle_input(spec)?;
         let by_pressure = parse_column(&spec.input)?.unit.si_suffix == "pa";
         match &self.scene.file.hydraulics {
             Some(h) if !by_pressure => {
                 let chain = Chain::new(&h.line, &h.fluid, h.upstream_compliance_m3_pa, h.downstream_compliance_m3_pa);
-                let state = chain.at_rest(pressure_pa);
-                Ok((Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input }, state))
+                Ok(Drive::Hydraulic { chain, syringe_area_m2: h.syringe.area_m2(), plunger: input })
             }
-            _ => {
-                let state = ChainState {
-                    pressure_pa: vec![0.0],
-                    flow_m3_s: Vec::new(),
-                    vapour_m3: vec![0.0],
-                    boiling: vec![false],
-                };
-                Ok((Drive::Pressure { pressure: input }, state))
-            }
+            _ => Ok(Drive::Pressure { pressure: input }),
         }
     }
 
@@ -333,7 +319,8 @@ impl Builder<'_> {
             let spec = &self.scene.file.cable[i];
             built.plant.cables[i].stretch_0_m = spec.pretension_n / spec.stiffness_n_m - stretch;
             let ends = self.joints..self.dim;
-            built.start_offset_m[i] = -ends.map(|j| built.plant.cables[i].jacobian[j] * built.state.y[j]).sum::<f64>();
+            built.start_offset_m[i] =
+                -ends.map(|j| built.plant.cables[i].jacobian[j] * built.state.y()[j]).sum::<f64>();
             if let Some(mechanism) = self.mechanism {
                 built.path_0_m[i] = mechanism.path_length(&built.routes[i], &mut vec![0.0; self.joints]);
             }

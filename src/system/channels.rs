@@ -81,11 +81,11 @@ impl Reader {
             Self::Pull(m) => plant.muscle_forces(*m, state, spans, 0.0).pull_n(),
             Self::MusclePressure(m) => plant.muscle_pressure(*m, state, spans, 0.0),
             Self::SyringePressure(m) => match plant.muscles[*m].drive {
-                Drive::Hydraulic { .. } => state.chains[*m].pressure_pa[0],
+                Drive::Hydraulic { .. } => state.line(*m).pressure_pa[0],
                 Drive::Pressure { .. } => plant.muscle_pressure(*m, state, spans, 0.0),
             },
             Self::Tension(c) => plant.cable(*c, state, spans, 0.0).2,
-            Self::Joints(joints, constant) => *constant + joints.iter().map(|&j| state.y[j]).sum::<f64>(),
+            Self::Joints(joints, constant) => *constant + joints.iter().map(|&j| state.y()[j]).sum::<f64>(),
             Self::Body { body, axis, frame } => simulation.mechanism.as_ref().map_or(f64::NAN, |mechanism| {
                 let poses = mechanism.link_poses();
                 let position = poses[*body].translation_m;

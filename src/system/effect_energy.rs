@@ -2,7 +2,8 @@
 
 use crate::hydraulics::Chain;
 
-use super::plant::{Drive, InputSpan, MuscleForces, MusclePlant, Plant, PlantState, dot};
+use super::plant::{Drive, InputSpan, MuscleForces, MusclePlant, Plant, dot};
+use super::state::PlantState;
 
 /// Which side of the book a flow of energy stands on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,27 +129,27 @@ pub(super) fn effect_flows(
     let mut flows = EffectFlows::default();
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let forces = plant.muscle_forces(i, state, inputs, elapsed_s);
-        muscle_flows(muscle, &forces, muscle.slow(state), state.greatest_j[i], &mut flows);
+        muscle_flows(muscle, &forces, muscle.slow(&state.parts()), state.greatest_j[i], &mut flows);
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {
-            flows.add(Flow::Restriction, restriction_w(muscle, chain, &state.chains[i].flow_m3_s));
+            flows.add(Flow::Restriction, restriction_w(muscle, chain, state.line(i).flow_m3_s));
         }
     }
     for (i, cable) in plant.cables.iter().enumerate() {
         let tension = plant.cable(i, state, inputs, elapsed_s).2;
         if let Some(friction) = &cable.friction {
-            let sliding = state.joint_z[plant.mechanism.frictions.len() + i];
-            let kept = |j: usize, share: f64| tension * (share - 1.0) * friction.far[j] * state.w[j];
-            friction.shares(&state.y, sliding, |j, share| flows.add(Flow::Tendon, kept(j, share)));
+            let sliding = state.parts().joint_z()[plant.mechanism.frictions.len() + i];
+            let kept = |j: usize, share: f64| tension * (share - 1.0) * friction.far[j] * state.w()[j];
+            friction.shares(state.y(), sliding, |j, share| flows.add(Flow::Tendon, kept(j, share)));
         }
         for coupling in plant.mechanism.couplings.iter().filter(|c| c.cable == i) {
-            flows.add(Flow::Coupling, coupling.lever_m * tension * dot(&coupling.direction, &state.w));
+            flows.add(Flow::Coupling, coupling.lever_m * tension * dot::<_, 0>(&coupling.direction, state.w()));
         }
     }
     for load in &plant.mechanism.loads {
-        flows.add(Flow::Gravity, load.force * dot(&load.direction, &state.w));
+        flows.add(Flow::Gravity, load.force * dot::<_, 0>(&load.direction, state.w()));
     }
-    for (friction, z) in plant.mechanism.frictions.iter().zip(&state.joint_z) {
-        flows.add(Flow::Bearing, friction.law.dissipation_w(*z, dot(&friction.direction, &state.w), 0.0));
+    for (friction, z) in plant.mechanism.frictions.iter().zip(state.parts().joint_z()) {
+        flows.add(Flow::Bearing, friction.law.dissipation_w(*z, dot::<_, 0>(&friction.direction, state.w()), 0.0));
     }
     flows
 }
@@ -198,8 +199,8 @@ pub(super) fn effect_stores(
     let mut stores = EffectStores::default();
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let x = &muscle.extras;
-        let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
-        let slow = muscle.slow(state);
+        let elongation = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
+        let slow = muscle.slow(&state.parts());
         let pressure = plant.muscle_pressure(i, state, inputs, elapsed_s);
         stores.add(Store::Air, x.air.as_ref().map_or(0.0, |air| air.energy_j(pressure)));
         for (branch, &dashpot) in x.branches.iter().zip(slow) {
@@ -214,11 +215,11 @@ pub(super) fn effect_stores(
             stores.add(Store::Softened, lost);
         }
     }
-    for (friction, z) in plant.mechanism.frictions.iter().zip(&state.joint_z) {
+    for (friction, z) in plant.mechanism.frictions.iter().zip(state.parts().joint_z()) {
         stores.add(Store::Bearing, friction.law.stored_energy_j(*z, 0.0));
     }
     for w in &plant.mechanism.walls {
-        stores.add(Store::Walls, w.wall.energy_j(dot(&w.direction, &state.y)));
+        stores.add(Store::Walls, w.wall.energy_j(dot::<_, 0>(&w.direction, state.y())));
     }
     stores
 }

@@ -6,7 +6,8 @@
 
 use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
-use super::plant::{CoordinateStop, Drive, InputSpan, Plant, PlantState, dot};
+use super::plant::{CoordinateStop, Drive, InputSpan, Plant, dot};
+use super::state::PlantState;
 
 /// Powers at one state, W.
 #[derive(Clone, Copy, Debug, Default)]
@@ -167,15 +168,15 @@ impl EnergyBook {
 
 /// Pressure at each syringe, Pa, and how far its piston is ahead of the plunger, m.
 fn pistons(state: &PlantState<f64>) -> impl Iterator<Item = (f64, f64)> {
-    state.chains.iter().map(|c| c.pressure_pa[0]).zip(state.piston_ahead_m.iter().copied())
+    state.piston_ahead_m.iter().enumerate().map(|(i, ahead)| (state.line(i).pressure_pa[0], *ahead))
 }
 
 fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Powers {
     let c = &plant.coordinates;
-    let mut p = Powers { loads: c.force.iter().zip(&state.w).map(|(f, w)| f * w).sum(), ..Powers::default() };
-    p.joint_damping = c.damping.iter().zip(&state.w).map(|(d, w)| d * w * w).sum();
+    let mut p = Powers { loads: c.force.iter().zip(state.w()).map(|(f, w)| f * w).sum(), ..Powers::default() };
+    p.joint_damping = c.damping.iter().zip(state.w()).map(|(d, w)| d * w * w).sum();
     for stop in &c.stops {
-        let (y, w) = (state.y[stop.coordinate], state.w[stop.coordinate]);
+        let (y, w) = (state.y()[stop.coordinate], state.w()[stop.coordinate]);
         let (depth, force) = CoordinateStop::force(stop, y, w);
         if depth > 0.0 {
             p.stop_damping += (stop.side * stop.stiffness * depth - force) * w;
@@ -214,12 +215,12 @@ fn muscle_powers(
     }
     let pressure_rate = match &muscle.drive {
         Drive::Hydraulic { chain, syringe_area_m2, plunger } => {
-            let s = &state.chains[i];
+            let s = state.line(i);
             p.input += s.pressure_pa[0] * syringe_area_m2 * inputs[*plunger].slope;
-            p.line_viscosity += chain.dissipation_w(s) - restriction_w(muscle, chain, &s.flow_m3_s);
+            p.line_viscosity += chain.dissipation_w(state.parts().line(i)) - restriction_w(muscle, chain, s.flow_m3_s);
             let n = chain.segments();
             let net = s.flow_m3_s[n - 1] - f.port.outflow_m3_s;
-            if s.boiling[n] { 0.0 } else { net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa) }
+            if state.boiling(i)[n] { 0.0 } else { net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa) }
         }
         Drive::Pressure { pressure } => {
             p.input += f.pressure_pa * f.port.outflow_m3_s;
@@ -227,8 +228,8 @@ fn muscle_powers(
         }
     };
     if let Some(friction) = &muscle.friction {
-        p.muscle_friction += friction.dissipation_w(state.z[i], f.speed_m_s, f.pressure_pa);
-        p.pressure_friction += friction.pressure_exchange_w(state.z[i], f.pressure_pa, pressure_rate);
+        p.muscle_friction += friction.dissipation_w(state.parts().z(i), f.speed_m_s, f.pressure_pa);
+        p.pressure_friction += friction.pressure_exchange_w(state.parts().z(i), f.pressure_pa, pressure_rate);
     }
 }
 
@@ -237,11 +238,11 @@ fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
     let n = plant.dim();
     let mut energy = 0.0;
     for i in 0..n {
-        energy += 0.5 * c.stiffness[i] * (state.y[i] - c.rest[i]).powi(2);
-        energy += 0.5 * state.w[i] * (0..n).map(|j| c.inertia[i * n + j] * state.w[j]).sum::<f64>();
+        energy += 0.5 * c.stiffness[i] * (state.y()[i] - c.rest[i]).powi(2);
+        energy += 0.5 * state.w()[i] * (0..n).map(|j| c.inertia[i * n + j] * state.w()[j]).sum::<f64>();
     }
     for stop in &c.stops {
-        let depth = ((stop.position - state.y[stop.coordinate]) * stop.side).max(0.0);
+        let depth = ((stop.position - state.y()[stop.coordinate]) * stop.side).max(0.0);
         energy += 0.5 * stop.stiffness * depth * depth;
     }
     for i in 0..plant.cables.len() {
@@ -249,14 +250,14 @@ fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
         energy += 0.5 * plant.cables[i].stiffness_n_m * stretch.max(0.0).powi(2);
     }
     for (i, muscle) in plant.muscles.iter().enumerate() {
-        let e = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+        let e = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
         let p = plant.muscle_pressure(i, state, inputs, elapsed_s);
-        energy += elastic_energy(&muscle.elastic, e - muscle.extras.set_m(muscle.slow(state)), p);
+        energy += elastic_energy(&muscle.elastic, e - muscle.extras.set_m(muscle.slow(&state.parts())), p);
         energy += muscle.stop.as_ref().map_or(0.0, |s| s.energy_j(e));
-        energy += muscle.friction.as_ref().map_or(0.0, |f| f.stored_energy_j(state.z[i], p));
+        energy += muscle.friction.as_ref().map_or(0.0, |f| f.stored_energy_j(state.parts().z(i), p));
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {
-            energy += chain.energy_j(&state.chains[i]);
-            energy -= chain.cavitation_pressure_pa * state.chains[i].vapour_m3.iter().sum::<f64>();
+            energy += chain.energy_j(state.parts().line(i));
+            energy -= chain.cavitation_pressure_pa * state.line(i).vapour_m3.iter().sum::<f64>();
         }
     }
     energy

@@ -57,7 +57,7 @@ fn conditions(simulation: &Simulation) -> Vec<String> {
     let state = &simulation.built.state;
     for (i, spec) in simulation.scene.file.muscle.iter().enumerate() {
         let Some(m) = simulation.built.muscle_index[i] else { continue };
-        if state.chains[m].boiling.iter().any(|b| *b) {
+        if state.boiling(m).iter().any(|b| *b) {
             present.push(format!("{}: the fluid cavitates", spec.name));
         }
         let elongation = simulation.built.plant.muscle_forces(m, state, &simulation.end_spans(), 0.0).elongation_m;

@@ -12,6 +12,9 @@ use super::plant::dot;
 /// Additions to one muscle and its line.
 #[derive(Clone, Debug)]
 pub struct MuscleExtras<D> {
+    /// Whether any of the following but the backlash is there: what a stock scene need not ask one by one. Kept by
+    /// [`MuscleExtras::count`].
+    pub(super) acts: bool,
     pub backlash: Option<Backlash<D>>,
     pub air: Option<TrappedAir<D>>,
     /// Conductance of a leak after the line, m³/(s Pa).
@@ -31,6 +34,7 @@ pub struct MuscleExtras<D> {
 impl<D> Default for MuscleExtras<D> {
     fn default() -> Self {
         Self {
+            acts: false,
             backlash: None,
             air: None,
             leak_m3_s_pa: None,
@@ -47,6 +51,14 @@ impl<D> Default for MuscleExtras<D> {
 }
 
 impl<D: Scalar> MuscleExtras<D> {
+    /// Sees what is there: to be called once everything has been put in.
+    pub(super) fn count(&mut self) {
+        let acts_on_line =
+            self.air.is_some() || self.leak_m3_s_pa.is_some() || self.growth_m3_s.is_some() || !self.flows.is_empty();
+        let pulls = self.mullins.is_some() || self.preload.is_some() || !self.forces.is_empty();
+        self.acts = acts_on_line || pulls || self.slow_states() > 0;
+    }
+
     /// Number of slow states: one per branch, one for the plastic set.
     pub(super) fn slow_states(&self) -> usize {
         self.branches.len() + usize::from(self.plastic.is_some())
@@ -154,7 +166,7 @@ pub struct CableFriction<D> {
 impl<D: Scalar> CableFriction<D> {
     /// Speed at which the far part is drawn in, m/s.
     pub(super) fn sliding_m_s(&self, w: &[D]) -> D {
-        -dot(&self.far, w)
+        -dot::<_, 0>(&self.far, w)
     }
 
     /// Calls `with(coordinate, share)` for each joint: tension there over tension at the near end.

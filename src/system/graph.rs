@@ -51,7 +51,7 @@ impl Simulation {
             cables: self.cable_frames(),
             muscles: self.muscle_frames(),
             contacts: self.mechanism.as_ref().map_or(Vec::new(), |m| m.contacts()),
-            joint_positions: self.built.state.y[..joints].to_vec(),
+            joint_positions: self.built.state.y()[..joints].to_vec(),
             events,
             energy_j: self.energy.as_ref().map_or(Vec::new(), |book| book.lines()),
         }

@@ -8,7 +8,8 @@ use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
 use super::extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction};
-use super::plant::{Drive, Plant, PlantState, dot};
+use super::plant::{Drive, Plant, dot};
+use super::state::PlantState;
 
 /// What the effects of the mechanism act on: the joints that the first cable bends, else the first muscle's joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,19 +155,18 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
 
 /// Gives a state the memory that the plant's effects need: branches relaxed, pistons centred.
 pub(super) fn settle_memory<D: Scalar>(plant: &mut Plant<D>, state: &mut PlantState<D>) {
-    let zero = D::constant(0.0);
-    state.slow.clear();
-    state.greatest_j = vec![zero; plant.muscles.len()];
-    state.piston_ahead_m = vec![zero; plant.muscles.len()];
-    for (i, muscle) in plant.muscles.iter_mut().enumerate() {
-        let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
-        muscle.slow_at = state.slow.len();
-        state.slow.extend(std::iter::repeat_n(elongation, muscle.extras.branches.len()));
-        state.slow.extend(muscle.extras.plastic.as_ref().map(|_| zero));
-        if muscle.extras.mullins.is_some() {
-            state.greatest_j[i] = muscle.elastic.wall_energy_j(elongation);
-        }
+    let mut slow = Vec::new();
+    let mut energies = Vec::new();
+    for muscle in &mut plant.muscles {
+        let elongation = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
+        muscle.slow_at = slow.len();
+        muscle.extras.count();
+        slow.extend(std::iter::repeat_n(elongation, muscle.extras.branches.len()));
+        slow.extend(muscle.extras.plastic.as_ref().map(|_| D::constant(0.0)));
+        let softens = muscle.extras.mullins.is_some();
+        energies.push(if softens { muscle.elastic.wall_energy_j(elongation) } else { D::constant(0.0) });
     }
     let sliding = if plant.cables.iter().any(|c| c.friction.is_some()) { plant.cables.len() } else { 0 };
-    state.joint_z = vec![zero; plant.mechanism.frictions.len() + sliding];
+    state.set_memory(plant.mechanism.frictions.len() + sliding, &slow);
+    state.greatest_j = energies;
 }

@@ -20,18 +20,18 @@ impl<D: Scalar> Ldl<D> {
         Self { n, factors: vec![D::constant(0.0); n * n], pivots: vec![D::constant(0.0); n] }
     }
 
-    /// Factorises; reads the lower triangle only.
-    pub(super) fn factorise(&mut self, matrix: &[D]) {
-        let n = self.n;
-        let f = &mut self.factors;
+    /// Factorises; reads the lower triangle only. `N`: the size where it is known when compiling, else 0.
+    pub(super) fn factorise<const N: usize>(&mut self, matrix: &[D]) {
+        let n = if N == 0 { self.n } else { N };
+        let (f, pivots, matrix) = (&mut self.factors[..n * n], &mut self.pivots[..n], &matrix[..n * n]);
         for j in 0..n {
             for i in j..n {
                 let mut x = matrix[i * n + j];
                 for k in 0..j {
-                    x -= f[i * n + k] * f[j * n + k] * self.pivots[k];
+                    x -= f[i * n + k] * f[j * n + k] * pivots[k];
                 }
                 if i == j {
-                    self.pivots[j] = x;
+                    pivots[j] = x;
                     f[i * n + j] = x.recip();
                 } else {
                     f[i * n + j] = x * f[j * n + j];
@@ -41,8 +41,10 @@ impl<D: Scalar> Ldl<D> {
     }
 
     /// Solves in place.
-    pub(super) fn solve(&self, x: &mut [D]) {
-        let (n, f) = (self.n, &self.factors);
+    #[inline]
+    pub(super) fn solve<const N: usize>(&self, x: &mut [D]) {
+        let n = if N == 0 { self.n } else { N };
+        let (x, f) = (&mut x[..n], &self.factors[..n * n]);
         for i in 0..n {
             for k in 0..i {
                 let known = x[k];
@@ -69,8 +71,8 @@ mod tests {
         let expected = [1.0, -2.0, 0.5];
         let mut x: Vec<f64> = (0..3).map(|i| (0..3).map(|j| a[i * 3 + j] * expected[j]).sum()).collect();
         let mut ldl = Ldl::new(3);
-        ldl.factorise(&a);
-        ldl.solve(&mut x);
+        ldl.factorise::<0>(&a);
+        ldl.solve::<3>(&mut x);
         for (x, e) in x.iter().zip(expected) {
             assert!((x - e).abs() < 1e-14, "{x} against {e}");
         }

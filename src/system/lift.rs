@@ -1,11 +1,11 @@
 //! A plant of plain numbers as one of another number type: every number a constant.
 
-use crate::hydraulics::{Chain, ChainState};
+use crate::hydraulics::Chain;
 use crate::muscle::{Coil, Friction, Stop};
 use crate::scalar::Scalar;
 
 use super::extras::{MechanismExtras, MuscleExtras};
-use super::{CablePlant, Coordinates, Drive, Elastic, MusclePlant, Plant, PlantState};
+use super::{CablePlant, Coordinates, Drive, Elastic, MusclePlant, Plant};
 
 fn all<D: Scalar>(values: &[f64]) -> Vec<D> {
     values.iter().map(|&x| D::constant(x)).collect()
@@ -106,31 +106,6 @@ impl CablePlant<f64> {
             jacobian: self.jacobian.clone(),
             drive: self.drive,
             friction: None,
-        }
-    }
-}
-
-impl PlantState<f64> {
-    /// The same state over `D`.
-    pub(super) fn lift<D: Scalar>(&self) -> PlantState<D> {
-        PlantState {
-            y: all(&self.y),
-            w: all(&self.w),
-            chains: self
-                .chains
-                .iter()
-                .map(|c| ChainState {
-                    pressure_pa: all(&c.pressure_pa),
-                    flow_m3_s: all(&c.flow_m3_s),
-                    vapour_m3: all(&c.vapour_m3),
-                    boiling: c.boiling.clone(),
-                })
-                .collect(),
-            z: all(&self.z),
-            joint_z: all(&self.joint_z),
-            slow: all(&self.slow),
-            greatest_j: all(&self.greatest_j),
-            piston_ahead_m: all(&self.piston_ahead_m),
         }
     }
 }

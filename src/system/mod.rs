@@ -22,10 +22,13 @@ mod lift;
 mod measured_pose;
 pub mod observe;
 mod plant;
+mod rates;
 mod rosenbrock;
 mod run;
 mod simulation;
+mod state;
 mod switching;
+mod tangents;
 mod twin;
 
 pub use axis::AxisNumber;
@@ -40,9 +43,9 @@ pub use inputs::InputSource;
 pub use measured_pose::measured_poses;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
-    PlantState,
 };
 pub use rosenbrock::Stepper;
 pub use run::{RunError, Schedule, record, run};
 pub use simulation::Simulation;
+pub use state::PlantState;
 pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -5,12 +5,13 @@
 //! act as `-J^T F`. The mechanism enters as `M, D, K` and one-sided stops ([`Coordinates`]): taken from rapier and
 //! renewed every step in a full scene, constant in a reduced one. Nothing here knows rapier.
 
-use crate::hydraulics::{Chain, ChainState, Port};
+use crate::hydraulics::{Chain, Port};
 use crate::muscle::{Friction, Stop};
 use crate::scalar::Scalar;
 
 use super::elastic::Elastic;
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
+use super::state::{Parts, PlantState, sized, sized_mut};
 
 /// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
 #[derive(Clone, Debug)]
@@ -46,8 +47,8 @@ pub struct ContactSpring {
 impl ContactSpring {
     /// Push along the direction, never negative.
     pub(super) fn push<D: Scalar>(&self, y: &[D], w: &[D]) -> D {
-        let depth = -dot(&self.direction, y) + self.offset;
-        let push = depth * self.stiffness - dot(&self.direction, w) * self.damping + self.preload;
+        let depth = -dot::<_, 0>(&self.direction, y) + self.offset;
+        let push = depth * self.stiffness - dot::<_, 0>(&self.direction, w) * self.damping + self.preload;
         if push.value() > 0.0 { push } else { D::constant(0.0) }
     }
 }
@@ -122,30 +123,35 @@ pub struct Plant<D> {
     pub mechanism: MechanismExtras<D>,
 }
 
-/// State of a [`Plant`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlantState<D> {
-    /// Coordinates and their rates.
-    pub y: Vec<D>,
-    pub w: Vec<D>,
-    /// Hydraulics of each muscle; of zero segments where the pressure is recorded.
-    pub chains: Vec<ChainState<D>>,
-    /// Friction state of each muscle, -1..=1 for the stock law.
-    pub z: Vec<D>,
-    /// Frictions of the mechanism, then the sliding state of each cable.
-    pub joint_z: Vec<D>,
-    /// Slow states of all muscles' effects, m.
-    pub slow: Vec<D>,
-    /// Of each muscle: the greatest energy of its wall so far, J, and how far its piston is ahead of the plunger, m.
-    pub greatest_j: Vec<D>,
-    pub piston_ahead_m: Vec<D>,
-}
-
 /// Inputs over one fine step: their value at its start and the (constant) slope, SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InputSpan {
     pub value: f64,
     pub slope: f64,
+}
+
+/// An instant of a run: a state, or another row of numbers in its place, and the inputs `elapsed_s` into their spans.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instant<'a, D, const N: usize = 0> {
+    /// What does not move within a step.
+    pub state: &'a PlantState<D>,
+    pub at: Parts<'a, D, N>,
+    pub inputs: &'a [InputSpan],
+    pub elapsed_s: f64,
+}
+
+impl<'a, D: Scalar, const N: usize> Instant<'a, D, N> {
+    /// That of a state.
+    #[inline]
+    pub fn of(state: &'a PlantState<D>, inputs: &'a [InputSpan], elapsed_s: f64) -> Self {
+        Self { state, at: state.layout.parts(&state.row), inputs, elapsed_s }
+    }
+
+    /// Value of an input.
+    #[inline]
+    fn input(&self, index: usize) -> f64 {
+        self.inputs[index].value + self.elapsed_s * self.inputs[index].slope
+    }
 }
 
 /// Forces and slopes of one muscle at one state.
@@ -169,6 +175,23 @@ pub struct MuscleForces<D> {
 }
 
 impl<D: Scalar> MuscleForces<D> {
+    /// A muscle that does nothing.
+    pub(super) fn none() -> Self {
+        let zero = D::constant(0.0);
+        Self {
+            elongation_m: zero,
+            speed_m_s: zero,
+            pressure_pa: zero,
+            elastic_n: zero,
+            friction_n: zero,
+            damping_n: zero,
+            stop_n: zero,
+            stiffness_n_m: zero,
+            area_m2: zero,
+            port: Port { outflow_m3_s: zero, compliance_m3_pa: zero },
+        }
+    }
+
     /// Everything the muscle pulls with, N; > 0 pulls the end towards the muscle.
     pub fn pull_n(&self) -> D {
         self.elastic_n + self.friction_n + self.damping_n - self.stop_n
@@ -179,6 +202,7 @@ impl<D: Scalar> MusclePlant<D> {
     /// The forces at elongation, speed, pressure and friction state.
     ///
     /// `slow` are the muscle's slow states, `greatest_j` the greatest energy of its wall so far.
+    #[inline]
     pub fn forces(
         &self,
         elongation_m: D,
@@ -189,7 +213,7 @@ impl<D: Scalar> MusclePlant<D> {
         greatest_j: D,
     ) -> MuscleForces<D> {
         let zero = D::constant(0.0);
-        let (law, (extra_n, extra_k)) = if self.has_extras() {
+        let (law, (extra_n, extra_k)) = if self.extras.acts {
             let seen = elongation_m - self.extras.set_m(slow);
             let law = self.elastic.softened(seen, pressure_pa, self.extras.mullins.as_ref(), greatest_j);
             (law, self.extras.pull_and_stiffness(elongation_m, pressure_pa, slow))
@@ -213,19 +237,10 @@ impl<D: Scalar> MusclePlant<D> {
         }
     }
 
-    fn has_extras(&self) -> bool {
-        let x = &self.extras;
-        !x.branches.is_empty()
-            || x.mullins.is_some()
-            || x.preload.is_some()
-            || x.plastic.is_some()
-            || !x.forces.is_empty()
-    }
-
     fn port(&self, law: &super::ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
         let (mut outflow_m3_s, mut compliance_m3_pa) = (law.area_m2 * speed_m_s, law.compliance_m3_pa);
         let x = &self.extras;
-        if x.air.is_some() || x.leak_m3_s_pa.is_some() || x.growth_m3_s.is_some() || !x.flows.is_empty() {
+        if x.acts {
             let (compliance, flow) = x.line_load(pressure_pa);
             compliance_m3_pa += compliance;
             outflow_m3_s += flow;
@@ -233,9 +248,34 @@ impl<D: Scalar> MusclePlant<D> {
         Port { outflow_m3_s, compliance_m3_pa }
     }
 
-    /// The muscle's part of [`PlantState::slow`].
-    pub(super) fn slow<'a>(&self, state: &'a PlantState<D>) -> &'a [D] {
-        &state.slow[self.slow_at..self.slow_at + self.extras.slow_states()]
+    /// The muscle's part of the slow states.
+    #[inline]
+    pub(super) fn slow<'a, const N: usize>(&self, at: &Parts<'a, D, N>) -> &'a [D] {
+        if self.extras.acts { &at.slow()[self.slow_at..self.slow_at + self.extras.slow_states()] } else { &[] }
+    }
+
+    /// Elongation at the coordinates `y`, m.
+    #[inline]
+    pub(super) fn elongation_m<const N: usize>(&self, y: &[D]) -> D {
+        dot::<_, N>(&self.jacobian, y) + self.elongation_0_m
+    }
+}
+
+impl<D: Scalar> CablePlant<D> {
+    /// Stretch, stretching rate and tension; the tension is never negative and zero when slack.
+    #[inline]
+    pub(super) fn pull<const N: usize>(&self, now: &Instant<D, N>) -> (D, D, D) {
+        let mut stretch = self.stretch_0_m + dot::<_, N>(&self.jacobian, now.at.y());
+        let mut rate = dot::<_, N>(&self.jacobian, now.at.w());
+        if let Some((input, gain)) = self.drive {
+            stretch += gain * now.input(input);
+            rate += gain * now.inputs[input].slope;
+        }
+        if stretch.value() < 0.0 {
+            return (stretch, rate, D::constant(0.0));
+        }
+        let tension = self.stiffness_n_m * stretch + self.damping_n_s_m * rate;
+        (stretch, rate, if tension.value() > 0.0 { tension } else { D::constant(0.0) })
     }
 }
 
@@ -247,9 +287,14 @@ impl<D: Scalar> Plant<D> {
 
     /// Pressure at the muscle, gauge, Pa.
     pub fn muscle_pressure(&self, muscle: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> D {
+        self.pressure::<0>(muscle, &Instant::of(state, inputs, elapsed_s))
+    }
+
+    #[inline]
+    fn pressure<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> D {
         match &self.muscles[muscle].drive {
-            Drive::Hydraulic { chain, .. } => state.chains[muscle].pressure_pa[chain.segments()],
-            Drive::Pressure { pressure } => D::constant(inputs[*pressure].value + elapsed_s * inputs[*pressure].slope),
+            Drive::Hydraulic { chain, .. } => now.at.line(muscle)[chain.segments()],
+            Drive::Pressure { pressure } => D::constant(now.input(*pressure)),
         }
     }
 
@@ -261,11 +306,16 @@ impl<D: Scalar> Plant<D> {
         inputs: &[InputSpan],
         elapsed_s: f64,
     ) -> MuscleForces<D> {
+        self.forces::<0>(muscle, &Instant::of(state, inputs, elapsed_s))
+    }
+
+    /// Forces of one muscle at an instant.
+    #[inline]
+    pub(super) fn forces<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> MuscleForces<D> {
         let m = &self.muscles[muscle];
-        let pressure = self.muscle_pressure(muscle, state, inputs, elapsed_s);
-        let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;
-        let speed = dot(&m.jacobian, &state.w);
-        m.forces(elongation, speed, pressure, state.z[muscle], m.slow(state), state.greatest_j[muscle])
+        let pressure = self.pressure(muscle, now);
+        let (elongation, speed) = (m.elongation_m::<N>(now.at.y()), dot::<_, N>(&m.jacobian, now.at.w()));
+        m.forces(elongation, speed, pressure, now.at.z(muscle), m.slow(&now.at), now.state.greatest_j[muscle])
     }
 
     /// Whether anything rubs dry, or could with an effect.
@@ -274,39 +324,38 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
-    pub(super) fn pulling(&self, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> u64 {
-        let cables = (0..self.cables.len()).map(|i| self.cable(i, state, inputs, elapsed_s).2.value() > 0.0);
-        let stops = &self.coordinates.stops;
-        let stops = stops.iter().map(|s| s.force(state.y[s.coordinate], state.w[s.coordinate]).0.value() > 0.0);
-        let coils = self.muscles.iter().filter(|m| m.stop.is_some()).map(|m| {
-            let elongation = dot(&m.jacobian, &state.y) + m.elongation_0_m;
-            elongation.value() < 0.0
-        });
+    pub(super) fn pulling<const N: usize>(&self, now: &Instant<D, N>) -> u64 {
+        let (y, w) = (now.at.y(), now.at.w());
+        let mut bits = 0;
+        let mut note = |acts: bool| bits = bits << 1 | u64::from(acts);
+        self.cables.iter().for_each(|c| note(c.pull(now).2.value() > 0.0));
+        self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.value() > 0.0));
+        for muscle in self.muscles.iter().filter(|m| m.stop.is_some()) {
+            note(muscle.elongation_m::<N>(y).value() < 0.0);
+        }
         // A wall without stiffness is none.
-        let walls = self.mechanism.walls.iter();
-        let walls =
-            walls.map(|w| w.wall.stiffness_n_m_rad.value() != 0.0 && w.wall.is_met(dot(&w.direction, &state.y)));
-        cables.chain(stops).chain(coils).chain(walls).fold(0, |bits, acts| bits << 1 | u64::from(acts))
+        for w in &self.mechanism.walls {
+            note(w.wall.stiffness_n_m_rad.value() != 0.0 && w.wall.is_met(dot::<_, N>(&w.direction, y)));
+        }
+        bits
     }
 
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.
     pub fn cable(&self, cable: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> (D, D, D) {
-        let c = &self.cables[cable];
-        let mut stretch = c.stretch_0_m + dot(&c.jacobian, &state.y);
-        let mut rate = dot(&c.jacobian, &state.w);
-        if let Some((input, gain)) = c.drive {
-            stretch += gain * (inputs[input].value + elapsed_s * inputs[input].slope);
-            rate += gain * inputs[input].slope;
-        }
-        if stretch.value() < 0.0 {
-            return (stretch, rate, D::constant(0.0));
-        }
-        let tension = c.stiffness_n_m * stretch + c.damping_n_s_m * rate;
-        (stretch, rate, if tension.value() > 0.0 { tension } else { D::constant(0.0) })
+        self.cables[cable].pull::<0>(&Instant::of(state, inputs, elapsed_s))
     }
 }
 
-/// `sum a_i x_i`; `a` holds few entries that are not zero.
-pub(super) fn dot<D: Scalar>(a: &[f64], x: &[D]) -> D {
-    a.iter().zip(x).filter(|(a, _)| **a != 0.0).map(|(&a, &x)| x * a).sum()
+/// `sum a_i x_i`; `N` as for [`sized`].
+#[inline]
+pub(super) fn dot<D: Scalar, const N: usize>(a: &[f64], x: &[D]) -> D {
+    sized::<N, _>(a).iter().zip(sized::<N, _>(x)).fold(D::constant(0.0), |sum, (&a, &x)| sum + x * a)
+}
+
+/// `x += scale * j`; `N` as for [`sized`].
+#[inline]
+pub(super) fn add_scaled<D: Scalar, const N: usize>(x: &mut [D], j: &[f64], scale: D) {
+    for (x, &a) in sized_mut::<N, _>(x).iter_mut().zip(sized::<N, _>(j)) {
+        *x += scale * a;
+    }
 }

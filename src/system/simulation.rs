@@ -8,8 +8,9 @@ use crate::scene::Scene;
 use super::build::{Built, Displacement, build};
 use super::contact::foreseen;
 use super::energy::EnergyBook;
-use super::plant::{InputSpan, Plant, PlantState};
+use super::plant::{InputSpan, Instant, Plant};
 use super::rosenbrock::Stepper;
+use super::state::PlantState;
 use super::switching::Watch;
 use super::{InputSource, SystemError};
 
@@ -174,7 +175,7 @@ impl Simulation {
         let joints = self.known_force.len();
         self.renew_coordinates(h);
         self.stepper.plant_changed();
-        self.positions.copy_from_slice(&self.built.state.y[..joints]);
+        self.positions.copy_from_slice(&self.built.state.y()[..joints]);
         let substeps = self.scene.file.simulation.substeps;
         let fine = h / substeps as f64;
         let mut pulling = None;
@@ -191,7 +192,7 @@ impl Simulation {
     /// `pulling`: what pulls at the beginning, if that is known.
     fn fine_step(&mut self, h: f64, pulling: &mut Option<u64>) {
         let Built { plant, state, .. } = &mut self.built;
-        let mut now = pulling.unwrap_or_else(|| plant.pulling(state, &self.spans, 0.0));
+        let mut now = pulling.unwrap_or_else(|| plant.pulling::<0>(&Instant::of(state, &self.spans, 0.0)));
         let mut books = Books { energy: self.energy.as_mut(), contact_impulse: &mut self.contact_impulse };
         self.stepper.advance(plant, state, &mut self.spans, h, &mut now, &mut books);
         *pulling = Some(now);
@@ -216,7 +217,7 @@ impl Simulation {
             plant.coordinates.force[i] = self.weight[i] + self.loads[i] + known;
         }
         let fine = h / self.scene.file.simulation.substeps as f64;
-        let touched = self.touching.then(|| foreseen(&self.known_force, &self.built.state.y, &self.inertia, n, fine));
+        let touched = self.touching.then(|| foreseen(&self.known_force, self.built.state.y(), &self.inertia, n, fine));
         plant.coordinates.contact = touched.flatten();
         for (i, route) in self.built.routes.iter().enumerate() {
             if !matches!(route, crate::mechanism::Route::Via(_)) {
@@ -224,7 +225,7 @@ impl Simulation {
             }
             let cable = &mut plant.cables[i];
             let length = mechanism.path_length(route, &mut cable.jacobian[..joints]);
-            let linear: f64 = cable.jacobian[..joints].iter().zip(&self.built.state.y).map(|(j, y)| j * y).sum();
+            let linear: f64 = cable.jacobian[..joints].iter().zip(self.built.state.y()).map(|(j, y)| j * y).sum();
             let spec = &self.scene.file.cable[i];
             let start_offset = self.built.start_offset_m[i];
             cable.stretch_0_m =
@@ -254,7 +255,7 @@ impl Simulation {
         let joints = self.known_force.len();
         let Built { plant, state, .. } = &mut self.built;
         for i in 0..joints {
-            self.target[i] = (state.y[i] - self.positions[i]) / h;
+            self.target[i] = (state.y()[i] - self.positions[i]) / h;
         }
         if let Some(contact) = &plant.coordinates.contact {
             let mean = std::mem::take(&mut self.contact_impulse) / h;
@@ -266,10 +267,11 @@ impl Simulation {
         }
         self.touching = touches_a_link(mechanism, self.scene.file.mechanism.as_ref().map_or(0, |m| m.body.len()));
         mechanism.positions(&mut self.positions);
+        let (y, w) = state.y_and_w_mut();
         for i in 0..joints {
-            let moved = self.positions[i] - state.y[i];
-            state.y[i] = self.positions[i];
-            state.w[i] += moved / h;
+            let moved = self.positions[i] - y[i];
+            y[i] = self.positions[i];
+            w[i] += moved / h;
         }
         if let Some(book) = &mut self.energy {
             book.engine_changed(plant, state, &self.spans, 0.0);
@@ -279,14 +281,15 @@ impl Simulation {
     fn check_finite(&self) -> Result<(), SystemError> {
         let state = &self.built.state;
         let diverged = |what: String| Err(SystemError::Diverged { time_s: self.time_s, what });
-        if let Some(i) = state.y.iter().chain(&state.w).position(|x| !x.is_finite()) {
+        if let Some(i) = state.y().iter().chain(state.w()).position(|x| !x.is_finite()) {
             let names = self.mechanism.iter().flat_map(|m| m.coordinates()).map(|c| c.name.clone());
             let ends = self.scene.file.muscle.iter().map(|m| format!("end of {}", m.name));
-            let name = names.chain(ends).nth(i % state.y.len().max(1));
+            let name = names.chain(ends).nth(i % state.y().len().max(1));
             return diverged(format!("the motion of {}", name.unwrap_or_else(|| "a coordinate".to_owned())));
         }
-        for (i, chain) in state.chains.iter().enumerate() {
-            if chain.pressure_pa.iter().chain(&chain.flow_m3_s).any(|x| !x.is_finite()) {
+        for i in 0..self.built.plant.muscles.len() {
+            let line = state.line(i);
+            if line.pressure_pa.iter().chain(line.flow_m3_s).any(|x| !x.is_finite()) {
                 return diverged(format!("the pressure of {}", self.scene.file.muscle[i].name));
             }
         }
@@ -309,7 +312,7 @@ impl Watch<f64> for Books<'_> {
 
     fn end(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
         if let Some(contact) = &plant.coordinates.contact {
-            *self.contact_impulse += h * contact.push(&state.y, &state.w);
+            *self.contact_impulse += h * contact.push(state.y(), state.w());
         }
         if let Some(book) = &mut self.energy {
             book.after(plant, state, inputs, h);

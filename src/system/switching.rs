@@ -2,8 +2,9 @@
 
 use crate::scalar::Scalar;
 
-use super::plant::{InputSpan, Plant, PlantState};
+use super::plant::{InputSpan, Instant, Plant};
 use super::rosenbrock::Stepper;
+use super::state::PlantState;
 
 /// Parts of a step in which a cable, a stop or a friction switches: the fast swing after it is followed, not overshot.
 const SWITCH_STEPS: usize = 16;
@@ -34,23 +35,35 @@ impl<D: Scalar> Stepper<D> {
         pulling: &mut u64,
         watch: &mut impl Watch<D>,
     ) {
-        self.save(state);
         watch.begin(plant, state, inputs);
-        if self.step(plant, state, inputs, h) && plant.pulling(state, inputs, h) == *pulling {
+        if self.step(plant, state, inputs, h) && self.pulling_ahead(plant, state, inputs, h) == *pulling {
+            self.accept(plant, state);
             watch.end(plant, state, inputs, h);
             inputs.iter_mut().for_each(|s| s.value += h * s.slope);
             return;
         }
-        self.restore(state);
+        self.advance_in_parts(plant, state, inputs, h, watch);
+        *pulling = plant.pulling::<0>(&Instant::of(state, inputs, 0.0));
+    }
+
+    #[cold]
+    fn advance_in_parts(
+        &mut self,
+        plant: &Plant<D>,
+        state: &mut PlantState<D>,
+        inputs: &mut [InputSpan],
+        h: f64,
+        watch: &mut impl Watch<D>,
+    ) {
         let ends: Vec<f64> = inputs.iter().map(|s| s.value + h * s.slope).collect();
         let part = h / SWITCH_STEPS as f64;
         for _ in 0..SWITCH_STEPS {
             watch.begin(plant, state, inputs);
             self.step(plant, state, inputs, part);
+            self.accept(plant, state);
             watch.end(plant, state, inputs, part);
             inputs.iter_mut().for_each(|s| s.value += part * s.slope);
         }
         inputs.iter_mut().zip(ends).for_each(|(s, end)| s.value = end);
-        *pulling = plant.pulling(state, inputs, 0.0);
     }
 }

@@ -22,7 +22,8 @@ use crate::scene::Scene;
 use super::SystemError;
 use super::build::build;
 use super::install::{Site, install, settle_memory};
-use super::plant::{Drive, InputSpan, Plant, PlantState, dot};
+use super::plant::{Drive, InputSpan, Plant, dot};
+use super::state::PlantState;
 
 use course::Course;
 pub(super) use output::sensor;
@@ -195,15 +196,15 @@ impl Twin {
 
     /// Pressures that hold the start elongations, and cables at their pretension, with the parameters as they are.
     fn settle_start<D: Scalar>(&self, plant: &mut Plant<D>, state: &mut PlantState<D>) {
-        for (muscle, chain) in plant.muscles.iter().zip(&mut state.chains) {
+        for (i, muscle) in plant.muscles.iter().enumerate() {
             if let Drive::Hydraulic { .. } = muscle.drive {
-                let elongation = dot(&muscle.jacobian, &state.y) + muscle.elongation_0_m;
+                let elongation = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
                 let pressure = muscle.elastic.holding_pressure_pa(elongation, D::constant(self.initial_load_n));
-                chain.pressure_pa.fill(pressure);
+                state.pressures_mut(i).fill(pressure);
             }
         }
         for (i, cable) in plant.cables.iter_mut().enumerate() {
-            let stretch = dot(&cable.jacobian, &state.y);
+            let stretch = dot::<_, 0>(&cable.jacobian, state.y());
             cable.stretch_0_m = cable.stiffness_n_m.recip() * self.pretension_n[i] - stretch;
         }
     }

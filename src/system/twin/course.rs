@@ -2,8 +2,9 @@
 
 use super::TwinRun;
 use crate::scalar::Scalar;
+use crate::system::PlantState;
 use crate::system::Stepper;
-use crate::system::plant::{InputSpan, Plant, PlantState};
+use crate::system::plant::{InputSpan, Instant, Plant};
 
 /// State and inputs at one instant, and the integrator that carries them on.
 #[derive(Clone, Debug)]
@@ -28,7 +29,7 @@ impl<D: Scalar> Course<D> {
             *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
         }
         self.stepper.plant_changed();
-        let mut pulling = plant.pulling(&self.state, &self.spans, 0.0);
+        let mut pulling = plant.pulling::<0>(&Instant::of(&self.state, &self.spans, 0.0));
         for _ in 0..steps {
             self.stepper.advance(plant, &mut self.state, &mut self.spans, h, &mut pulling, &mut ());
         }
@@ -39,6 +40,6 @@ impl<D: Scalar> Course<D> {
 
     /// Whether it has not diverged.
     pub fn is_finite(&self) -> bool {
-        self.state.y.iter().all(|y| y.value().is_finite())
+        self.state.y().iter().all(|y| y.value().is_finite())
     }
 }

@@ -4,9 +4,10 @@ use nalgebra::DMatrix;
 
 use crate::mechanism::{Mechanism, Route};
 use crate::scene::Scene;
+use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::build::Built;
-use crate::system::plant::{CoordinateStop, Coordinates, Plant, PlantState};
+use crate::system::plant::{CoordinateStop, Coordinates, Plant};
 
 /// A plant on few coordinates.
 pub(super) struct Lumped {
@@ -104,7 +105,7 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let mut plant = Plant { coordinates, ..full.clone() };
     plant.muscles.iter_mut().for_each(|m| m.jacobian = spread(&m.jacobian));
     plant.cables.iter_mut().for_each(|c| c.jacobian = spread(&c.jacobian));
-    let state = PlantState { y: total(&built.state.y), w: vec![0.0; dim], ..built.state.clone() };
+    let state = built.state.on_coordinates(&total(built.state.y()));
     let mut hinges: Vec<usize> = groups.iter().map(Vec::len).collect();
     hinges.resize(dim, 1);
     let group_names: Vec<Vec<String>> = groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
@@ -128,7 +129,7 @@ fn groups(plant: &Plant<f64>, joints: usize, state: &PlantState<f64>, inertia: &
         }) && c.damping[a] == c.damping[b]
             && c.stiffness[a] == c.stiffness[b]
             && c.rest[a] == c.rest[b]
-            && state.y[a] == state.y[b]
+            && state.y()[a] == state.y()[b]
             && stops(a) == stops(b)
             && inertia[(a, b)] != 0.0
     };

@@ -4,9 +4,10 @@ use crate::effects::{Effect, Kind, Sensor, SensorHistory};
 use crate::recording::parse_column;
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
+use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::axis::{Axis, AxisFriction, AxisNumbers};
-use crate::system::plant::{Drive, InputSpan, Plant, PlantState};
+use crate::system::plant::{Drive, InputSpan, Plant};
 
 use super::lump::Lumped;
 use super::{TwinParameter, TwinRun, TwinSetting};
@@ -40,11 +41,11 @@ impl TwinOutput {
             Reader::Pull(m) => plant.muscle_forces(*m, state, inputs, 0.0).pull_n(),
             Reader::MusclePressure(m) => plant.muscle_pressure(*m, state, inputs, 0.0),
             Reader::SyringePressure(m) => match plant.muscles[*m].drive {
-                Drive::Hydraulic { .. } => state.chains[*m].pressure_pa[0],
+                Drive::Hydraulic { .. } => state.line(*m).pressure_pa[0],
                 Drive::Pressure { .. } => plant.muscle_pressure(*m, state, inputs, 0.0),
             },
             Reader::Tension(c) => plant.cable(*c, state, inputs, 0.0).2,
-            Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y[*i] * *share).sum(),
+            Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y()[*i] * *share).sum(),
             Reader::Axis => D::constant(f64::NAN),
         };
         value / self.factor

@@ -2,7 +2,8 @@
 
 use super::output::TwinOutput;
 use super::{Twin, TwinRun, TwinSetting};
-use crate::system::plant::{InputSpan, Plant, PlantState};
+use crate::system::PlantState;
+use crate::system::plant::{InputSpan, Plant};
 
 impl Twin {
     /// By output, the samples of a run at which what it shows depends on a joint that nothing holds.

@@ -1,0 +1,217 @@
+//! Slopes of a plant's rates, in the form in which the stages of a step need them.
+
+use crate::hydraulics::ChainSolver;
+use crate::muscle::Friction;
+use crate::scalar::Scalar;
+
+use super::extras::CableFriction;
+use super::ldl::Ldl;
+use super::plant::{Drive, Instant, MuscleForces, Plant, dot};
+use super::rates::Seen;
+use super::state::{sized, sized_mut};
+
+/// Tangent of one dry friction: its stage is `z k = (r + speed_gain * acceleration) * damper`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FrictionTangent<D> {
+    /// `1/(1 - g d rate/d z)`.
+    pub damper: D,
+    /// `g d rate/d v`.
+    speed_gain: D,
+    /// Force along the direction per right-hand side of the friction state, N s.
+    pub force_per_r: D,
+}
+
+/// Tangent of one muscle, frozen for both stages.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MuscleTangent<D> {
+    /// The pull falls by this much per stage of the pressure, N s/Pa.
+    pub pull_per_rho: D,
+    /// `dV/de`: flow taken per speed.
+    pub area: D,
+    pub friction: FrictionTangent<D>,
+}
+
+/// All tangents of a plant, and the factorised matrix of the accelerations.
+#[derive(Clone, Debug)]
+pub(super) struct Tangents<D> {
+    pub lines: Vec<ChainSolver<D>>,
+    pub muscles: Vec<MuscleTangent<D>>,
+    /// Dry frictions of the mechanism, then of the cables.
+    pub frictions: Vec<FrictionTangent<D>>,
+    /// `g K`, row by row: every spring that acts, seen from the coordinates.
+    pub springs: Vec<D>,
+    matrix: Vec<D>,
+    pub ldl: Ldl<D>,
+}
+
+impl<D: Scalar> FrictionTangent<D> {
+    /// No friction.
+    fn none() -> Self {
+        Self { damper: D::constant(1.0), speed_gain: D::constant(0.0), force_per_r: D::constant(0.0) }
+    }
+
+    fn new(force_per_z: D, rate_per_z: D, rate_per_v: D, g: f64) -> Self {
+        let damper = (-(rate_per_z * g) + 1.0).recip();
+        Self { damper, speed_gain: rate_per_v * g, force_per_r: force_per_z * damper * g }
+    }
+
+    /// What it adds to the matrix along its direction.
+    fn inertia(&self) -> D {
+        self.force_per_r * self.speed_gain
+    }
+
+    /// Stage of the friction state.
+    #[inline]
+    pub fn stage(&self, r: D, acceleration: D) -> D {
+        (r + self.speed_gain * acceleration) * self.damper
+    }
+}
+
+impl<D: Scalar> Tangents<D> {
+    /// Room for those of a plant whose lines have so many segments.
+    pub fn new(plant: &Plant<D>, segments: usize, frictions: usize) -> Self {
+        let (n, zero) = (plant.dim(), D::constant(0.0));
+        let muscle = MuscleTangent { pull_per_rho: zero, area: zero, friction: FrictionTangent::none() };
+        Self {
+            lines: plant.muscles.iter().map(|_| ChainSolver::new(segments)).collect(),
+            muscles: vec![muscle; plant.muscles.len()],
+            frictions: vec![FrictionTangent::none(); frictions],
+            springs: vec![zero; n * n],
+            matrix: vec![zero; n * n],
+            ldl: Ldl::new(n),
+        }
+    }
+
+    /// Takes them at an instant whose forces have been `seen`, and factorises `M + g D + g² K`.
+    ///
+    /// Cables, muscles and the like enter as rank-one terms.
+    pub fn take<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, seen: &Seen<D>, g: f64) {
+        let n = plant.dim();
+        self.matrix.copy_from_slice(&plant.coordinates.inertia);
+        self.springs.fill(D::constant(0.0));
+        self.take_coordinates(plant, now, g);
+        for (cable, tension) in plant.cables.iter().zip(&seen.tension_n) {
+            if tension.value() > 0.0 {
+                self.add_spring::<N>(&cable.jacobian, cable.stiffness_n_m * g, cable.damping_n_s_m * g);
+            }
+        }
+        for (i, forces) in seen.forces.iter().enumerate() {
+            self.take_muscle(plant, i, now, forces, g);
+        }
+        self.take_frictions(plant, now, seen, g);
+        for i in 0..n * n {
+            self.matrix[i] += self.springs[i] * g;
+        }
+        self.ldl.factorise::<N>(&self.matrix);
+    }
+
+    /// Springs, dampers, stops, contacts and walls.
+    fn take_coordinates<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, g: f64) {
+        let (c, n, y, w) = (&plant.coordinates, plant.dim(), now.at.y(), now.at.w());
+        for i in 0..n {
+            self.springs[i * (n + 1)] += c.stiffness[i] * g;
+            self.matrix[i * (n + 1)] += c.damping[i] * g;
+        }
+        for stop in &c.stops {
+            let i = stop.coordinate;
+            if stop.force(y[i], w[i]).1.value() != 0.0 {
+                self.springs[i * (n + 1)] += D::constant(g * stop.stiffness);
+                self.matrix[i * (n + 1)] += D::constant(g * stop.damping);
+            }
+        }
+        if let Some(contact) = c.contact.as_ref().filter(|c| c.push(y, w).value() > 0.0) {
+            let c = D::constant;
+            self.add_spring::<N>(&contact.direction, c(g * contact.stiffness), c(g * contact.damping));
+        }
+        for w in &plant.mechanism.walls {
+            if w.wall.is_met(dot::<_, N>(&w.direction, y)) {
+                self.add_spring::<N>(&w.direction, w.wall.stiffness_n_m_rad * g, D::constant(0.0));
+            }
+        }
+    }
+
+    fn take_muscle<const N: usize>(
+        &mut self,
+        plant: &Plant<D>,
+        i: usize,
+        now: &Instant<D, N>,
+        forces: &MuscleForces<D>,
+        g: f64,
+    ) {
+        let muscle = &plant.muscles[i];
+        let z = now.at.z(i);
+        let mut damping = muscle.damping_n_s_m;
+        if let (Some(stop), true) = (&muscle.stop, forces.stop_n.value() > 0.0) {
+            damping += stop.damping_n_s_m;
+        }
+        let mut tangent =
+            MuscleTangent { pull_per_rho: D::constant(0.0), area: forces.area_m2, friction: FrictionTangent::none() };
+        let mut pull_per_pressure = forces.area_m2;
+        if let Some(friction) = &muscle.friction {
+            let slopes = friction.rate_jacobian(z, forces.speed_m_s);
+            let level = friction.level_n(forces.pressure_pa);
+            pull_per_pressure -= friction.force_per_pressure(z, forces.pressure_pa);
+            tangent.friction = FrictionTangent::new(level, slopes.drate_dz, slopes.drate_dv, g);
+        }
+        let mut along = damping * g + tangent.friction.inertia();
+        if let Drive::Hydraulic { chain, .. } = &muscle.drive {
+            let sigma = self.lines[i].factorise(chain, now.at.line(i), now.state.boiling_of::<N>(i), &forces.port, g);
+            tangent.pull_per_rho = pull_per_pressure * g;
+            along += tangent.pull_per_rho * sigma * tangent.area;
+        }
+        self.muscles[i] = tangent;
+        self.add_spring::<N>(&muscle.jacobian, forces.stiffness_n_m * g, along);
+    }
+
+    fn take_frictions<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, seen: &Seen<D>, g: f64) {
+        for (i, friction) in plant.mechanism.frictions.iter().enumerate() {
+            let speed = dot::<_, N>(&friction.direction, now.at.w());
+            self.frictions[i] = joint_tangent(&friction.law, now.at.joint_z()[i], speed, g);
+            add_outer::<_, N>(&mut self.matrix, &friction.direction, self.frictions[i].inertia());
+        }
+        for (i, cable) in plant.cables.iter().enumerate() {
+            let Some(friction) = &cable.friction else { continue };
+            let at = plant.mechanism.frictions.len() + i;
+            self.frictions[at] = sliding_tangent(friction, now, now.at.joint_z()[at], seen.tension_n[i], g);
+            add_outer::<_, N>(&mut self.matrix, &friction.far, self.frictions[at].inertia());
+        }
+    }
+
+    /// A spring (`g K`) along a direction, and what else stands in the matrix there.
+    fn add_spring<const N: usize>(&mut self, direction: &[f64], spring: D, rest: D) {
+        add_outer::<_, N>(&mut self.springs, direction, spring);
+        add_outer::<_, N>(&mut self.matrix, direction, rest);
+    }
+}
+
+fn joint_tangent<D: Scalar>(law: &Friction<D>, z: D, speed: D, g: f64) -> FrictionTangent<D> {
+    let slopes = law.rate_jacobian(z, speed);
+    FrictionTangent::new(law.m0_n, slopes.drate_dz, slopes.drate_dv, g)
+}
+
+/// The sliding state grows as the far end is drawn in, against the levers' sign: two signs that cancel.
+fn sliding_tangent<D: Scalar, const N: usize>(
+    friction: &CableFriction<D>,
+    now: &Instant<D, N>,
+    sliding: D,
+    tension: D,
+    g: f64,
+) -> FrictionTangent<D> {
+    let speed = friction.sliding_m_s(now.at.w());
+    let pace = speed.abs() / friction.law.presliding_m;
+    let along = if speed.value() < 0.0 { sliding + 1.0 } else { -sliding + 1.0 };
+    let force_per_z = -friction.slope_n(now.at.y(), tension);
+    FrictionTangent::new(force_per_z, -pace, -(along / friction.law.presliding_m), g)
+}
+
+/// `matrix += scale * j j^T`.
+fn add_outer<D: Scalar, const N: usize>(matrix: &mut [D], j: &[f64], scale: D) {
+    let j = sized::<N, _>(j);
+    let n = j.len();
+    for (row, &a) in j.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+        let along = scale * a;
+        for (x, &b) in sized_mut::<N, _>(&mut matrix[row * n..(row + 1) * n]).iter_mut().zip(j) {
+            *x += along * b;
+        }
+    }
+}
