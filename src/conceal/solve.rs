@@ -16,9 +16,6 @@ const ABSOLUTE_TOLERANCE: f64 = 1e-6;
 /// Step of the differences that stand for the Jacobian, in scaled states.
 const DIFFERENCE: f64 = 1e-6;
 
-/// So near to a sample is there: what is left would be too short a step.
-const ARRIVED_S: f64 = 1e-9;
-
 /// Rates of the scaled states.
 struct Scaled {
     plant: Plant,
@@ -74,20 +71,15 @@ pub fn solve(plant: &Plant, drives: &[Drive]) -> Result<Vec<Vec<f64>>, ConcealEr
         .map_err(failed)?;
     // Counted over the whole run: every corner of an input costs some.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
-    // What is left before a sample may be as short as rounding makes it.
-    problem.ode_options.min_timestep = f64::MIN_POSITIVE;
     let mut solver = problem.tr_bdf2::<NalgebraLU<f64>>().map_err(failed)?;
     let mut channels = vec![Vec::with_capacity(count); plant.rig.outputs().len()];
     for k in 0..count {
-        // Inputs have their corners at the samples: no step goes across one.
-        if k > 0 {
-            let end_s = k as f64 * SAMPLE_S;
-            solver.set_stop_time(end_s).map_err(failed)?;
-            while end_s - solver.state().t > ARRIVED_S {
-                solver.step().map_err(failed)?;
-            }
+        let sample_s = k as f64 * SAMPLE_S;
+        while solver.state().t < sample_s {
+            solver.step().map_err(failed)?;
         }
-        let x: Vec<f64> = solver.state().y.inner().iter().zip(&scaled.scales).map(|(x, s)| x * s).collect();
+        let there = solver.interpolate(sample_s).map_err(failed)?;
+        let x: Vec<f64> = there.inner().iter().zip(&scaled.scales).map(|(x, s)| x * s).collect();
         channels.iter_mut().zip(plant.outputs(&x)).for_each(|(channel, value)| channel.push(value));
     }
     Ok(channels)
