@@ -299,11 +299,16 @@ impl Builder<'_> {
 
     fn install_effects(&self, built: &mut Built) -> Result<(), SystemError> {
         let site = self.site(&built.plant);
+        let settled: Vec<f64> = built.plant.cables.iter().map(|c| c.stretch_0_m).collect();
         for (i, table) in self.scene.file.effect.iter().enumerate() {
             let effect = table
                 .effect()
                 .map_err(|e| self.error(format!("[[effect]] {} \"{}\"", i + 1, table.name), e.message, e.remedy))?;
             install(&mut built.plant, &site, &effect);
+        }
+        // Cables on via points take their rest anew at every engine step: slack must come along.
+        for ((offset, cable), before) in built.start_offset_m.iter_mut().zip(&built.plant.cables).zip(settled) {
+            *offset += cable.stretch_0_m - before;
         }
         settle_memory(&mut built.plant, &mut built.state);
         Ok(())

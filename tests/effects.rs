@@ -1,0 +1,30 @@
+//! Effects in full scenes, where they meet what only a full scene has.
+
+use smam::scene::Scene;
+use smam::system::{InputSource, Schedule, Simulation, record};
+
+/// The pulley with its first cable on via points instead of a lever, and so much slack in it.
+fn via_pulley(slack_m: f64) -> Scene {
+    let text = std::fs::read_to_string("scenes/antagonistic_pulley.toml").expect("a stock scene");
+    let lever = "route.lever = [{ joint = \"pulley\", lever_m = 0.008 }]";
+    let via = "route.via = [{ link = \"frame\", point_m = [-0.03, 0.008, 0.0] }, { link = \"pulley\", point_m = [0.0, 0.008, 0.0] }]";
+    assert!(text.contains(lever), "the stock scene has changed");
+    let slack = format!("\n[[effect]]\nname = \"cable_slack\"\nelement = \"cable_1\"\nslack_length_m = {slack_m}\n");
+    let text = format!("{}{slack}", text.replace(lever, via));
+    Scene::parse(&text, std::path::Path::new("scenes/antagonistic_pulley.toml"), &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Via points renew a cable's rest at every engine step; slack was lost there.
+#[test]
+fn slack_stays_in_a_cable_on_via_points() {
+    let greatest_tension = |slack_m: f64| -> f64 {
+        let mut simulation = Simulation::new(via_pulley(slack_m)).unwrap_or_else(|e| panic!("{e}"));
+        let still = smam::recording::PiecewiseLinear::new(&[0.0, 2.0], &[0.0, -2e-4]).expect("two points");
+        simulation.set_input("plunger_1_mm", InputSource::Recorded(still));
+        let shown = record(&mut simulation, &Schedule::even(2.0, 0.01)).unwrap_or_else(|e| panic!("{e}"));
+        shown.channel("tension_1_n").expect("a channel").values.iter().copied().fold(0.0, f64::max)
+    };
+    let (tight, slack) = (greatest_tension(0.0), greatest_tension(8e-3));
+    assert!(tight > 0.02, "{tight}");
+    assert_eq!(slack, 0.0);
+}
