@@ -268,10 +268,10 @@ impl Simulation {
         self.touching = touches_a_link(mechanism, self.scene.file.mechanism.as_ref().map_or(0, |m| m.body.len()));
         mechanism.positions(&mut self.positions);
         let (y, w) = state.y_and_w_mut();
-        for i in 0..joints {
-            let moved = self.positions[i] - y[i];
-            y[i] = self.positions[i];
-            w[i] += moved / h;
+        for ((y, w), &position) in y.iter_mut().zip(w).zip(&self.positions) {
+            let moved = position - *y;
+            *y = position;
+            *w += moved / h;
         }
         if let Some(book) = &mut self.energy {
             book.engine_changed(plant, state, &self.spans, 0.0);
