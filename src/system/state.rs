@@ -59,7 +59,7 @@ pub(super) fn sized_mut<const N: usize, T>(slice: &mut [T]) -> &mut [T] {
 const SEGMENTS: usize = 1;
 
 impl Layout {
-    /// Whether a state is small enough that loops over it are worth having for its very size.
+    /// Whether the lines are those that a known number of coordinates goes with ([`sized`]).
     pub fn is_of_one_segment(&self) -> bool {
         self.segments == SEGMENTS
     }

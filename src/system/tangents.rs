@@ -10,7 +10,7 @@ use super::plant::{Drive, Instant, MuscleForces, Plant, dot};
 use super::rates::Seen;
 use super::state::{sized, sized_mut};
 
-/// Tangent of one dry friction: its stage is `z k = (r + speed_gain * acceleration) * damper`.
+/// Tangent of one dry friction: the stage of its state is `(r + speed_gain * acceleration) * damper`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrictionTangent<D> {
     /// `1/(1 - g d rate/d z)`.
