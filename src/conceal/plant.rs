@@ -1,7 +1,6 @@
 //! The concealing plant: the stock rigs as ordinary differential equations in the order of `physics.md`, with places for
 //! whatever may be hidden in them. Nothing here is shared with the simulation that diagnoses.
 
-use super::programme::Drive;
 use super::stock::{
     ATMOSPHERE_PA, AXIAL_DAMPING_N_S_M, BOILING_PA, CABLE_N_M, CABLE_N_S_M, CLOSED_COIL_N_M, CLOSED_COIL_N_S_M,
     COIL_AREA_M2, COIL_STIFFNESS_N_M, Calibration, DOWNSTREAM_COMPLIANCE_M3_PA, END_MASS_KG, Rig, STRING_LOAD_N,
@@ -11,11 +10,12 @@ use super::tube::pull_and_energy;
 
 /// States of one muscle with its line.
 pub const MUSCLE_STATES: usize = 12;
-/// Syringe pressure, line flow, muscle pressure, elongation, speed, friction state; then what hidden physics remembers:
-/// piston, two branches, set, greatest energy of the wall, volume taken by the barrel.
-const P_S: usize = 0;
+/// Volume pressed into the compliance at the syringe, line flow, volume at the muscle, elongation, speed, friction state;
+/// then what hidden physics remembers: piston, two branches, set, greatest energy of the wall, volume taken by the barrel.
+/// Volumes and not pressures: fluid is then conserved whatever the solver's error, boiling or not.
+const V_S: usize = 0;
 const Q: usize = 1;
-const P_M: usize = 2;
+const V_M: usize = 2;
 const E: usize = 3;
 const V: usize = 4;
 const Z: usize = 5;
@@ -26,7 +26,7 @@ const SET: usize = 9;
 const GREATEST: usize = 10;
 const BARREL: usize = 11;
 /// What one unit of the scaled states stands for.
-const MUSCLE_SCALE: [f64; MUSCLE_STATES] = [1e6, 1e-8, 1e6, 1e-2, 1e-2, 1.0, 1e-3, 1e-2, 1e-2, 1e-3, 1e-2, 1e-9];
+const MUSCLE_SCALE: [f64; MUSCLE_STATES] = [1e-8, 1e-8, 1e-8, 1e-2, 1e-2, 1.0, 1e-3, 1e-2, 1e-2, 1e-3, 1e-2, 1e-9];
 /// Angle, speed, friction state.
 const JOINT_STATES: usize = 3;
 const JOINT_SCALE: [f64; JOINT_STATES] = [1.0, 10.0, 1.0];
@@ -34,6 +34,15 @@ const JOINT_SCALE: [f64; JOINT_STATES] = [1.0, 10.0, 1.0];
 /// Time constants of what is a jump in the ideal law, s.
 const PISTON_S: f64 = 5e-4;
 const GREATEST_S: f64 = 5e-3;
+/// How a boiling node gives way, m³/Pa: a hundred times more than the compliances do.
+const VAPOUR_M3_PA: f64 = 1e-12;
+
+/// A plunger at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Plunger {
+    pub position_m: f64,
+    pub speed_m_s: f64,
+}
 
 /// Hidden physics of one muscle, its line and its syringe. All zero: the stock muscle.
 #[derive(Clone, Debug, Default)]
@@ -160,7 +169,9 @@ impl Plant {
             let m = &mut x[muscle * MUSCLE_STATES..];
             let (wall, energy) = pull_and_energy(self.calibration.tube_c1_pa, e);
             let pressure = if e > 0.0 { (wall + COIL_STIFFNESS_N_M * e) / COIL_AREA_M2 } else { 0.0 };
-            (m[P_S], m[P_M], m[E]) = (pressure, pressure, e);
+            m[V_S] = self.calibration.upstream_compliance_m3_pa * pressure;
+            m[V_M] = far_volume_m3(&self.muscles[muscle], pressure);
+            m[E] = e;
             (m[BRANCH], m[BRANCH_2], m[GREATEST]) = (e, e, energy);
             m[BARREL] = self.muscles[muscle].barrel_m3_pa * pressure;
         }
@@ -170,12 +181,12 @@ impl Plant {
         x
     }
 
-    /// `dx/dt`, SI.
-    pub fn rates(&self, t: f64, x: &[f64], drives: &[Drive], dx: &mut [f64]) {
+    /// `dx/dt`, SI, with the plungers at these positions and speeds.
+    pub fn rates(&self, t: f64, x: &[f64], plungers: &[Plunger], dx: &mut [f64]) {
         let tensions = self.tensions(x);
-        for (i, drive) in drives.iter().enumerate() {
+        for (i, plunger) in plungers.iter().enumerate() {
             let own = i * MUSCLE_STATES..(i + 1) * MUSCLE_STATES;
-            self.muscle_rates(i, t, &x[own.clone()], drive, tensions[i], &mut dx[own]);
+            self.muscle_rates(i, t, &x[own.clone()], *plunger, tensions[i], &mut dx[own]);
         }
         for i in 0..self.joints().len() {
             self.joint_rates(i, x, tensions, dx);
@@ -184,7 +195,7 @@ impl Plant {
 
     /// Outputs of the rig in its columns' units, before any sensor's error.
     pub fn outputs(&self, x: &[f64]) -> Vec<f64> {
-        let pressure = |muscle: usize| 1e-3 * x[muscle * MUSCLE_STATES + P_S];
+        let pressure = |muscle: usize| 1e-3 * self.near_pressure_pa(x[muscle * MUSCLE_STATES + V_S]);
         let degrees = |joint: usize| x[self.first_joint() + joint * JOINT_STATES].to_degrees();
         match self.rig {
             Rig::MuscleBench => vec![1e3 * x[E], pressure(0)],
@@ -226,37 +237,23 @@ impl Plant {
         tensions
     }
 
-    fn muscle_rates(&self, i: usize, t: f64, x: &[f64], drive: &Drive, tension: f64, dx: &mut [f64]) {
+    fn muscle_rates(&self, i: usize, t: f64, x: &[f64], plunger: Plunger, tension: f64, dx: &mut [f64]) {
         let (s, c) = (&self.muscles[i], &self.calibration);
         let ripple = s.ripple_m * std::f64::consts::TAU * s.ripple_hz * (std::f64::consts::TAU * s.ripple_hz * t).cos();
-        let piston_m_s = self.piston_speed(s, t, x, drive, dx) + ripple;
-        dx[BARREL] = if s.barrel_s > 0.0 { (s.barrel_m3_pa * x[P_S] - x[BARREL]) / s.barrel_s } else { 0.0 };
-        let entering = SYRINGE_AREA_M2 * piston_m_s - dx[BARREL];
-        dx[P_S] = (entering - x[Q]) / (c.upstream_compliance_m3_pa + vapour_compliance(x[P_S]));
+        let piston_m_s = piston_speed(s, x, plunger, dx) + ripple;
+        let (near_pa, far_pa) = (self.near_pressure_pa(x[V_S]), far_pressure_pa(s, x[V_M]));
+        dx[BARREL] = if s.barrel_s > 0.0 { (s.barrel_m3_pa * near_pa - x[BARREL]) / s.barrel_s } else { 0.0 };
+        dx[V_S] = SYRINGE_AREA_M2 * piston_m_s - dx[BARREL] - x[Q];
         let returning = if x[Q] < 0.0 { s.return_restriction } else { 0.0 };
         let resistance =
             line_resistance() * (1.0 + (s.restriction + returning) * (1.0 + s.restriction_growth_s_m3 * x[Q].abs()));
-        dx[Q] = (x[P_S] - x[P_M] - resistance * x[Q]) / line_inertance();
-        let taken = (COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E])) * x[V];
-        let compliance = DOWNSTREAM_COMPLIANCE_M3_PA + air_compliance(s, x[P_M]) + vapour_compliance(x[P_M]);
-        dx[P_M] = (x[Q] - taken - self.lost_flow(s, t, x[P_M])) / compliance;
+        dx[Q] = (near_pa - far_pa - resistance * x[Q]) / line_inertance();
+        let taken = COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]) * x[V];
+        dx[V_M] = x[Q] - taken - self.lost_flow(s, t, far_pa);
         dx[E] = x[V];
-        dx[V] = (tension + s.load_n - self.pull(s, t, x)) / END_MASS_KG;
+        dx[V] = (tension + s.load_n - self.pull(s, t, x, far_pa)) / END_MASS_KG;
         dx[Z] = (x[V] - x[V].abs() * x[Z]) / c.presliding_length_m;
         memories(s, c, x, dx);
-    }
-
-    /// Speed of the piston behind its play.
-    fn piston_speed(&self, s: &MuscleSecrets, t: f64, x: &[f64], drive: &Drive, dx: &mut [f64]) -> f64 {
-        let (position, speed) = drive.at(t);
-        if s.play_m == 0.0 {
-            dx[PISTON] = 0.0;
-            return speed;
-        }
-        let ahead = position - x[PISTON];
-        let gap = 0.5 * s.play_m;
-        dx[PISTON] = (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
-        dx[PISTON]
     }
 
     /// Leak minus growth of the fluid, m³/s.
@@ -265,8 +262,14 @@ impl Plant {
         s.leak * pressure_pa * (1.0 + s.leak_growth_1_pa * pressure_pa) - s.growth_m3_s * fading
     }
 
+    /// Gauge pressure at the syringe.
+    fn near_pressure_pa(&self, volume_m3: f64) -> f64 {
+        boiling(volume_m3, self.calibration.upstream_compliance_m3_pa * BOILING_PA)
+            .unwrap_or(volume_m3 / self.calibration.upstream_compliance_m3_pa)
+    }
+
     /// Pull of a muscle on its end, N.
-    fn pull(&self, s: &MuscleSecrets, t: f64, x: &[f64]) -> f64 {
+    fn pull(&self, s: &MuscleSecrets, t: f64, x: &[f64], pressure_pa: f64) -> f64 {
         let c = &self.calibration;
         let age_s = self.begun_s + t;
         let e = x[E] - x[SET];
@@ -278,10 +281,10 @@ impl Plant {
             k * stretch * (1.0 + s.branch_hardening_1_m2 * stretch * stretch)
         };
         let branches = branch(s.branches[0], x[BRANCH]) + branch(s.branches[1], x[BRANCH_2]);
-        let friction = (c.friction_m0_n + c.friction_m1_n_pa * x[P_M].max(0.0)) * x[Z];
+        let friction = (c.friction_m0_n + c.friction_m1_n_pa * pressure_pa.max(0.0)) * x[Z];
         let rate = s.rate_force_n * (x[V] / 2e-4).asinh();
         let closed = if x[E] < 0.0 { (-CLOSED_COIL_N_M * x[E] - CLOSED_COIL_N_S_M * x[V]).max(0.0) } else { 0.0 };
-        let pushed = x[P_M] * COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]);
+        let pushed = pressure_pa * COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]);
         wall * softening(s, x[GREATEST] - energy) + coil + fibre + branches + s.cubic_n_m3 * e.powi(3) + friction + rate
             - pushed
             + AXIAL_DAMPING_N_S_M * x[V]
@@ -361,15 +364,47 @@ fn preload(s: &MuscleSecrets, e: f64) -> f64 {
     s.preload_n * share
 }
 
-fn air_compliance(s: &MuscleSecrets, pressure_pa: f64) -> f64 {
-    if s.air_m3 == 0.0 {
-        return 0.0;
+/// Speed of the piston behind its play.
+fn piston_speed(s: &MuscleSecrets, x: &[f64], plunger: Plunger, dx: &mut [f64]) -> f64 {
+    if s.play_m == 0.0 {
+        dx[PISTON] = 0.0;
+        return plunger.speed_m_s;
     }
-    let ratio = ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure_pa).max(1e3);
-    s.air_m3 / (s.air_exponent * ATMOSPHERE_PA) * ratio.powf(1.0 / s.air_exponent + 1.0)
+    let ahead = plunger.position_m - x[PISTON];
+    let gap = 0.5 * s.play_m;
+    dx[PISTON] = (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
+    dx[PISTON]
 }
 
-/// A boiling node gives way: a great compliance stands for its vapour.
-fn vapour_compliance(pressure_pa: f64) -> f64 {
-    if pressure_pa < BOILING_PA { 1e-11 } else { 0.0 }
+/// Pressure of a node that holds less than it does when it begins to boil; none where it holds more.
+fn boiling(volume_m3: f64, boiling_m3: f64) -> Option<f64> {
+    (volume_m3 < boiling_m3).then(|| BOILING_PA + (volume_m3 - boiling_m3) / VAPOUR_M3_PA)
+}
+
+/// Volume pressed into the compliance at the muscle, and into a bubble there.
+fn far_volume_m3(s: &MuscleSecrets, pressure_pa: f64) -> f64 {
+    let squeezed = |ratio: f64| s.air_m3 * (1.0 - ratio.powf(1.0 / s.air_exponent));
+    let air = if s.air_m3 == 0.0 { 0.0 } else { squeezed(ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure_pa)) };
+    DOWNSTREAM_COMPLIANCE_M3_PA * pressure_pa + air
+}
+
+/// Pressure at the muscle. The volume grows with pressure and ever less steeply: Newton's iteration from below is monotone.
+fn far_pressure_pa(s: &MuscleSecrets, volume_m3: f64) -> f64 {
+    if let Some(pressure) = boiling(volume_m3, far_volume_m3(s, BOILING_PA)) {
+        return pressure;
+    }
+    if s.air_m3 == 0.0 {
+        return volume_m3 / DOWNSTREAM_COMPLIANCE_M3_PA;
+    }
+    let mut pressure = BOILING_PA;
+    for _ in 0..60 {
+        let ratio = ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure);
+        let air = s.air_m3 / (s.air_exponent * ATMOSPHERE_PA) * ratio.powf(1.0 / s.air_exponent + 1.0);
+        let step = (volume_m3 - far_volume_m3(s, pressure)) / (DOWNSTREAM_COMPLIANCE_M3_PA + air);
+        pressure += step;
+        if step.abs() < 1e-4 {
+            break;
+        }
+    }
+    pressure
 }

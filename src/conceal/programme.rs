@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::plant::Plunger;
 use super::stock::Rig;
 
 /// Interval between samples, s.
@@ -17,13 +18,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Position and speed.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        let last = self.positions_m.len() - 1;
-        let index = ((t / SAMPLE_S).max(0.0) as usize).min(last - 1);
-        let (from, to) = (self.positions_m[index], self.positions_m[index + 1]);
-        let speed = (to - from) / SAMPLE_S;
-        (from + speed * (t - index as f64 * SAMPLE_S), speed)
+    /// The plunger so long after sample `k`, within the interval that begins there.
+    pub fn after(&self, k: usize, since_s: f64) -> Plunger {
+        let speed_m_s = (self.positions_m[k + 1] - self.positions_m[k]) / SAMPLE_S;
+        Plunger { position_m: self.positions_m[k] + speed_m_s * since_s, speed_m_s }
     }
 }
 
