@@ -1,5 +1,6 @@
 //! Effects in full scenes, where they meet what only a full scene has.
 
+use smam::recording::PiecewiseLinear;
 use smam::scene::Scene;
 use smam::system::{InputSource, Schedule, Simulation, record};
 
@@ -7,7 +8,7 @@ use smam::system::{InputSource, Schedule, Simulation, record};
 fn via_pulley(slack_m: f64) -> Scene {
     let text = std::fs::read_to_string("scenes/antagonistic_pulley.toml").expect("a stock scene");
     let lever = "route.lever = [{ joint = \"pulley\", lever_m = 0.008 }]";
-    let via = "route.via = [{ link = \"frame\", point_m = [-0.03, 0.008, 0.0] }, { link = \"pulley\", point_m = [0.0, 0.008, 0.0] }]";
+    let via = "route.via = [{ link = \"frame\", point_m = [-0.03, 0.008, 0.0] }, { link = \"pulley_link\", point_m = [0.0, 0.008, 0.0] }]";
     let draw = "route.draw = [{ link = \"frame\", point_m = [0.0, 0.008, 0.0] }]";
     assert!(text.contains(lever) && text.contains(draw), "the stock scene has changed");
     let slack = format!("\n[[effect]]\nname = \"cable_slack\"\nelement = \"cable_1\"\nslack_length_m = {slack_m}\n");
@@ -20,8 +21,11 @@ fn via_pulley(slack_m: f64) -> Scene {
 fn slack_stays_in_a_cable_on_via_points() {
     let greatest_tension = |slack_m: f64| -> f64 {
         let mut simulation = Simulation::new(via_pulley(slack_m)).unwrap_or_else(|e| panic!("{e}"));
-        let still = smam::recording::PiecewiseLinear::new(&[0.0, 2.0], &[0.0, -2e-4]).expect("two points");
-        simulation.set_input("plunger_1_mm", InputSource::Recorded(still));
+        // The first muscle pulls, the second holds against it.
+        for (input, end_m) in [("plunger_1_mm", -2e-4), ("plunger_2_mm", 0.0)] {
+            let way = PiecewiseLinear::new(&[0.0, 2.0], &[0.0, end_m]).expect("two points");
+            simulation.set_input(input, InputSource::Recorded(way));
+        }
         let shown = record(&mut simulation, &Schedule::even(2.0, 0.01)).unwrap_or_else(|e| panic!("{e}"));
         shown.channel("tension_1_n").expect("a channel").values.iter().copied().fold(0.0, f64::max)
     };
