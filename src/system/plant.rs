@@ -97,7 +97,7 @@ pub struct MusclePlant<D> {
     /// `d elongation / d y`; elongation is `elongation_0 + jacobian . y`.
     pub jacobian: Vec<f64>,
     pub elongation_0_m: f64,
-    /// What effects add, and where its slow states begin in [`PlantState::slow`].
+    /// What effects add, and where its slow states begin in [`PlantState`].
     pub extras: MuscleExtras<D>,
     pub slow_at: usize,
 }
