@@ -16,7 +16,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel
 from answer import Answer, effect
 from noise import block_means
 from rig import Rig
-from rows import FALSE_ALARM_LEVEL, FLOOR_PER_SAMPLE, channel_noise
+from rows import FALSE_ALARM_LEVEL, FLOOR_PER_SAMPLE, channel_noise, orthonormal
 from states import Scaler, by_sample
 
 BLOCK_S = 0.1
@@ -210,9 +210,7 @@ def low_rank(x, length, query=None):
 
 def decompose(features, tangents, valid):
     """Directions and strengths of a low-rank kernel, freed of what the calibration could change."""
-    norms = np.maximum(np.linalg.norm(tangents[valid], axis=0), 1e-300)
-    basis, strength, _ = np.linalg.svd(tangents[valid] / norms, full_matrices=False)
-    basis = basis[:, strength > 1e-8 * max(strength[0], 1e-300)] if len(norms) else np.zeros((valid.sum(), 0))
+    basis = orthonormal(tangents[valid])
     own = features[valid] - basis @ (basis.T @ features[valid])
     vectors, values, _ = np.linalg.svd(own, full_matrices=False)
     return vectors, values**2

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.signal import lfilter
 
 from answer import Answer
 from gp import slow_deviation
@@ -184,8 +185,6 @@ def simulate(inputs, weights, lags, bound):
     if lags == 0:
         return np.clip(drive, -bound, bound)
     feedback = weights[inputs.shape[1] :]
-    shown = np.zeros(len(drive) + lags)
-    for k in range(len(drive)):
-        past = shown[k : k + lags][::-1]
-        shown[k + lags] = min(max(drive[k] + feedback @ past, -bound), bound)
-    return shown[lags:]
+    with np.errstate(over="ignore", invalid="ignore"):
+        shown = lfilter([1.0], np.concatenate([[1.0], -feedback]), drive)
+    return np.clip(np.nan_to_num(shown, nan=bound, posinf=bound, neginf=-bound), -bound, bound)

@@ -93,8 +93,10 @@ def run_case(job):
 def run_method(case, method, job, preparation):
     """One answer, and its errors on the holdout that is opened only then."""
     cases, name, _, out, _, _, seed = job
-    begun = time.perf_counter()
-    answer = importlib.import_module(method).answer(case, seed)
+    module = importlib.import_module(method)
+    begun, begun_cpu = time.perf_counter(), time.process_time()
+    answer = module.answer(case, seed)
+    answer.notes["seconds_cpu"] = round(time.process_time() - begun_cpu, 3)
     seconds = time.perf_counter() - begun
     figures = holdout_figures(case, answer, sealed_outputs(cases, name, case.outputs), channel_noise(case))
     write_whole(out / method / f"{name}.json", as_json(method, answer, figures, seconds, preparation))

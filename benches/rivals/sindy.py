@@ -111,13 +111,15 @@ class Problem:
         """Supports along the paths of FROLS and STLSQ."""
         found = set()
         usable = np.flatnonzero(pool)
-        matrix, target = self.unit[:, usable], self.left[:, None]
+        # The optimisers use products of columns only: those of the triangular factor are the same, with fewer rows.
+        rotation, matrix = np.linalg.qr(self.unit[:, usable])
+        target = (rotation.T @ self.left)[:, None]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             for count in range(1, MOST_TERMS + 1):
                 fit = pysindy.FROLS(max_iter=count, alpha=RIDGE, unbias=False).fit(matrix, target)
                 found.add(frozenset(usable[np.flatnonzero(fit.coef_[0])]))
-            top = np.abs(matrix.T @ self.left).max()
+            top = np.abs(matrix.T @ target).max()
             for threshold in np.geomspace(self.threshold, max(top, 1.01 * self.threshold), THRESHOLDS):
                 fit = pysindy.STLSQ(threshold=threshold, alpha=0.1, unbias=False).fit(matrix, target)
                 found.add(frozenset(usable[np.flatnonzero(fit.coef_[0])]))
@@ -217,17 +219,18 @@ def read(problem, support):
     costs = {k: problem.chi2([s for s in support if s not in g]) - full for k, g in groups.items()}
     share_left = problem.share_left(support)
     unknown = [k for k in groups if k[0] in library.TABLE]
-    main, effects = max(costs, key=costs.get), []
+    main, effects, sure = max(costs, key=costs.get), [], []
     for key in sorted(groups, key=lambda k: -costs[k]):
         if key in unknown:
             continue
         likely = chances(problem, support, key, groups[key])
         if key == main or own_chance(likely, key) >= HALF:
             effects += likely
+            sure.append(own_chance(likely, key))
     if share_left > MOST_LEFT or main in unknown:
         verdict = "unknown_physics"
     else:
-        verdict = "missing_physics" if own_chance(effects, main) >= SURE else "ambiguous"
+        verdict = "missing_physics" if min(sure) >= SURE else "ambiguous"
     notes = problem.notes(support) | {"share_of_misfit_left": share_left, "unnamed": [" ".join(k[:2]) for k in unknown]}
     return Answer(verdict, main[1], effects, problem.correction(support), notes)
 
