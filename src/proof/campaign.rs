@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::ProofError;
-use crate::conceal::{Hiding, Rig, draw, write_case};
+use crate::conceal::{Hiding, Rig, SEALED, draw, seal, write_case};
 use crate::diagnose::{Case, Options, diagnose, write_answer};
 use crate::recording::write_whole;
 
@@ -88,9 +88,11 @@ impl Folders {
         self.answers.join(name).join("seconds.txt")
     }
 
-    /// Whether a case was written whole.
-    pub fn is_concealed(&self, name: &str) -> bool {
-        self.cases.join(name).join("recordings.toml").is_file()
+    /// Seal of a case that was written whole; none of one that was not.
+    pub fn seal_of(&self, name: &str) -> Option<String> {
+        let is_whole = self.cases.join(name).join("recordings.toml").is_file();
+        let sealed = self.cases.join(SEALED).join(format!("{name}.json"));
+        fs::read_to_string(sealed).ok().filter(|_| is_whole).map(|text| seal(&text))
     }
 
     /// Whether a case was answered whole.
