@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use smam::conceal::{Hiding, Rig, draw, write_case};
-use smam::recording::write_whole;
 
 use super::CliError;
+use super::score::{read_seals, write_seals};
 
 /// Arguments of `smam conceal`.
 #[derive(Args)]
@@ -59,15 +59,17 @@ pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
         RigName::AntagonisticPulley => Rig::AntagonisticPulley,
         RigName::BendingCatheter => Rig::BendingCatheter,
     };
-    let mut seals = String::new();
+    let path = arguments.out.join("seals.txt");
+    // Seals of cases that lie there already stay.
+    let mut seals = if path.is_file() { read_seals(&path)? } else { Vec::new() };
     for seed in arguments.seed..arguments.seed.saturating_add(arguments.count) {
         let drawn = draw(&format!("case_{seed}"), rig, hiding(arguments.hiding, seed), seed)?;
         let seal = write_case(&drawn, &arguments.out)?;
         println!("{} {seal}", drawn.truth.name);
-        seals.push_str(&format!("{} {seal}\n", drawn.truth.name));
+        seals.retain(|(name, _)| *name != drawn.truth.name);
+        seals.push((drawn.truth.name, seal));
+        write_seals(&path, &seals)?;
     }
-    let path = arguments.out.join("seals.txt");
-    write_whole(&path, &seals).map_err(|source| CliError::Write { file: path, source })?;
     eprintln!("written: {}; the answers lie in sealed/", arguments.out.display());
     Ok(ExitCode::SUCCESS)
 }

@@ -6,11 +6,10 @@ use std::time::Instant;
 
 use clap::Args;
 use rayon::prelude::*;
-use smam::proof::{Folders, Plan, Planned, ProofError, answer_case, conceal_case, open, row};
+use smam::proof::{Folders, Plan, Planned, ProofError, answer_case, conceal_case};
 
 use super::CliError;
-use super::files::write;
-use super::score::{read_seals, write_score};
+use super::score::{open_all, read_seals, write_score, write_seals};
 
 /// Arguments of `smam proof`.
 #[derive(Args)]
@@ -36,11 +35,7 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let folders = Folders::below(&arguments.out);
     let seals = conceal_all(&planned, &folders)?;
     answer_all(&planned, &folders)?;
-    let mut rows = Vec::new();
-    for (name, seal) in &seals {
-        rows.push(row(&open(name, seal, &folders)?, &folders)?);
-    }
-    write_score(&rows, &arguments.out)?;
+    write_score(&open_all(&seals, &folders)?, &arguments.out)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -60,8 +55,7 @@ fn conceal_all(planned: &[Planned], folders: &Folders) -> Result<Vec<(String, St
         Ok((case.name.clone(), seal))
     };
     let seals = planned.par_iter().map(seal).collect::<Result<Vec<_>, _>>()?;
-    let text: String = seals.iter().map(|(name, seal)| format!("{name} {seal}\n")).collect();
-    write(&path, &text)?;
+    write_seals(&path, &seals)?;
     Ok(seals)
 }
 

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::proof::{Folders, Row, metrics, open, page, row};
+use rayon::prelude::*;
+use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
 
 use super::CliError;
 use super::files::write;
@@ -26,11 +27,9 @@ pub struct ScoreArguments {
 pub fn score(arguments: &ScoreArguments) -> Result<ExitCode, CliError> {
     let folders = Folders { cases: arguments.cases.clone(), answers: arguments.answers.clone() };
     let seals = read_seals(&arguments.cases.join("seals.txt"))?;
-    let answered = seals.iter().filter(|(name, _)| arguments.answers.join(name).join("diagnosis.json").is_file());
-    let mut rows = Vec::new();
-    for (name, seal) in answered {
-        rows.push(row(&open(name, seal, &folders)?, &folders)?);
-    }
+    let is_answered = |name: &str| arguments.answers.join(name).join("diagnosis.json").is_file();
+    let answered: Vec<_> = seals.iter().filter(|(name, _)| is_answered(name)).collect();
+    let rows = open_all(answered, &folders)?;
     eprintln!("{} of {} cases were answered", rows.len(), seals.len());
     write_score(&rows, &arguments.out)?;
     Ok(ExitCode::SUCCESS)
@@ -46,6 +45,20 @@ pub fn read_seals(path: &Path) -> Result<Vec<(String, String)>, CliError> {
     })?;
     let pair = |line: &str| line.split_once(' ').map(|(name, seal)| (name.to_owned(), seal.trim().to_owned()));
     Ok(text.lines().filter_map(pair).collect())
+}
+
+/// Publishes names and seals.
+pub fn write_seals(path: &Path, seals: &[(String, String)]) -> Result<(), CliError> {
+    let text: String = seals.iter().map(|(name, seal)| format!("{name} {seal}\n")).collect();
+    write(path, &text)
+}
+
+/// The rows of cases that were answered; each corrected scene is played on what was kept back.
+pub fn open_all<'a>(
+    seals: impl IntoParallelIterator<Item = &'a (String, String)>,
+    folders: &Folders,
+) -> Result<Vec<Row>, ProofError> {
+    seals.into_par_iter().map(|(name, seal)| row(&open(name, seal, folders)?, folders)).collect()
 }
 
 /// Writes rows, figures and table, and prints the table.

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 
 pub use case::{Decoy, Drawn, Hiding, Truth, draw};
 pub use noise::ChannelNoise;
-pub use seal::{seal, sealed_text};
+pub use seal::seal;
 pub use secrets::Secret;
 pub use stock::{Calibration, Rig};
 pub use write::{SEALED, write_case};

@@ -5,9 +5,10 @@ use rand_chacha::ChaCha8Rng;
 
 use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S, Wave, programme};
+use super::seal::{seal, sealed_text};
 use super::solve::solve;
 use super::stock::{Calibration, Rig};
-use super::{Hiding, draw, seal, sealed_text};
+use super::{Hiding, draw};
 
 /// A plunger that goes to a position over three seconds and stays for seven.
 fn held(to_m: f64) -> Vec<Drive> {

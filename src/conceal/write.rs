@@ -18,14 +18,15 @@ pub const SEALED: &str = "sealed";
 /// A folder that cannot be written.
 pub fn write_case(drawn: &Drawn, folder: &Path) -> Result<String, ConcealError> {
     let name = &drawn.truth.name;
-    let text = sealed_text(&drawn.truth).map_err(|e| ConcealError::Solver(e.to_string()))?;
+    let sealed = folder.join(SEALED).join(format!("{name}.json"));
+    let text = sealed_text(&drawn.truth).map_err(|e| ConcealError::Write { file: sealed.clone(), source: e.into() })?;
     let own = folder.join(name);
     std::fs::create_dir_all(&own).map_err(|source| ConcealError::Write { file: own.clone(), source })?;
     for (file, recording) in &drawn.runs {
         recording.write_csv(&own.join(file))?;
     }
     drawn.holdout.write_csv(&folder.join(format!("{name}.holdout.csv")))?;
-    write(&folder.join(SEALED).join(format!("{name}.json")), &text)?;
+    write(&sealed, &text)?;
     // Last: a folder with this file is whole.
     write(&own.join("recordings.toml"), &recordings_toml(drawn))?;
     Ok(seal(&text))

@@ -14,8 +14,8 @@ pub fn write_answer(outcome: &Outcome, folder: &Path) -> Result<(), DiagnoseErro
         let file = folder.join(name);
         write_whole(&file, text).map_err(|source| DiagnoseError::Write { file, source })
     };
-    let json =
-        serde_json::to_string_pretty(&outcome.diagnosis).map_err(|e| DiagnoseError::Simulation(e.to_string()))?;
+    let json = serde_json::to_string_pretty(&outcome.diagnosis)
+        .map_err(|e| DiagnoseError::Write { file: folder.join("diagnosis.json"), source: e.into() })?;
     write("diagnosis.json", &format!("{json}\n"))?;
     if let Some(inputs) = &outcome.next_inputs {
         inputs.write_csv(&folder.join("next_experiment.csv"))?;

@@ -6,35 +6,22 @@ use std::path::Path;
 use super::ProofError;
 use crate::conceal::Truth;
 use crate::identify::{RecordedRun, replay};
-use crate::recording::{Recording, Run, RunUse, read_csv, write_whole};
+use crate::recording::{Recording, Run, RunUse, read_csv};
 
-/// Mean squared residual of each output over the noise's variance: baseline, corrected.
-type Errors = BTreeMap<String, [f64; 2]>;
-
-/// Share of the gap between the calibrated scene and the noise that the corrected scene closes; kept beside the answer.
+/// Share of the gap between the calibrated scene and the noise that the corrected scene closes.
 ///
 /// # Errors
 /// Scenes that cannot be run, files that cannot be read.
 pub fn gap_on_holdout(truth: &Truth, answer: &Path, holdout: &Path) -> Result<f64, ProofError> {
-    let path = answer.join("holdout.json");
-    let known = std::fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str::<Errors>(&text).ok());
-    let errors = match known {
-        Some(errors) => errors,
-        None => {
-            let errors = errors(truth, answer, holdout)?;
-            let text = serde_json::to_string_pretty(&errors)
-                .map_err(|e| ProofError::Format { file: path.clone(), message: e.to_string() })?;
-            write_whole(&path, &text).map_err(|source| ProofError::Write { file: path, source })?;
-            errors
-        }
-    };
-    let mean = |which: usize| errors.values().map(|e| e[which]).sum::<f64>() / errors.len().max(1) as f64;
+    let errors = errors(truth, answer, holdout)?;
+    let mean = |which: usize| errors.iter().map(|e| e[which]).sum::<f64>() / errors.len().max(1) as f64;
     // Below a few hundredths of the noise there is no gap to close.
     let gap = (mean(0) - 1.0).max(0.02);
     Ok((mean(0) - mean(1)) / gap)
 }
 
-fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Errors, ProofError> {
+/// Mean squared residual of each output over the noise's variance: baseline, corrected.
+fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Vec<[f64; 2]>, ProofError> {
     let recording = read_csv(holdout)?;
     let run = RecordedRun {
         run: Run { file: holdout.display().to_string(), run_use: Some(RunUse::Holdout), conditions: BTreeMap::new() },
@@ -47,7 +34,7 @@ fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Errors, ProofE
     shown
         .map(|(o, noise)| {
             let squares = |simulated: &Recording| mean_square(&run.recording, simulated, o.column, noise.sd);
-            Ok((o.column.to_owned(), [squares(&baseline)?, squares(&corrected)?]))
+            Ok([squares(&baseline)?, squares(&corrected)?])
         })
         .collect()
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::row::Row;
-use crate::conceal::Hiding;
+use crate::conceal::{Hiding, Rig};
 use crate::diagnose::Verdict;
 
 /// A share of cases, with what it should be.
@@ -49,83 +49,60 @@ impl Goal {
 
 /// All figures, in the order of the table.
 pub fn metrics(rows: &[Row]) -> Vec<Metric> {
-    let of = |hiding: Hiding| rows.iter().filter(move |r| r.hiding == hiding);
-    let visible = |r: &&Row| r.excess >= VISIBLE;
-    let hides: Vec<&Row> = rows.iter().filter(|r| r.hiding != Hiding::Nothing).collect();
-    let one: Vec<&Row> = of(Hiding::One).filter(visible).filter(|r| r.is_detected()).collect();
-    let altered = |r: &&&Row| r.is_noise_coloured || r.secrets.iter().any(|s| s.is_altered);
-    let several: Vec<&Row> = of(Hiding::Several).filter(visible).collect();
-    let listed: Vec<&Row> = rows.iter().filter(|r| matches!(r.hiding, Hiding::One | Hiding::Several)).collect();
-    let unlisted: Vec<&Row> = of(Hiding::Unlisted).filter(visible).collect();
-    let sets: Vec<&Row> = one.iter().copied().filter(|r| r.verdict != Verdict::UnknownPhysics).collect();
-    let is_hidden_effect = |r: &Row| r.first().is_some_and(|e| r.secrets.iter().any(|s| e.is(s)));
-    let is_element = |r: &Row| r.secrets.iter().any(|s| r.element.as_deref() == Some(s.element.as_str()));
+    let nothing = select(rows, |r| r.hiding == Hiding::Nothing);
+    let hides = select(rows, |r| r.hiding != Hiding::Nothing);
+    let visible = select(rows, |r| r.hiding != Hiding::Nothing && r.excess >= VISIBLE);
+    let one = select(rows, |r| r.hiding == Hiding::One && r.excess >= VISIBLE && r.is_detected());
     let mut all = vec![
         share(
-            "false_alarms",
-            "false alarms where nothing is missing",
-            of(Hiding::Nothing),
+            ("false_alarms", "false alarms where nothing is missing"),
+            &nothing,
             Row::is_detected,
             Goal::AtMost(0.01),
         ),
-        share(
-            "detection",
-            "detected at excess chi2/n >= 0.1",
-            hides.iter().copied().filter(visible),
-            Row::is_detected,
-            Goal::AtLeast(0.98),
-        ),
-        mean_probability(&one),
-        share("element", "element right (one effect, detected)", one.iter().copied(), is_element, Goal::AtLeast(0.95)),
-        share(
-            "effect",
-            "effect right (one effect, detected)",
-            one.iter().copied(),
-            is_hidden_effect,
-            Goal::AtLeast(0.95),
-        ),
-        share(
-            "effect_altered",
-            "the same with altered form or coloured noise",
-            one.iter().filter(altered).copied(),
-            is_hidden_effect,
-            Goal::AtLeast(0.9),
-        ),
-        share(
-            "exact_set",
-            "exact set (two effects or three, visible)",
-            several.iter().copied(),
-            is_exact,
-            Goal::AtLeast(0.85),
-        ),
-        share("coverage", "truth in the set that is answered", sets.iter().copied(), holds_truth, Goal::AtLeast(0.95)),
-        mean_set(&sets),
-        share(
-            "unknown_recall",
-            "'unknown' said of what is not listed",
-            unlisted.iter().copied(),
-            is_unknown,
-            Goal::AtLeast(0.9),
-        ),
-        share(
-            "unknown_false",
-            "'unknown' said of what is listed",
-            listed.iter().copied(),
-            is_unknown,
-            Goal::AtMost(0.05),
-        ),
+        share(("detection", "detected at excess chi2/n >= 0.1"), &visible, Row::is_detected, Goal::AtLeast(0.98)),
     ];
+    all.extend(naming(rows, &one));
+    all.extend(unknown(rows));
     all.extend(gaps(&hides));
-    all.push(share(
-        "confidently_wrong",
-        "an effect named with > 0.9 that is not there",
-        rows.iter(),
-        Row::is_confidently_wrong,
-        Goal::AtMost(0.02),
-    ));
+    let wrong = ("confidently_wrong", "an effect named with > 0.9 that is not there");
+    all.push(share(wrong, &select(rows, |_| true), Row::is_confidently_wrong, Goal::AtMost(0.02)));
     all.push(sizes(&one));
     all.push(times(rows));
     all
+}
+
+fn select(rows: &[Row], is: impl Fn(&Row) -> bool) -> Vec<&Row> {
+    rows.iter().filter(|r| is(r)).collect()
+}
+
+/// Where and what, of one effect that was detected; then sets.
+fn naming(rows: &[Row], one: &[&Row]) -> Vec<Metric> {
+    let is_altered = |r: &Row| r.is_noise_coloured || r.secrets.iter().any(|s| s.is_altered);
+    let altered: Vec<&Row> = one.iter().copied().filter(|r| is_altered(r)).collect();
+    let several = select(rows, |r| r.hiding == Hiding::Several && r.excess >= VISIBLE);
+    let sets: Vec<&Row> = one.iter().copied().filter(|r| !is_unknown(r)).collect();
+    let is_effect = |r: &Row| r.first().is_some_and(|e| r.secrets.iter().any(|s| e.is(s)));
+    let is_element = |r: &Row| r.secrets.iter().any(|s| r.element.as_deref() == Some(s.element.as_str()));
+    let altered_words = ("effect_altered", "the same with altered form or coloured noise");
+    vec![
+        mean_probability(one),
+        share(("element", "element right (one effect, detected)"), one, is_element, Goal::AtLeast(0.95)),
+        share(("effect", "effect right (one effect, detected)"), one, is_effect, Goal::AtLeast(0.95)),
+        share(altered_words, &altered, is_effect, Goal::AtLeast(0.9)),
+        share(("exact_set", "exact set (two effects or three, visible)"), &several, is_exact, Goal::AtLeast(0.85)),
+        share(("coverage", "truth in the set that is answered"), &sets, holds_truth, Goal::AtLeast(0.95)),
+        mean_set(&sets),
+    ]
+}
+
+fn unknown(rows: &[Row]) -> [Metric; 2] {
+    let unlisted = select(rows, |r| r.hiding == Hiding::Unlisted && r.excess >= VISIBLE);
+    let listed = select(rows, |r| matches!(r.hiding, Hiding::One | Hiding::Several));
+    [
+        share(("unknown_recall", "'unknown' said of what is not listed"), &unlisted, is_unknown, Goal::AtLeast(0.9)),
+        share(("unknown_false", "'unknown' said of what is listed"), &listed, is_unknown, Goal::AtMost(0.05)),
+    ]
 }
 
 fn is_unknown(r: &Row) -> bool {
@@ -142,25 +119,21 @@ fn holds_truth(r: &Row) -> bool {
     r.secrets.iter().all(|s| r.effects.iter().any(|e| e.is(s)))
 }
 
-fn share<'a>(
-    key: &str,
-    what: &str,
-    rows: impl Iterator<Item = &'a Row>,
-    is: impl Fn(&Row) -> bool,
+/// A figure by key and words.
+fn figure(
+    (key, what): (&str, &str),
+    value: f64,
+    interval: [f64; 2],
+    cases: usize,
+    target: String,
     goal: Goal,
 ) -> Metric {
-    let of: Vec<bool> = rows.map(is).collect();
-    let (count, hits) = (of.len(), of.iter().filter(|h| **h).count());
-    let value = hits as f64 / count as f64;
-    Metric {
-        key: key.to_owned(),
-        what: what.to_owned(),
-        target: goal.words(true),
-        value,
-        interval: wilson(hits, count),
-        cases: count,
-        is_met: goal.is_met(value),
-    }
+    Metric { key: key.to_owned(), what: what.to_owned(), target, value, interval, cases, is_met: goal.is_met(value) }
+}
+
+fn share(names: (&str, &str), rows: &[&Row], is: impl Fn(&Row) -> bool, goal: Goal) -> Metric {
+    let (count, hits) = (rows.len(), rows.iter().filter(|r| is(r)).count());
+    figure(names, hits as f64 / count as f64, wilson(hits, count), count, goal.words(true), goal)
 }
 
 /// Wilson's 95 % interval of a share.
@@ -176,37 +149,24 @@ pub fn wilson(hits: usize, count: usize) -> [f64; 2] {
     [((middle - half) / over).max(0.0), ((middle + half) / over).min(1.0)]
 }
 
-fn mean_metric(key: &str, what: &str, values: &[f64], goal: Goal, percent: bool) -> Metric {
+/// A mean with the normal interval of its error.
+fn mean(names: (&str, &str), values: &[f64], goal: Goal, percent: bool) -> Metric {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
     let half = 1.96 * (variance / n).sqrt();
-    Metric {
-        key: key.to_owned(),
-        what: what.to_owned(),
-        target: goal.words(percent),
-        value: mean,
-        interval: [mean - half, mean + half],
-        cases: values.len(),
-        is_met: goal.is_met(mean),
-    }
+    figure(names, mean, [mean - half, mean + half], values.len(), goal.words(percent), goal)
 }
 
 fn mean_probability(one: &[&Row]) -> Metric {
     let of_truth = |r: &&Row| r.secrets.first().map_or(0.0, |s| r.probability_of(s));
     let values: Vec<f64> = one.iter().map(of_truth).collect();
-    mean_metric(
-        "probability",
-        "mean probability on the truth (one effect, detected)",
-        &values,
-        Goal::AtLeast(0.9),
-        true,
-    )
+    mean(("probability", "mean probability on the truth (one effect, detected)"), &values, Goal::AtLeast(0.9), true)
 }
 
 fn mean_set(sets: &[&Row]) -> Metric {
     let values: Vec<f64> = sets.iter().map(|r| r.effects.len() as f64).collect();
-    mean_metric("set_size", "mean size of that set", &values, Goal::AtMost(1.5), false)
+    mean(("set_size", "mean size of that set"), &values, Goal::AtMost(1.5), false)
 }
 
 /// Median and tenth percentile of the gap closed, with the order statistics that bound them at 95 %.
@@ -214,45 +174,33 @@ fn gaps(hides: &[&Row]) -> [Metric; 2] {
     let mut values: Vec<f64> =
         hides.iter().filter(|r| r.is_detected() && r.excess >= VISIBLE).filter_map(|r| r.gap_closed).collect();
     values.sort_by(f64::total_cmp);
-    let at = |q: f64| values.get(((values.len().max(1) - 1) as f64 * q.clamp(0.0, 1.0)) as usize).copied();
-    let one = |key: &str, what: &str, q: f64, goal: Goal| {
-        let half = 1.96 * (q * (1.0 - q) / values.len().max(1) as f64).sqrt();
-        let value = at(q).unwrap_or(f64::NAN);
-        Metric {
-            key: key.to_owned(),
-            what: what.to_owned(),
-            target: goal.words(true),
-            value,
-            interval: [at(q - half).unwrap_or(f64::NAN), at(q + half).unwrap_or(f64::NAN)],
-            cases: values.len(),
-            is_met: goal.is_met(value),
-        }
+    let count = values.len();
+    let at = |q: f64| values.get(((count.max(1) - 1) as f64 * q.clamp(0.0, 1.0)) as usize).copied().unwrap_or(f64::NAN);
+    let one = |names: (&str, &str), q: f64, goal: Goal| {
+        let half = 1.96 * (q * (1.0 - q) / count.max(1) as f64).sqrt();
+        figure(names, at(q), [at(q - half), at(q + half)], count, goal.words(true), goal)
     };
     [
-        one("gap_median", "gap closed on what was kept back, median", 0.5, Goal::AtLeast(0.95)),
-        one("gap_tenth", "gap closed on what was kept back, 10th percentile", 0.1, Goal::AtLeast(0.8)),
+        one(("gap_median", "gap closed on what was kept back, median"), 0.5, Goal::AtLeast(0.95)),
+        one(("gap_tenth", "gap closed on what was kept back, 10th percentile"), 0.1, Goal::AtLeast(0.8)),
     ]
 }
 
 /// Whether true sizes lie in their intervals; laws of altered form have no size of the catalogue's.
 fn sizes(one: &[&Row]) -> Metric {
-    let of = |r: &&&Row| r.secrets.iter().all(|s| !s.is_altered) && r.effects.iter().any(|e| e.size.is_some());
+    let has_size = |r: &Row| r.secrets.iter().all(|s| !s.is_altered) && r.effects.iter().any(|e| e.size.is_some());
+    let own: Vec<&Row> = one.iter().copied().filter(|r| has_size(r)).collect();
     let covers = |r: &Row| {
         let secret = r.secrets.first();
         r.effects.iter().filter_map(|e| e.size).any(|s| secret.is_some_and(|t| (s[1]..=s[2]).contains(&t.size)))
     };
-    share(
-        "size_coverage",
-        "true size in its 95 % interval (own form)",
-        one.iter().filter(of).copied(),
-        covers,
-        Goal::AtLeast(0.9),
-    )
+    share(("size_coverage", "true size in its 95 % interval (own form)"), &own, covers, Goal::AtLeast(0.9))
 }
 
 fn times(rows: &[Row]) -> Metric {
-    let bench = rows.iter().filter(|r| r.rig == crate::conceal::Rig::MuscleBench);
-    share("time", "bench cases answered within 30 s", bench, |r| r.seconds <= 30.0, Goal::AtLeast(0.95))
+    let bench = select(rows, |r| r.rig == Rig::MuscleBench && r.seconds.is_some());
+    let in_time = |r: &Row| r.seconds.is_some_and(|s| s <= 30.0);
+    share(("time", "bench cases answered within 30 s"), &bench, in_time, Goal::AtLeast(0.95))
 }
 
 #[cfg(test)]

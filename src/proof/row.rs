@@ -48,7 +48,8 @@ pub struct Row {
     pub excess: f64,
     /// Share of the gap between baseline and noise that is closed on the recording kept back.
     pub gap_closed: Option<f64>,
-    pub seconds: f64,
+    /// How long it took, where that is known.
+    pub seconds: Option<f64>,
 }
 
 impl Row {
@@ -75,7 +76,7 @@ impl Row {
     }
 }
 
-/// Opens the seal of a case; `seal_line` is what was published before anyone answered.
+/// Opens the seal of a case; `published` is what was published before anyone answered.
 ///
 /// # Errors
 /// An answer under the seal that is not the one that was sealed.
@@ -112,7 +113,7 @@ pub fn row(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
         effects: diagnosis.effects.iter().map(|e| answered(e, truth)).collect(),
         excess: diagnosis.detection.excess_chi2_per_sample,
         gap_closed,
-        seconds: folders.seconds(&truth.name).unwrap_or(f64::NAN),
+        seconds: folders.seconds(&truth.name),
     })
 }
 

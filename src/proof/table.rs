@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::metrics::{Metric, VISIBLE, wilson};
 use super::row::Row;
 use crate::conceal::{Hiding, Secret};
+use crate::diagnose::Verdict;
 
 /// Table of the figures, results by misfit, reliability, and every wrong answer.
 pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
@@ -74,27 +75,26 @@ fn by_effect(text: &mut String, rows: &[Row]) {
         let own: Vec<&Row> = rows.iter().filter(alone).filter(|r| r.secrets[0].name == name).collect();
         let count = |is: &dyn Fn(&Row) -> bool| own.iter().filter(|r| is(r)).count();
         let named = count(&|r| r.first().is_some_and(|e| e.is(&r.secrets[0])));
-        let unknown = count(&|r| r.verdict == crate::diagnose::Verdict::UnknownPhysics);
+        let unknown = count(&|r| r.verdict == Verdict::UnknownPhysics);
         let listed = if own[0].secrets[0].in_catalogue { "" } else { " (not listed)" };
         let _ =
             writeln!(text, "| {name}{listed} | {} | {} | {named} | {unknown} |", own.len(), count(&Row::is_detected));
     }
 }
 
+/// Bins of the probabilities that answers give.
+const PROBABILITIES: [(f64, f64); 6] = [(0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95), (0.95, 1.0)];
+
 fn reliability(text: &mut String, rows: &[Row]) {
     text.push_str("\n### Reliability: probability given against share that was right\n\n| probability | effects named | right |\n|---|---|---|\n");
-    for (low, high) in reliability_bins() {
+    for (low, high) in PROBABILITIES {
         let (right, count) = in_bin(rows, low, high);
-        let _ = writeln!(text, "| {low:.1} to {high:.1} | {count} | {} |", of(right, count));
+        let _ = writeln!(text, "| {low} to {high} | {count} | {} |", of(right, count));
     }
 }
 
-pub(super) fn reliability_bins() -> [(f64, f64); 6] {
-    [(0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95), (0.95, 1.0)]
-}
-
 /// Named effects whose probability lies in a bin: how many are right, how many there are.
-pub(super) fn in_bin(rows: &[Row], low: f64, high: f64) -> (usize, usize) {
+fn in_bin(rows: &[Row], low: f64, high: f64) -> (usize, usize) {
     let inside = |p: f64| p >= low && (p < high || high == 1.0);
     let named = rows.iter().flat_map(|r| r.effects.iter().map(move |e| (r, e)));
     let own: Vec<_> = named.filter(|(r, e)| r.hiding != Hiding::Unlisted && inside(e.probability)).collect();
