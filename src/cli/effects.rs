@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::effects::{CATALOGUE, Effect, EffectSpec};
+use smam::recording::did_you_mean;
 use smam::report::{AffectedScene, effect_svg};
 use smam::scene::{STOCK_SCENES, Scene};
 use smam::system::{Influence, influence};
@@ -36,7 +37,9 @@ pub fn effects(arguments: &EffectsArguments) -> Result<ExitCode, CliError> {
     };
     let found: Vec<&'static EffectSpec> = CATALOGUE.iter().filter(|s| s.name == name).collect();
     if found.is_empty() {
-        return Err(CliError::Usage(format!("{name}: no such effect\n  remedy: `smam effects` lists them")));
+        let known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
+        let near = did_you_mean(name, &known);
+        return Err(CliError::Usage(format!("{name}: no such effect{near}\n  remedy: `smam effects` lists them")));
     }
     found.iter().for_each(|spec| show(spec));
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/effects"));
