@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Args;
-use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose as run_diagnosis, write_answer};
+use clap::{Args, ValueEnum};
+use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer};
 use smam::report::diagnosis_page;
 use smam::scene::Override;
 
@@ -33,12 +33,40 @@ pub struct DiagnoseArguments {
     /// Open the Rerun viewer on the same
     #[arg(long)]
     view: bool,
+    /// Leave a step out, to see what it is worth
+    #[arg(long, value_enum, value_name = "STEP")]
+    without: Option<StepName>,
     /// Of the bootstrap's draws; the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores]; the answer does not depend on it
     #[arg(long)]
     threads: Option<usize>,
+}
+
+/// Steps that can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum StepName {
+    /// Do not look at recorded pressures
+    Pressure,
+    /// Keep the scene's calibration as it is
+    Refit,
+    /// Let effects stand that do not foretell runs they were not fitted to
+    CrossValidation,
+    /// Answer with something of the catalogue always
+    OpenSet,
+}
+
+impl StepName {
+    pub fn step(self) -> Step {
+        match self {
+            Self::Pressure => Step::Pressure,
+            Self::Refit => Step::Refit,
+            Self::CrossValidation => Step::CrossValidation,
+            Self::OpenSet => Step::OpenSet,
+        }
+    }
 }
 
 /// Runs the command. Exit code 0 whatever the verdict, but 1 when the recordings cannot be diagnosed.
@@ -51,7 +79,10 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     }
     let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
     let folders: Vec<&Path> = arguments.dirs.iter().map(PathBuf::as_path).collect();
-    let case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
+    let mut case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
+    if let Some(step) = arguments.without {
+        case.leave_out(step.step());
+    }
     let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
     write_answer(&outcome, &out)?;

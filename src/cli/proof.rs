@@ -1,14 +1,17 @@
 //! `smam proof`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use rayon::prelude::*;
-use smam::proof::{Folders, Plan, Planned, ProofError, answer_case, conceal_case};
+use smam::conceal::Hiding;
+use smam::diagnose::{Step, Verdict};
+use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, settle};
 
 use super::CliError;
+use super::diagnose::StepName;
 use super::score::{open_all, read_seals, write_score, write_seals};
 
 /// Arguments of `smam proof`.
@@ -23,19 +26,32 @@ pub struct ProofArguments {
     /// Of everything that is drawn
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Diagnose with a step left out; answers and score go to DIR/without_STEP
+    #[arg(long, value_enum, value_name = "STEP")]
+    without: Option<StepName>,
     /// Where cases, answers and score go; what is there already is kept
     #[arg(long, value_name = "DIR", default_value = "out/proof")]
     out: PathBuf,
 }
 
-/// Runs the command: conceals every case, publishes the seals, diagnoses case after case, opens the seals.
+/// Runs the command: conceals every case, publishes the seals, diagnoses case after case, opens the seals,
+/// plays the experiments that ambiguous answers propose.
 pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let nothing = arguments.nothing.unwrap_or(arguments.cases);
     let planned = Plan { hiding: arguments.cases, nothing, seed: arguments.seed }.cases();
     let folders = Folders::below(&arguments.out);
     let seals = conceal_all(&planned, &folders)?;
-    answer_all(&planned, &folders)?;
-    write_score(&open_all(&seals, &folders)?, &arguments.out)?;
+    let (folders, out) = match arguments.without.and_then(|s| s.to_possible_value()) {
+        Some(step) => {
+            let out = arguments.out.join(format!("without_{}", step.get_name()));
+            (folders.with_answers(out.join("answers")), out)
+        }
+        None => (folders, arguments.out.clone()),
+    };
+    answer_all(&planned, &folders, arguments.without.map(StepName::step))?;
+    let mut rows = open_all(&seals, &folders)?;
+    settle_all(&mut rows, &seals, &folders, &out)?;
+    write_score(&rows, &out)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -59,16 +75,28 @@ fn conceal_all(planned: &[Planned], folders: &Folders) -> Result<Vec<(String, St
     Ok(seals)
 }
 
-fn answer_all(planned: &[Planned], folders: &Folders) -> Result<(), CliError> {
+fn answer_all(planned: &[Planned], folders: &Folders, without: Option<Step>) -> Result<(), CliError> {
     let missing: Vec<&Planned> = planned.iter().filter(|c| !folders.is_answered(&c.name)).collect();
     eprintln!("{} cases, {} of them answered already", planned.len(), planned.len() - missing.len());
     let begun = Instant::now();
     for (i, case) in missing.iter().enumerate() {
-        answer_case(&case.name, folders)?;
+        answer_case(&case.name, folders, without)?;
         let took_s = begun.elapsed().as_secs_f64();
         let left_s = took_s / (i + 1) as f64 * (missing.len() - i - 1) as f64;
         let seconds = folders.seconds(&case.name).unwrap_or(f64::NAN);
         eprintln!("{}/{} {} {seconds:.1} s; about {:.0} min left", i + 1, missing.len(), case.name, left_s / 60.0);
+    }
+    Ok(())
+}
+
+/// Plays what ambiguous answers propose, and a random programme beside it; what was diagnosed already is kept.
+fn settle_all(rows: &mut [Row], seals: &[(String, String)], folders: &Folders, out: &Path) -> Result<(), CliError> {
+    let is_open = |r: &Row| r.verdict == Verdict::Ambiguous && r.hiding != Hiding::Nothing;
+    let count = rows.iter().filter(|r| is_open(r)).count();
+    for (i, row) in rows.iter_mut().filter(|r| is_open(r)).enumerate() {
+        eprintln!("experiment {}/{count} for {}", i + 1, row.name);
+        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { continue };
+        row.settled = settle(&open(&row.name, seal, folders)?, folders, &out.join("experiments"))?;
     }
     Ok(())
 }

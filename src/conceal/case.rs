@@ -95,14 +95,13 @@ pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, Co
         rig.outputs().iter().map(|o| ChannelNoise::draw(o.noise_sd, is_noise_coloured, &mut random)).collect();
     let is_noise_stated = random.random_bool(0.6);
     let waves = draw_waves(&mut random);
-    let drives: Vec<Vec<Drive>> = waves.iter().map(|w| programme(rig, *w, &mut random)).collect();
-    let unseen = programme(rig, HOLDOUT, &mut random);
+    let drives: Vec<Vec<Drive>> = waves.iter().map(|w| programme(rig, *w, w.duration_s(), &mut random)).collect();
+    let unseen = programme(rig, HOLDOUT, HOLDOUT.duration_s(), &mut random);
     let wanted_excess = log_uniform(EXCESS.0, EXCESS.1, &mut random);
     let mut secrets = draw_secrets(rig, hiding, decoys.contains(&Decoy::NoPressure), &mut random);
     if !secrets.is_empty() {
         let shown: Vec<bool> = rig.outputs().iter().map(|o| is_shown(o.column, &decoys)).collect();
-        let begun_s = drives[0][0].positions_m.len() as f64 * SAMPLE_S;
-        let sizing = Sizing { rig, calibration, drives: &drives[HELD_LEVELS], begun_s, noise: &noise, shown: &shown };
+        let sizing = Sizing::new(rig, calibration, &drives, &noise, &shown)?;
         for secret in &mut secrets {
             sizing.scale(secret, wanted_excess)?;
         }
@@ -165,9 +164,6 @@ fn draw_calibration(at_the_ends: bool, random: &mut ChaCha8Rng) -> Calibration {
     };
     Calibration::STOCK.scaled(std::array::from_fn(|_| factor()))
 }
-
-/// Which of the runs holds levels.
-const HELD_LEVELS: usize = 1;
 
 /// Held levels always, between two of the others.
 fn draw_waves(random: &mut ChaCha8Rng) -> Vec<Wave> {

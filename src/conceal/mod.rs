@@ -5,6 +5,7 @@
 //! of it.
 
 mod case;
+mod more;
 mod noise;
 mod plant;
 mod programme;
@@ -19,6 +20,7 @@ mod write;
 use std::path::PathBuf;
 
 pub use case::{Decoy, Drawn, Hiding, Truth, draw};
+pub use more::{record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;
 pub use secrets::Secret;

@@ -33,6 +33,8 @@ const JOINT_SCALE: [f64; JOINT_STATES] = [1.0, 10.0, 1.0];
 
 /// Time constants of what is a jump in the ideal law, s.
 const PISTON_S: f64 = 5e-4;
+/// Share of the play over which the plunger gets hold of the piston.
+const ENGAGES: f64 = 0.05;
 const GREATEST_S: f64 = 5e-3;
 /// How a boiling node gives way, m³/Pa: a hundred times more than the compliances do.
 const VAPOUR_M3_PA: f64 = 1e-12;
@@ -372,7 +374,10 @@ fn piston_speed(s: &MuscleSecrets, x: &[f64], plunger: Plunger, dx: &mut [f64]) 
     }
     let ahead = plunger.position_m - x[PISTON];
     let gap = 0.5 * s.play_m;
-    dx[PISTON] = (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
+    // Taken along as soon as the play is used up; a spring alone would add a lag far greater than a small play.
+    let used_up = ahead * plunger.speed_m_s.signum() - gap;
+    let taken_along = (1.0 + used_up / (ENGAGES * s.play_m)).clamp(0.0, 1.0);
+    dx[PISTON] = plunger.speed_m_s * taken_along + (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
     dx[PISTON]
 }
 

@@ -49,7 +49,8 @@ impl Wave {
         }
     }
 
-    fn duration_s(self) -> f64 {
+    /// How long a recorded run of it is, s.
+    pub fn duration_s(self) -> f64 {
         match self {
             Self::Sine | Self::Triangle => 42.0,
             Self::Steps => 66.0,
@@ -60,8 +61,8 @@ impl Wave {
 }
 
 /// One programme for all plungers of a rig.
-pub fn programme(rig: Rig, wave: Wave, random: &mut ChaCha8Rng) -> Vec<Drive> {
-    let count = (wave.duration_s() / SAMPLE_S) as usize + 1;
+pub fn programme(rig: Rig, wave: Wave, duration_s: f64, random: &mut ChaCha8Rng) -> Vec<Drive> {
+    let count = (duration_s / SAMPLE_S) as usize + 1;
     let first = shares(wave, count, random);
     let by_itself = if rig == Rig::BendingCatheter { Some(shares(wave, count, random)) } else { None };
     let cocontraction = random.random_range(-0.05..0.05);

@@ -66,7 +66,7 @@ fn the_same_seed_hides_the_same() {
 fn programmes_stay_within_the_stroke() {
     for rig in Rig::ALL {
         for wave in [Wave::Sine, Wave::Steps, Wave::Chirp, Wave::Triangle, Wave::Wander, Wave::TwoTone] {
-            let drives = programme(rig, wave, &mut ChaCha8Rng::seed_from_u64(5));
+            let drives = programme(rig, wave, wave.duration_s(), &mut ChaCha8Rng::seed_from_u64(5));
             for (drive, (low, high)) in drives.iter().zip(rig.strokes_m()) {
                 let slack = 0.06 * (high - low);
                 assert!(drive.positions_m[0].abs() < 1e-12, "{rig:?} {wave:?}");

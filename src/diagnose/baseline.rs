@@ -76,7 +76,7 @@ fn first_noise(case: &Case) -> Vec<Noise> {
         let found = case.runs.iter().filter_map(|r| crate::recording::noise_sd(r.times_s(), &r.measured[c]));
         let smallest = found.fold(f64::INFINITY, f64::min);
         let sd = case.channels[c].stated_sd.unwrap_or(if smallest.is_finite() { smallest } else { 1.0 });
-        Noise { sd, inflation: 1.0 }
+        Noise::white(sd)
     };
     (0..case.channels.len()).map(of).collect()
 }

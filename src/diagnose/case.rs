@@ -16,6 +16,7 @@ use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
 use super::DiagnoseError;
 use super::noise::Noise;
 use super::thin::thin;
+use super::without::Step;
 
 /// An output that was recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,6 +117,8 @@ pub struct Case {
     pub parameters: Vec<CaseParameter>,
     pub runs: Vec<CaseRun>,
     pub notes: Vec<String>,
+    /// A step of the diagnosis that is left out.
+    pub(super) without: Option<Step>,
 }
 
 impl Case {
@@ -141,6 +144,7 @@ impl Case {
             folders: folders.iter().map(|f| f.display().to_string()).collect(),
             runs: Vec::new(),
             notes: Vec::new(),
+            without: None,
             scene_name,
         };
         for set in &sets {

@@ -2,10 +2,14 @@
 
 use super::DiagnoseError;
 use super::answer::Proof;
+use super::candidates::Variant;
+use super::case::Case;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
 use super::prove;
-use super::search::{Found, title};
+use super::search::{self, Found, title};
+use super::without::Step;
+use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,9 +21,15 @@ pub enum Confirmed {
 }
 
 /// Takes back what does not hold on the sealed runs; what explains most of the open ones is kept as the nearest known.
-pub fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -> (Found, Proof, Confirmed) {
+pub fn confirm(
+    case: &Case,
+    mut found: Found,
+    mut proof: Proof,
+    warnings: &mut Vec<String>,
+) -> (Found, Proof, Confirmed) {
     let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
-    if found.best.model.effects.is_empty() || !gains_nothing {
+    let is_asked = !found.best.model.effects.is_empty() && !case.is_without(Step::CrossValidation);
+    if !is_asked || !gains_nothing {
         return (found, proof, Confirmed::Yes);
     }
     let title = title(&found.best.model);
@@ -33,6 +43,30 @@ pub fn confirm(mut found: Found, mut proof: Proof, warnings: &mut Vec<String>) -
     proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
     (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
     (found, proof, Confirmed::Yes)
+}
+
+/// Takes back one by one the effects without which the sealed runs are foretold better: they only filled in for the
+/// others' laws on the open runs.
+pub(super) fn prune(
+    open: &Problem,
+    sealed: &Problem,
+    mut found: Found,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Found {
+    if sealed.case.is_without(Step::CrossValidation) {
+        return found;
+    }
+    let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x).unwrap_or(f64::INFINITY);
+    while found.best.model.effects.len() > 1 {
+        let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
+        let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
+        let best = fewer.into_iter().flatten().map(|f| (cost(&f), f)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, fewer)) = best.filter(|(c, _)| *c <= cost(&found.best)) else { break };
+        say(format!("{} foretells the sealed runs better", title(&fewer.model)));
+        found = search::settled(open, found, fewer, variants, say);
+    }
+    found
 }
 
 /// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.

@@ -167,7 +167,7 @@ fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit, winner: &C
         wider.channels.push(CaseChannel { column, output, stated_sd: Some(sd), has_free_zero });
         let mut run = winner.run.clone();
         run.measured.push(vec![f64::NAN; run.drive.times_s.len()]);
-        let noise: Vec<Noise> = noise.iter().copied().chain([Noise { sd, inflation: 1.0 }]).collect();
+        let noise: Vec<Noise> = noise.iter().copied().chain([Noise::white(sd)]).collect();
         let Some(separation) = separation(&wider, &noise, best, rival, &run) else { continue };
         if separation > SENSOR_WORTH * winner.separation && found.as_ref().is_none_or(|(_, s)| separation > *s) {
             found = Some((spec.channel.clone(), separation));

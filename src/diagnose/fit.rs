@@ -201,6 +201,14 @@ impl Problem<'_> {
         self.runs.iter().flat_map(|r| &r.measured).flatten().filter(|v| v.is_finite()).count()
     }
 
+    /// Sum of squares, in the units of [`Fit::cost`], that noise alone would leave.
+    pub fn noise_cost(&self) -> f64 {
+        let count = |c: usize| -> usize {
+            self.runs.iter().map(|r| r.measured[c].iter().filter(|v| v.is_finite()).count()).sum()
+        };
+        self.noise.iter().enumerate().map(|(c, noise)| count(c) as f64 / noise.inflation()).sum()
+    }
+
     /// The numbers of a fit without those of one effect.
     pub fn start_without(&self, fit: &Fit, effect: usize) -> Vec<f64> {
         let n = self.case.parameters.len();

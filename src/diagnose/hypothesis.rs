@@ -8,6 +8,7 @@ use super::noise::Noise;
 use super::prove::prove;
 use super::search::{Found, grow, least_gain, title};
 use super::verdict::Excess;
+use super::without::Step;
 use super::{Confirmed, verdict};
 
 /// Share of the gap on sealed runs that the terms must close beyond what was closed without them.
@@ -22,6 +23,9 @@ pub(super) fn weigh_hypotheses(
     seed: u64,
     say: &dyn Fn(String),
 ) -> Option<(Found, Proof)> {
+    if case.is_without(Step::OpenSet) {
+        return None;
+    }
     if confirmed == Confirmed::InPart || verdict::is_unknown(found, excess) {
         hypothesise(case, noise, found, proof, seed, say)
     } else {
@@ -42,7 +46,7 @@ fn simpler(
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     let least = least_gain(open.samples());
     let numbers = found.best.model.effect_numbers();
-    if numbers == 0 || found.best.cost < open.samples() as f64 + least {
+    if numbers == 0 || found.best.cost < open.noise_cost() + least {
         return None;
     }
     let (best, renewed) = with_terms(&open, found, &found.baseline, seed, say)?;

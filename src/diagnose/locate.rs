@@ -104,7 +104,7 @@ fn is_loud(residuals: &[Vec<f64>], noise: &[Noise], piece: std::ops::Range<usize
     for (channel, noise) in residuals.iter().zip(noise) {
         for r in channel[piece.clone()].iter().filter(|r| r.is_finite()) {
             sum += (r / noise.scale()).powi(2);
-            expected += 1.0 / noise.inflation;
+            expected += 1.0 / noise.inflation();
             count += 1.0;
         }
     }

@@ -31,6 +31,7 @@ mod summary;
 mod thin;
 mod verdict;
 mod weigh;
+mod without;
 
 use std::collections::BTreeMap;
 
@@ -43,6 +44,7 @@ pub use model::{Model, Placed};
 pub use noise::Noise;
 pub use search::title;
 pub use side_by_side::side_by_side;
+pub use without::Step;
 
 use confirm::Confirmed;
 use fit::Problem;
@@ -105,7 +107,7 @@ impl Outcome {
 /// When the scene cannot be simulated at all. Recordings that cannot carry a diagnosis are an answer, not an error.
 pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let preflight = {
-        let noise: Vec<Noise> = case.channels.iter().map(|_| Noise { sd: 1.0, inflation: 1.0 }).collect();
+        let noise: Vec<Noise> = case.channels.iter().map(|_| Noise::white(1.0)).collect();
         preflight::preflight(&case, &Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise })
     };
     if !preflight.unusable.is_empty() {
@@ -119,8 +121,10 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
     let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
     say("sealed runs".to_owned());
+    let open = Problem { case: &case, runs: case.subset(Sealed::Open), noise: &noise };
+    let found = confirm::prune(&open, &sealed, found, &variants, say);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let (mut found, mut proof, confirmed) = confirm::confirm(found, proof, &mut warnings);
+    let (mut found, mut proof, confirmed) = confirm::confirm(&case, found, proof, &mut warnings);
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     let so_far = (&found, &proof, confirmed);
@@ -137,9 +141,10 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     let mut effects = verdict::named(&found, &complete, excess.best.max(0.0) * whole.samples() as f64);
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     steady::report(sizes, &complete, &mut effects, &mut warnings);
+    let is_open_set = !case.is_without(Step::OpenSet);
     let verdict = match confirmed {
-        Confirmed::Yes => verdict::verdict(&found, &effects, excess),
-        Confirmed::InPart => Verdict::UnknownPhysics,
+        Confirmed::InPart if is_open_set => Verdict::UnknownPhysics,
+        _ => verdict::verdict(&found, &effects, excess, is_open_set),
     };
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
@@ -233,7 +238,7 @@ fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Det
         excess_chi2_per_sample_corrected: excess.best,
         p_value: (-0.5 * z.max(0.0).powi(2)).exp().min((-0.5 * gain.max(0.0)).exp()),
         noise_sd: by_channel(|n| n.sd),
-        noise_inflation: by_channel(|n| n.inflation),
+        noise_inflation: by_channel(|n| n.inflation()),
         smallest_detectable: smallest,
     }
 }

@@ -1,22 +1,46 @@
 //! What of a residual is noise: its size, and how far it remembers itself.
+//!
+//! A sensor's noise is taken as white noise with a part that forgets exponentially; of the residual only what is faster
+//! than half a second is asked, for what is slower may be misfit. What noise of that kind would show further away is
+//! taken off the residual's covariance there: the rest is misfit.
 
 use super::case::Case;
+use crate::recording::median_interval_s;
 
-/// Samples over which the running mean is taken that separates misfit from noise.
-const WINDOW: usize = 21;
-/// Lags over which a misfit still agrees with itself and noise no longer does.
+/// Time over which the running mean is taken that separates misfit from noise, s, and its bounds in samples.
+const WINDOW_S: f64 = 0.5;
+const WINDOW: (usize, usize) = (21, 51);
+/// Longest time over which noise remembers itself, s, and its bounds in samples.
+const MEMORY_S: f64 = 0.1;
+const MEMORY: (f64, f64) = (2.0, 10.0);
+/// Lags from which colour is read.
+const READ: usize = 26;
+/// Lags over which a misfit still agrees with itself and most of the noise no longer does.
 const LAGS: std::ops::Range<usize> = 8..17;
+/// Share by which the slow part of the noise may be misjudged: it counts as an error of the misfit.
+const COLOUR_ERROR: f64 = 0.15;
 
-/// Noise of one channel.
+/// Noise of one channel: covariance `sd² ((1 - s) [lag = 0] + s rho^lag)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Standard deviation, in the channel's unit.
+    /// Standard deviation of all of it, in the channel's unit.
     pub sd: f64,
-    /// By how much slow noise is stronger than white noise of that deviation: `(1 + rho)/(1 - rho)`, >= 1.
-    pub inflation: f64,
+    /// Share `s` of the variance that remembers.
+    pub slow_share: f64,
+    /// What is left of that from one sample to the next, `rho`.
+    pub kept: f64,
 }
 
 impl Noise {
+    pub fn white(sd: f64) -> Self {
+        Self { sd, slow_share: 0.0, kept: 0.0 }
+    }
+
+    /// By how much it is stronger against slow signals than white noise of that deviation, >= 1.
+    pub fn inflation(&self) -> f64 {
+        1.0 + 2.0 * self.slow_share * self.kept / (1.0 - self.kept)
+    }
+
     /// Whether weights from one are good enough for the other.
     pub fn is_near(&self, other: &Self) -> bool {
         (self.scale() / other.scale() - 1.0).abs() < 0.1
@@ -24,48 +48,115 @@ impl Noise {
 
     /// What a residual is divided by so that differences of its square sum are those of white noise.
     pub fn scale(&self) -> f64 {
-        self.sd * self.inflation.sqrt()
+        self.sd * self.inflation().sqrt()
+    }
+
+    /// Mean of its covariance over [`LAGS`], in units of its variance.
+    fn far(&self) -> f64 {
+        LAGS.map(|lag| self.slow_share * self.kept.powi(lag as i32)).sum::<f64>() / LAGS.len() as f64
+    }
+
+    /// Variance of that mean when it is taken from `count` samples (Bartlett), and what misjudged colour adds.
+    fn far_variance(&self, count: f64) -> f64 {
+        let (white, slow, kept) = (1.0 - self.slow_share, self.slow_share, self.kept);
+        let products = |j: usize| {
+            let decayed = kept.powi(j as i32);
+            let of_slow = slow * slow * decayed * (j as f64 + (1.0 + kept * kept) / (1.0 - kept * kept));
+            of_slow + 2.0 * white * slow * decayed + if j == 0 { white * white } else { 0.0 }
+        };
+        let pairs: f64 = LAGS.map(|k| LAGS.map(|l| products(k.abs_diff(l))).sum::<f64>()).sum();
+        pairs / (LAGS.len() as f64).powi(2) / count + (COLOUR_ERROR * self.far()).powi(2)
     }
 }
 
-/// Noise of each channel from residuals by run, channel and time: the stated deviation, else that of what is left when
-/// a running mean is taken off.
+/// Noise of each channel from residuals by run, channel and time. Its size is the stated one, else that of what is left
+/// when a running mean is taken off.
 pub fn estimate(case: &Case, residuals: &[Vec<Vec<f64>>]) -> Vec<Noise> {
+    let interval_s = case.runs.first().and_then(|r| median_interval_s(r.times_s())).unwrap_or(0.01);
     (0..case.channels.len())
         .map(|c| {
-            let fast: Vec<Vec<f64>> = residuals.iter().map(|run| without_slow_part(&run[c])).collect();
-            // A running mean takes 1/WINDOW of white noise with it.
-            let taken = 1.0 - 1.0 / WINDOW as f64;
-            let found = (mean_product(&fast, 0) / taken).sqrt();
-            let rho = correlation(&fast);
-            let sd = case.channels[c].stated_sd.unwrap_or(found).max(f64::MIN_POSITIVE);
-            Noise { sd, inflation: (1.0 + rho) / (1.0 - rho) }
+            let channel: Vec<&[f64]> = residuals.iter().map(|run| run[c].as_slice()).collect();
+            of_channel(&channel, interval_s, case.channels[c].stated_sd)
         })
         .collect()
 }
 
-/// Correlation of neighbouring samples, 0 to 0.9; what the running mean adds (-1/WINDOW) is undone.
-fn correlation(fast: &[Vec<f64>]) -> f64 {
-    let raw = mean_product(fast, 1) / mean_product(fast, 0).max(f64::MIN_POSITIVE) + 1.0 / WINDOW as f64;
-    if raw > 0.05 { raw.min(0.9) } else { 0.0 }
+/// White and slow part whose covariance, once a running mean is taken off, is nearest to what was found.
+fn of_channel(runs: &[&[f64]], interval_s: f64, stated_sd: Option<f64>) -> Noise {
+    let half = ((WINDOW_S / interval_s) as usize).clamp(WINDOW.0, WINDOW.1) / 2;
+    let fast: Vec<Vec<f64>> = runs.iter().map(|r| without_slow_part(r, half)).collect();
+    let found: Vec<f64> = (0..READ).map(|lag| mean_product(&fast, lag)).collect();
+    let filtered = |covariance: &dyn Fn(usize) -> f64| filtered(covariance, half);
+    let white = filtered(&|lag| if lag == 0 { 1.0 } else { 0.0 });
+    let longest = (MEMORY_S / interval_s).clamp(MEMORY.0, MEMORY.1);
+    let memories = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    let fits = memories.into_iter().filter(|m| *m <= longest).map(|memory| {
+        let kept = f64::exp(-1.0 / memory);
+        let slow = filtered(&|lag| kept.powi(lag as i32));
+        let [w, s] = two_parts(&white, &slow, &found);
+        let missed = found.iter().zip(white.iter().zip(&slow)).map(|(f, (a, b))| (f - w * a - s * b).powi(2)).sum();
+        (w, s, kept, missed)
+    });
+    let least = |a: (f64, f64, f64, f64), b: (f64, f64, f64, f64)| if b.3 < a.3 { b } else { a };
+    let (white, mut slow, kept, _) = fits.fold((found[0] / white[0], 0.0, 0.0, f64::INFINITY), least);
+    let mut variance = white + slow;
+    if let Some(sd) = stated_sd {
+        variance = sd * sd;
+        // What is more than was stated is misfit.
+        slow = slow.min((variance - white).max(0.0));
+    }
+    let share = slow / variance.max(f64::MIN_POSITIVE);
+    let is_seen = slow > 2.0 * error_of_slow(variance, fast.iter().flatten().filter(|v| v.is_finite()).count());
+    let sd = variance.sqrt().max(f64::MIN_POSITIVE);
+    if is_seen { Noise { sd, slow_share: share.min(1.0), kept } } else { Noise::white(sd) }
 }
 
-fn without_slow_part(r: &[f64]) -> Vec<f64> {
-    let half = WINDOW / 2;
+/// Slow part that white noise alone may seem to have.
+fn error_of_slow(variance: f64, count: usize) -> f64 {
+    2.0 * variance / (count.max(1) as f64).sqrt()
+}
+
+/// Covariance that is left of `covariance` by lag once a running mean over `2 half + 1` samples is taken off.
+fn filtered(covariance: &dyn Fn(usize) -> f64, half: usize) -> Vec<f64> {
+    let window = (2 * half + 1) as f64;
+    let at = |lag: i64| covariance(lag.unsigned_abs() as usize);
+    let (half, full) = (half as i64, 2 * half as i64);
+    let one = |lag: i64| {
+        let once: f64 = (-half..=half).map(|j| at(lag - j)).sum();
+        let twice: f64 = (-full..=full).map(|j| (window - j.abs() as f64) * at(lag - j)).sum();
+        at(lag) - 2.0 * once / window + twice / (window * window)
+    };
+    (0..READ as i64).map(one).collect()
+}
+
+/// Least squares of `w a + s b = y` with neither below zero.
+fn two_parts(a: &[f64], b: &[f64], y: &[f64]) -> [f64; 2] {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    let (aa, ab, bb, ay, by) = (dot(a, a), dot(a, b), dot(b, b), dot(a, y), dot(b, y));
+    let determinant = aa * bb - ab * ab;
+    let (w, s) = ((ay * bb - by * ab) / determinant, (by * aa - ay * ab) / determinant);
+    match (w > 0.0, s > 0.0) {
+        (true, true) => [w, s],
+        (false, true) => [0.0, (by / bb).max(0.0)],
+        _ => [(ay / aa).max(0.0), 0.0],
+    }
+}
+
+fn without_slow_part(r: &[f64], half: usize) -> Vec<f64> {
     (0..r.len())
         .map(|i| {
             if i < half || i + half >= r.len() {
                 return f64::NAN;
             }
-            r[i] - r[i - half..=i + half].iter().sum::<f64>() / WINDOW as f64
+            r[i] - r[i - half..=i + half].iter().sum::<f64>() / (2 * half + 1) as f64
         })
         .collect()
 }
 
 /// Mean of `r_i r_(i+lag)` over what is finite.
-fn mean_product(runs: &[Vec<f64>], lag: usize) -> f64 {
+fn mean_product<R: AsRef<[f64]>>(runs: &[R], lag: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0usize);
-    for r in runs {
+    for r in runs.iter().map(AsRef::as_ref) {
         for (a, b) in r.iter().zip(&r[lag.min(r.len())..]) {
             let product = a * b;
             if product.is_finite() {
@@ -77,20 +168,20 @@ fn mean_product(runs: &[Vec<f64>], lag: usize) -> f64 {
     if count == 0 { 0.0 } else { sum / count as f64 }
 }
 
-/// Excess of residuals over noise, per sample in units of the noise's variance, and its standard error under white
-/// noise: the mean of `r_i r_(i+k)` over lags that noise does not reach. Whatever the noise's size, misfit stands out.
+/// Excess of residuals over noise, per sample in units of the noise's variance, and its standard error: the mean of
+/// `r_i r_(i+k)` over lags that most of the noise does not reach, less what does. Whatever the noise's size, misfit
+/// stands out.
 pub fn structured_excess(residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> (f64, f64) {
     let lags = LAGS.len() as f64;
     let (mut sum, mut weight, mut variance) = (0.0, 0.0, 0.0);
     for (c, noise) in noise.iter().enumerate() {
-        let channel: Vec<Vec<f64>> = residuals.iter().map(|run| run[c].clone()).collect();
-        let count: f64 = channel.iter().flatten().filter(|r| r.is_finite()).count() as f64;
+        let channel: Vec<&[f64]> = residuals.iter().map(|run| run[c].as_slice()).collect();
+        let count: f64 = channel.iter().copied().flatten().filter(|r| r.is_finite()).count() as f64;
         let power = LAGS.map(|lag| mean_product(&channel, lag)).sum::<f64>() / lags;
         let own = mean_product(&channel, 0) / (noise.sd * noise.sd);
-        sum += count * power / (noise.sd * noise.sd);
+        sum += count * (power / (noise.sd * noise.sd) - noise.far());
         weight += count;
-        // Each lag's mean has variance own²/n; neighbouring lags share nothing for white noise.
-        variance += count * own.min(2.0).powi(2) * noise.inflation / lags;
+        variance += count.powi(2) * own.min(2.0).powi(2) * noise.far_variance(count.max(1.0));
     }
     if weight == 0.0 { (0.0, f64::INFINITY) } else { (sum / weight, variance.sqrt() / weight) }
 }
@@ -110,7 +201,7 @@ mod tests {
 
     #[test]
     fn misfit_stands_out_of_noise_of_any_size() {
-        let unit = [Noise { sd: 1.0, inflation: 1.0 }];
+        let unit = [Noise::white(1.0)];
         let quiet = vec![vec![noise(5000, 1)]];
         let (excess, error) = structured_excess(&quiet, &unit);
         assert!(excess.abs() < 4.0 * error, "{excess} {error}");
@@ -120,18 +211,42 @@ mod tests {
         assert!((excess - 0.25).abs() < 0.03, "{excess}");
     }
 
+    /// White noise and noise that forgets over `memory` samples, of unit variance together.
+    fn coloured(n: usize, slow_share: f64, memory: f64, seed: u64) -> Vec<f64> {
+        let kept = f64::exp(-1.0 / memory);
+        let mut state = 0.0;
+        let slow = noise(n, seed).into_iter().map(|x| {
+            state = kept * state + (1.0 - kept * kept).sqrt() * x;
+            state
+        });
+        let white = noise(n, seed + 1);
+        slow.zip(white).map(|(s, w)| slow_share.sqrt() * s + (1.0 - slow_share).sqrt() * w).collect()
+    }
+
     #[test]
-    fn coloured_noise_is_seen_as_such() {
-        let mut last = 0.0;
-        let coloured: Vec<f64> = noise(20_000, 7)
-            .iter()
-            .map(|n| {
-                last = 0.6 * last + n;
-                last
-            })
-            .collect();
-        let rho = correlation(&[without_slow_part(&coloured)]);
-        assert!((rho - 0.6).abs() < 0.1, "{rho}");
-        assert_eq!(correlation(&[without_slow_part(&noise(20_000, 3))]), 0.0);
+    fn colour_is_read_and_is_no_misfit() {
+        for (slow_share, memory, seed) in [(0.5, 2.0, 3), (0.7, 8.0, 5), (0.3, 5.0, 9), (0.7, 4.0, 11)] {
+            let r = coloured(15_000, slow_share, memory, seed);
+            let found = of_channel(&[&r], 0.01, None);
+            let kept = f64::exp(-1.0 / memory);
+            let inflation = 1.0 + 2.0 * slow_share * kept / (1.0 - kept);
+            assert!((found.inflation() / inflation - 1.0).abs() < 0.3, "{found:?} {inflation}");
+            assert!((found.sd - 1.0).abs() < 0.06, "{found:?}");
+            let (excess, error) = structured_excess(&[vec![r]], &[found]);
+            assert!(excess.abs() < 4.0 * error, "{excess} {error} {found:?}");
+            assert!(error < 0.04, "{error}");
+        }
+    }
+
+    #[test]
+    fn white_noise_has_no_colour_and_a_slow_misfit_gives_it_none() {
+        let white = noise(20_000, 3);
+        assert!(of_channel(&[&white], 0.01, None).inflation() < 1.15);
+        let wave = |i: usize| (i as f64 * 0.01 * std::f64::consts::TAU * 0.15).sin();
+        let with_misfit: Vec<f64> = white.iter().enumerate().map(|(i, n)| n + wave(i)).collect();
+        let found = of_channel(&[&with_misfit], 0.01, Some(1.0));
+        assert!(found.inflation() < 1.15, "{found:?}");
+        let (excess, _) = structured_excess(&[vec![with_misfit]], &[found]);
+        assert!((excess - 0.5).abs() < 0.03, "{excess}");
     }
 }

@@ -11,6 +11,7 @@ use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::model::{Model, Placed, Sides};
 use super::normal::Rows;
+use super::without::Step;
 
 /// At most this many effects in one answer.
 const MOST_EFFECTS: usize = 4;
@@ -28,6 +29,11 @@ const LEAST_GAIN: f64 = 35.0;
 
 /// Share of all that is explained below which one more effect may be no more than the others' laws being idealised.
 const LEAST_OF_ALL: f64 = 1e-3;
+
+/// One more effect explains this share of all that is explained, or that share of what was left over: laws that are
+/// idealised leave something that others imitate in part.
+const FAIR_OF_ALL: f64 = 0.03;
+const FAIR_OF_LEFT: f64 = 0.5;
 
 /// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
 const BRANCH_TIE: f64 = 0.02;
@@ -160,8 +166,8 @@ pub(super) fn search(
         let least = least_gain(samples).max(LEAST_OF_ALL * explained);
         let Some(screening) = screen(problem, &best, variants) else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
-        let winner = simplest(&refits, &best, baseline.cost);
-        let Some(winner) = winner.filter(|f| best.cost - f.cost > least) else { break };
+        let winner = simplest(&refits, &best, baseline.cost).filter(|f| best.cost - f.cost > least);
+        let Some(winner) = winner.filter(|f| explains_its_share(problem, baseline.cost, &best, f)) else { break };
         if !foretells(problem, &best, winner) {
             say(format!("{}: does not foretell runs it was not fitted to", title(&winner.model)));
             break;
@@ -174,6 +180,24 @@ pub(super) fn search(
         }
     }
     Found { baseline, best, rivals, screened }
+}
+
+/// What was found with another best model, and the rivals of that.
+pub(super) fn settled(problem: &Problem, found: Found, best: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    let (best, rivals) = settle(problem, best, variants, least_gain(problem.samples()), say);
+    Found { best, rivals, ..found }
+}
+
+/// Whether what one more effect explains is more than what another's idealised law may leave over.
+fn explains_its_share(problem: &Problem, baseline_cost: f64, before: &Fit, after: &Fit) -> bool {
+    let (gain, all) = (before.cost - after.cost, baseline_cost - after.cost);
+    let left = before.cost - problem.noise_cost();
+    adds_branch(before, after) || gain > FAIR_OF_ALL * all || gain > FAIR_OF_LEFT * left
+}
+
+/// Whether a fit only gives an effect that is there already one more branch.
+fn adds_branch(before: &Fit, after: &Fit) -> bool {
+    after.model.effects.last().is_some_and(|e| before.model.effects.contains(e))
 }
 
 /// Most terms of a hypothesis.
@@ -204,12 +228,14 @@ pub(super) fn grow(
 fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
     let cheapest = refits.first()?;
     let tie = cheapest.cost + BRANCH_TIE * (baseline_cost - cheapest.cost).max(0.0);
-    let adds_branch = |f: &&Fit| f.model.effects.last().is_some_and(|e| before.model.effects.contains(e));
-    refits.iter().take_while(|f| f.cost <= tie).find(adds_branch).or(Some(cheapest))
+    refits.iter().take_while(|f| f.cost <= tie).find(|f| adds_branch(before, f)).or(Some(cheapest))
 }
 
 /// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
 fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    if problem.case.is_without(Step::CrossValidation) {
+        return true;
+    }
     let gain = |(rest, left_out): (Problem, Problem)| -> Option<f64> {
         let cost = |fit: &Fit| {
             let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;

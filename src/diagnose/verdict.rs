@@ -35,9 +35,9 @@ pub fn is_unknown(found: &Found, excess: Excess) -> bool {
     loud(excess.best) && excess.best > left
 }
 
-/// What the search and what is left amount to.
-pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess) -> Verdict {
-    if is_unknown(found, excess) {
+/// What the search and what is left amount to; in a closed set nothing is unknown.
+pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess, is_open_set: bool) -> Verdict {
+    if is_open_set && is_unknown(found, excess) {
         return Verdict::UnknownPhysics;
     }
     if found.best.model.effects.is_empty() {

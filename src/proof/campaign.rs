@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::ProofError;
 use crate::conceal::{Hiding, Rig, SEALED, draw, seal, write_case};
-use crate::diagnose::{Case, Options, diagnose, write_answer};
+use crate::diagnose::{Case, Options, Step, diagnose, write_answer};
 use crate::recording::write_whole;
 
 /// How many cases, and from which seed they are drawn.
@@ -79,6 +79,11 @@ impl Folders {
         Self { cases: out.join("cases"), answers: out.join("answers") }
     }
 
+    /// The same cases with other answers.
+    pub fn with_answers(&self, answers: PathBuf) -> Self {
+        Self { cases: self.cases.clone(), answers }
+    }
+
     pub fn holdout(&self, name: &str) -> PathBuf {
         self.cases.join(format!("{name}.holdout.csv"))
     }
@@ -115,14 +120,17 @@ pub fn conceal_case(planned: &Planned, folders: &Folders) -> Result<String, Proo
     Ok(write_case(&drawn, &folders.cases)?)
 }
 
-/// Diagnoses a case from what everyone may see and writes the answer.
+/// Diagnoses a case from what everyone may see, a step left out if one is given, and writes the answer.
 ///
 /// # Errors
 /// A folder that cannot be read or written.
-pub fn answer_case(name: &str, folders: &Folders) -> Result<(), ProofError> {
+pub fn answer_case(name: &str, folders: &Folders, without: Option<Step>) -> Result<(), ProofError> {
     let begun = std::time::Instant::now();
     let recordings = folders.cases.join(name);
-    let case = Case::load(&[recordings.as_path()], None, &[])?;
+    let mut case = Case::load(&[recordings.as_path()], None, &[])?;
+    if let Some(step) = without {
+        case.leave_out(step);
+    }
     let outcome = diagnose(case, Options { seed: 1 }, &|_| {})?;
     let took = begun.elapsed().as_secs_f64();
     write_answer(&outcome, &folders.answers.join(name))?;

@@ -65,6 +65,7 @@ pub fn metrics(rows: &[Row]) -> Vec<Metric> {
     all.extend(naming(rows, &one));
     all.extend(unknown(rows));
     all.extend(gaps(&hides));
+    all.extend(settled(rows));
     let wrong = ("confidently_wrong", "an effect named with > 0.9 that is not there");
     all.push(share(wrong, &select(rows, |_| true), Row::is_confidently_wrong, Goal::AtMost(0.02)));
     all.push(sizes(&one));
@@ -183,6 +184,17 @@ fn gaps(hides: &[&Row]) -> [Metric; 2] {
     [
         one(("gap_median", "gap closed on what was kept back, median"), 0.5, Goal::AtLeast(0.95)),
         one(("gap_tenth", "gap closed on what was kept back, 10th percentile"), 0.1, Goal::AtLeast(0.8)),
+    ]
+}
+
+/// Ambiguous answers that one more run settles rightly: the proposed one, and one drawn.
+fn settled(rows: &[Row]) -> [Metric; 2] {
+    let tried = select(rows, |r| r.settled.is_some());
+    let proposed = |r: &Row| r.settled.as_ref().is_some_and(|s| s.proposed.is_right);
+    let random = |r: &Row| r.settled.as_ref().is_some_and(|s| s.random.is_right);
+    [
+        share(("settled", "ambiguous, settled by the proposed experiment"), &tried, proposed, Goal::AtLeast(0.8)),
+        share(("settled_random", "the same with a random programme"), &tried, random, Goal::AtLeast(0.0)),
     ]
 }
 

@@ -7,6 +7,7 @@ mod campaign;
 mod holdout;
 mod metrics;
 mod row;
+mod settle;
 mod table;
 
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 pub use campaign::{Folders, Plan, Planned, answer_case, conceal_case};
 pub use metrics::{Metric, metrics};
 pub use row::{Answered, Row, open, row};
+pub use settle::{After, Settled, settle};
 pub use table::page;
 
 use crate::conceal::ConcealError;

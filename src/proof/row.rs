@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ProofError;
 use super::campaign::Folders;
 use super::holdout::gap_on_holdout;
+use super::settle::Settled;
 use crate::conceal::{Decoy, Hiding, Rig, SEALED, Secret, Truth, seal};
 use crate::diagnose::{Diagnosis, Verdict};
 
@@ -48,6 +49,9 @@ pub struct Row {
     pub excess: f64,
     /// Share of the gap between baseline and noise that is closed on the recording kept back.
     pub gap_closed: Option<f64>,
+    /// What the proposed experiment made of an ambiguous answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settled: Option<Settled>,
     /// How long it took, where that is known.
     pub seconds: Option<f64>,
 }
@@ -94,12 +98,20 @@ pub fn open(name: &str, published: &str, folders: &Folders) -> Result<Truth, Pro
 /// # Errors
 /// Files that are not there or hold something else.
 pub fn row(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
+    let mut row = row_of_answer(truth, folders)?;
+    let folder = folders.answers.join(&truth.name);
+    if truth.hiding != Hiding::Nothing && folder.join("scene.toml").is_file() {
+        row.gap_closed = Some(gap_on_holdout(truth, &folder, &folders.holdout(&truth.name))?);
+    }
+    Ok(row)
+}
+
+/// The row of a case without what its scenes are worth on the recording kept back.
+pub(super) fn row_of_answer(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
     let folder = folders.answers.join(&truth.name);
     let path = folder.join("diagnosis.json");
     let diagnosis: Diagnosis = serde_json::from_str(&read(&path)?)
         .map_err(|e| ProofError::Format { file: path.clone(), message: e.to_string() })?;
-    let hides = truth.hiding != Hiding::Nothing && folder.join("scene.toml").is_file();
-    let gap_closed = if hides { Some(gap_on_holdout(truth, &folder, &folders.holdout(&truth.name))?) } else { None };
     Ok(Row {
         name: truth.name.clone(),
         rig: truth.rig,
@@ -112,7 +124,8 @@ pub fn row(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
         element: diagnosis.location.element.clone(),
         effects: diagnosis.effects.iter().map(|e| answered(e, truth)).collect(),
         excess: diagnosis.detection.excess_chi2_per_sample,
-        gap_closed,
+        gap_closed: None,
+        settled: None,
         seconds: folders.seconds(&truth.name),
     })
 }
