@@ -1,5 +1,6 @@
 //! Commands of `smam`. Everything they do is library code; here are only words, files and progress.
 
+mod ceiling;
 mod check;
 mod compare;
 mod conceal;

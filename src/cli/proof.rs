@@ -11,6 +11,7 @@ use smam::diagnose::{Step, Verdict};
 use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, settle};
 
 use super::CliError;
+use super::ceiling::write_ceiling;
 use super::diagnose::StepName;
 use super::score::{open_all, read_seals, write_score, write_seals};
 
@@ -29,6 +30,9 @@ pub struct ProofArguments {
     /// Diagnose with a step left out; answers and score go to DIR/without_STEP
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
+    /// Compute as well what could be known at best of so many visible cases that hide one thing: ceiling.jsonl
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    ceiling: usize,
     /// Where cases, answers and score go; what is there already is kept
     #[arg(long, value_name = "DIR", default_value = "out/proof")]
     out: PathBuf,
@@ -52,6 +56,9 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let mut rows = open_all(&seals, &folders)?;
     settle_all(&mut rows, &seals, &folders, &out)?;
     write_score(&rows, &out)?;
+    if arguments.ceiling > 0 {
+        write_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 

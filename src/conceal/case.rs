@@ -5,11 +5,11 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::ConcealError;
+use super::begin::{Begun, is_shown, log_uniform};
 use super::noise::ChannelNoise;
 use super::plant::Plant;
-use super::programme::{Drive, SAMPLE_S, Wave, programme};
-use super::secrets::{KINDS, Kind, Part, Secret};
-use super::size::Sizing;
+use super::programme::{Drive, SAMPLE_S, Wave};
+use super::secrets::{KINDS, Kind, Secret};
 use super::solve::solve;
 use super::stock::{Calibration, Rig};
 use crate::recording::{Channel, Recording};
@@ -77,33 +77,17 @@ pub struct Drawn {
     pub holdout: Recording,
 }
 
-/// The waveform that no diagnosis sees.
-const HOLDOUT: Wave = Wave::TwoTone;
-/// Least and greatest misfit per sample that a secret is given, in units of the noise's variance.
-const EXCESS: (f64, f64) = (0.03, 30.0);
-
 /// Draws a case and makes its recordings.
 ///
 /// # Errors
 /// A plant that the solver cannot follow.
 pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, ConcealError> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let decoys = draw_decoys(rig, &mut random);
-    let calibration = draw_calibration(decoys.contains(&Decoy::WrongPriors), &mut random);
-    let is_noise_coloured = random.random_bool(0.4);
-    let noise: Vec<ChannelNoise> =
-        rig.outputs().iter().map(|o| ChannelNoise::draw(o.noise_sd, is_noise_coloured, &mut random)).collect();
-    let is_noise_stated = random.random_bool(0.6);
-    let waves = draw_waves(&mut random);
-    let drives: Vec<Vec<Drive>> = waves.iter().map(|w| programme(rig, *w, w.duration_s(), &mut random)).collect();
-    let unseen = programme(rig, HOLDOUT, HOLDOUT.duration_s(), &mut random);
-    let wanted_excess = log_uniform(EXCESS.0, EXCESS.1, &mut random);
-    let mut secrets = draw_secrets(rig, hiding, decoys.contains(&Decoy::NoPressure), &mut random);
+    let (begun, mut random) = Begun::draw(rig, seed);
+    let mut secrets = draw_secrets(rig, hiding, begun.decoys.contains(&Decoy::NoPressure), &mut random);
     if !secrets.is_empty() {
-        let shown: Vec<bool> = rig.outputs().iter().map(|o| is_shown(o.column, &decoys)).collect();
-        let sizing = Sizing::new(rig, calibration, &drives, &noise, &shown)?;
+        let sizing = begun.sizing()?;
         for secret in &mut secrets {
-            sizing.scale(secret, wanted_excess)?;
+            sizing.scale(secret, begun.wanted_excess)?;
         }
     }
     let salt = format!("{:032x}", random.random::<u128>());
@@ -115,62 +99,29 @@ pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, Co
         rig,
         hiding,
         secrets,
-        calibration,
-        noise,
-        is_noise_coloured,
-        is_noise_stated,
-        decoys,
-        waves,
-        wanted_excess,
+        calibration: begun.calibration,
+        noise: begun.noise,
+        is_noise_coloured: begun.is_noise_coloured,
+        is_noise_stated: begun.is_noise_stated,
+        decoys: begun.decoys,
+        waves: begun.waves,
+        wanted_excess: begun.wanted_excess,
     };
     let mut begun_s = 0.0;
     let mut runs = Vec::new();
-    for (wave, drives) in truth.waves.iter().zip(&drives) {
+    for (wave, drives) in truth.waves.iter().zip(&begun.drives) {
         let recording = record(&truth, drives, begun_s, &mut random)?;
         runs.push((format!("{}.csv", wave.name()), recording));
         begun_s += drives[0].positions_m.len() as f64 * SAMPLE_S;
     }
     let holdout =
-        record(&Truth { decoys: pressure_only(&truth.decoys), ..truth.clone() }, &unseen, begun_s, &mut random)?;
+        record(&Truth { decoys: pressure_only(&truth.decoys), ..truth.clone() }, &begun.unseen, begun_s, &mut random)?;
     Ok(Drawn { truth, runs, holdout })
 }
 
 /// The holdout is whole; what the rig does not record it does not record there either.
 fn pressure_only(decoys: &[Decoy]) -> Vec<Decoy> {
     decoys.iter().copied().filter(|d| *d == Decoy::NoPressure).collect()
-}
-
-fn draw_decoys(rig: Rig, random: &mut ChaCha8Rng) -> Vec<Decoy> {
-    let mut decoys = Vec::new();
-    for (decoy, share) in
-        [(Decoy::WrongPriors, 0.15), (Decoy::NoPressure, 0.12), (Decoy::Gaps, 0.15), (Decoy::UnevenSampling, 0.1)]
-    {
-        let possible = decoy != Decoy::NoPressure || rig == Rig::MuscleBench;
-        if random.random_bool(share) && possible {
-            decoys.push(decoy);
-        }
-    }
-    decoys
-}
-
-fn draw_calibration(at_the_ends: bool, random: &mut ChaCha8Rng) -> Calibration {
-    let mut factor = || {
-        if at_the_ends {
-            let far: f64 = random.random_range(0.3..0.38);
-            1.0 + if random.random_bool(0.5) { far } else { -far }
-        } else {
-            random.random_range(0.8..1.2)
-        }
-    };
-    Calibration::STOCK.scaled(std::array::from_fn(|_| factor()))
-}
-
-/// Held levels always, between two of the others.
-fn draw_waves(random: &mut ChaCha8Rng) -> Vec<Wave> {
-    let mut others = vec![Wave::Sine, Wave::Chirp, Wave::Triangle, Wave::Wander];
-    let first = others.remove(random.random_range(0..others.len()));
-    let second = others.remove(random.random_range(0..others.len()));
-    vec![first, Wave::Steps, second]
 }
 
 fn draw_secrets(rig: Rig, hiding: Hiding, no_pressure: bool, random: &mut ChaCha8Rng) -> Vec<Secret> {
@@ -205,35 +156,13 @@ fn place(kind: &Kind, rig: Rig, no_pressure: bool, random: &mut ChaCha8Rng) -> S
     if kind.name == "jaw_play" {
         channel = 1;
     }
-    let column = rig.outputs()[channel].column;
-    let sign = if kind.is_signed && random.random_bool(0.5) { -1.0 } else { 1.0 };
-    let (low, high) = kind.second;
-    // A sensor's error is counted in its channel's unit.
-    let unit = if kind.part == Part::Sensor && kind.key != "time_constant_s" && kind.key != "gain_error" {
-        rig.outputs()[channel].noise_sd / 0.02
-    } else {
-        1.0
-    };
-    let part = if kind.name == "jaw_play" { Part::Mechanism } else { kind.part };
-    Secret {
-        name: kind.name.to_owned(),
-        element: part.on(rig, muscle),
-        channel: (kind.part == Part::Sensor).then(|| column.to_owned()),
-        in_catalogue: kind.in_catalogue,
-        is_altered: kind.in_catalogue && random.random_bool(0.4),
-        key: kind.key.to_owned(),
-        size: sign * kind.typical * unit,
-        second: log_uniform(low, high * (1.0 + 1e-12), random),
-        muscle,
+    let mut secret = Secret::typical(kind, rig, muscle, channel);
+    if kind.is_signed && random.random_bool(0.5) {
+        secret.size = -secret.size;
     }
-}
-
-fn log_uniform(low: f64, high: f64, random: &mut ChaCha8Rng) -> f64 {
-    low * (high / low).powf(random.random_range(0.0..1.0))
-}
-
-fn is_shown(column: &str, decoys: &[Decoy]) -> bool {
-    !(decoys.contains(&Decoy::NoPressure) && column.starts_with("pressure"))
+    secret.is_altered = kind.in_catalogue && random.random_bool(0.4);
+    secret.second = log_uniform(kind.second.0, kind.second.1 * (1.0 + 1e-12), random);
+    secret
 }
 
 /// The plant with what a case hides.

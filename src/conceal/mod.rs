@@ -4,7 +4,9 @@
 //! the laws, noise with colour. It imports nothing of the simulation or the diagnosis, and the diagnosis imports nothing
 //! of it.
 
+mod begin;
 mod case;
+mod ceiling;
 mod more;
 mod noise;
 mod plant;
@@ -20,6 +22,7 @@ mod write;
 use std::path::PathBuf;
 
 pub use case::{Decoy, Drawn, Hiding, Truth, draw};
+pub use ceiling::{Ceiling, ceiling};
 pub use more::{record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;

@@ -25,6 +25,12 @@ impl ChannelNoise {
         Self { sd, slow_share, correlation_s: random.random_range(0.02..0.08) }
     }
 
+    /// Deviation of white noise that would hide a slow signal as well.
+    pub fn against_slow_signals(&self) -> f64 {
+        let kept = (-SAMPLE_S / self.correlation_s).exp();
+        self.sd * (1.0 + 2.0 * self.slow_share * kept / (1.0 - kept)).sqrt()
+    }
+
     /// So many samples at the rig's interval: white noise and an Ornstein-Uhlenbeck process beside it.
     pub fn series(&self, count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
         let mut unit = || -> f64 { StandardNormal.sample(random) };

@@ -149,6 +149,27 @@ impl Kind {
 }
 
 impl Secret {
+    /// A secret of a kind at its typical size, before anything of it is drawn; on a channel if it is a sensor's.
+    pub fn typical(kind: &Kind, rig: Rig, muscle: usize, channel: usize) -> Self {
+        let output = &rig.outputs()[channel];
+        let is_sensor = kind.part == Part::Sensor;
+        // A sensor's error is counted in its channel's unit.
+        let in_units = is_sensor && kind.key != "time_constant_s" && kind.key != "gain_error";
+        let unit = if in_units { output.noise_sd / 0.02 } else { 1.0 };
+        let part = if kind.name == "jaw_play" { Part::Mechanism } else { kind.part };
+        Self {
+            name: kind.name.to_owned(),
+            element: part.on(rig, muscle),
+            channel: is_sensor.then(|| output.column.to_owned()),
+            in_catalogue: kind.in_catalogue,
+            is_altered: false,
+            key: kind.key.to_owned(),
+            size: kind.typical * unit,
+            second: (kind.second.0 * kind.second.1).sqrt(),
+            muscle,
+        }
+    }
+
     /// Puts the physics into a plant; what a sensor does is put upon its channel later.
     pub fn install(&self, plant: &mut Plant) {
         if let Some(kind) = KINDS.iter().find(|k| k.name == self.name) {

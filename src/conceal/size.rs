@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::ConcealError;
-use super::noise::ChannelNoise;
 use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S};
 use super::secrets::{KINDS, Secret};
@@ -11,13 +10,14 @@ use super::solve::solve;
 use super::stock::{Calibration, Rig};
 
 /// The beginnings of a rig's own runs, on which secrets are weighed.
-pub struct Sizing<'a> {
+pub struct Sizing {
     rig: Rig,
     calibration: Calibration,
     /// When each run begins, s after the first one, and what its plungers do.
     runs: Vec<(f64, Vec<Drive>)>,
-    noise: &'a [ChannelNoise],
-    shown: &'a [bool],
+    /// What one unit of each output is, and whether it is recorded.
+    unit: Vec<f64>,
+    shown: Vec<bool>,
     /// Outputs with nothing hidden, and a basis of what the rig's own numbers can do to them.
     plain: DVector<f64>,
     basis: DMatrix<f64>,
@@ -29,11 +29,11 @@ const WEIGHED_S: f64 = 30.0;
 /// Share by which each calibrated number is moved for its slope.
 const SHARE: f64 = 0.01;
 /// Every so many samples are weighed: misfits are slow.
-const STRIDE: usize = 7;
+pub const STRIDE: usize = 7;
 const ROUNDS: usize = 3;
 
-impl<'a> Sizing<'a> {
-    /// `runs`: what the plungers do, run by run; `shown`: which outputs are recorded.
+impl Sizing {
+    /// `runs`: what the plungers do, run by run; `unit`: what counts as one of each output, its noise.
     ///
     /// # Errors
     /// A plant that the solver cannot follow.
@@ -41,8 +41,8 @@ impl<'a> Sizing<'a> {
         rig: Rig,
         calibration: Calibration,
         runs: &[Vec<Drive>],
-        noise: &'a [ChannelNoise],
-        shown: &'a [bool],
+        unit: Vec<f64>,
+        shown: Vec<bool>,
     ) -> Result<Self, ConcealError> {
         let mut begun_s = 0.0;
         let beginning = |run: &Vec<Drive>| {
@@ -53,7 +53,7 @@ impl<'a> Sizing<'a> {
         };
         let runs = runs.iter().map(beginning).collect();
         let (plain, basis) = (DVector::zeros(0), DMatrix::zeros(0, 0));
-        let mut sizing = Self { rig, calibration, runs, noise, shown, plain, basis };
+        let mut sizing = Self { rig, calibration, runs, unit, shown, plain, basis };
         sizing.plain = sizing.weighted(None, calibration)?;
         let decomposed = sizing.slopes()?.svd(true, false);
         sizing.basis = decomposed.u.ok_or_else(|| ConcealError::Solver("slopes without a basis".to_owned()))?;
@@ -79,7 +79,7 @@ impl<'a> Sizing<'a> {
         Ok(())
     }
 
-    /// What a secret changes beyond what the rig's own numbers could, in units of the noise.
+    /// What a secret changes beyond what the rig's own numbers could, in units of the outputs, one row per sample weighed.
     ///
     /// # Errors
     /// A plant that the solver cannot follow.
@@ -97,7 +97,7 @@ impl<'a> Sizing<'a> {
         Ok(DMatrix::from_columns(&columns.collect::<Result<Vec<_>, ConcealError>>()?))
     }
 
-    /// Outputs in units of the noise, thinned.
+    /// Outputs in their units, thinned.
     fn weighted(&self, secret: Option<&Secret>, calibration: Calibration) -> Result<DVector<f64>, ConcealError> {
         let mut plant = Plant::new(self.rig, calibration);
         if let Some(secret) = secret {
@@ -112,7 +112,7 @@ impl<'a> Sizing<'a> {
                 if let Some(secret) = secret.filter(|s| s.channel.as_deref() == Some(column)) {
                     secret.corrupt(&mut series, SAMPLE_S, *begun_s);
                 }
-                all.extend(series.iter().step_by(STRIDE).map(|x| x / self.noise[i].sd));
+                all.extend(series.iter().step_by(STRIDE).map(|x| x / self.unit[i]));
             }
         }
         Ok(DVector::from_vec(all))

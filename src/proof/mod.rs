@@ -13,7 +13,7 @@ mod table;
 use std::path::PathBuf;
 
 pub use campaign::{Folders, Plan, Planned, answer_case, conceal_case};
-pub use metrics::{Metric, metrics};
+pub use metrics::{Metric, VISIBLE, metrics};
 pub use row::{Answered, Row, open, row};
 pub use settle::{After, Settled, settle};
 pub use table::page;
