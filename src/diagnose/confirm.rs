@@ -6,9 +6,9 @@ use super::candidates::Variant;
 use super::case::Case;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
-use super::prove;
 use super::search::{self, Found, title};
 use super::without::Step;
+use super::{prove, steady};
 use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.
@@ -45,8 +45,11 @@ pub fn confirm(
     (found, proof, Confirmed::Yes)
 }
 
+/// An effect is taken back when the sealed runs are left with this share less of what is not noise.
+const LEFT_LESS: f64 = 0.1;
+
 /// Takes back one by one the effects without which the sealed runs are foretold better: they only filled in for the
-/// others' laws on the open runs.
+/// others' laws on the open runs. So do those that most runs by themselves would have with the other sign.
 pub(super) fn prune(
     open: &Problem,
     sealed: &Problem,
@@ -59,11 +62,25 @@ pub(super) fn prune(
     }
     let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x).unwrap_or(f64::INFINITY);
     while found.best.model.effects.len() > 1 {
+        if let Some(i) = steady::stands_in(sealed.case, &found.best, sealed.noise) {
+            let start = open.start_without(&found.best, i);
+            let Some(fewer) = open.fit(&found.best.model.without(i), &start) else { break };
+            say(format!("{}: most runs ask for the other sign", found.best.model.effects[i].title()));
+            found = search::settled(open, found, fewer, variants, say);
+            continue;
+        }
         let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
         let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
         let best = fewer.into_iter().flatten().map(|f| (cost(&f), f)).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, fewer)) = best.filter(|(c, _)| *c <= cost(&found.best)) else { break };
-        say(format!("{} foretells the sealed runs better", title(&fewer.model)));
+        let with_all = cost(&found.best);
+        let enough = with_all - LEFT_LESS * (with_all - sealed.noise_cost()).max(0.0);
+        let Some((_, fewer)) = best.filter(|(c, _)| *c <= enough) else { break };
+        say(format!(
+            "{} foretells the sealed runs better, chi2 {:.0} instead of {:.0}",
+            title(&fewer.model),
+            cost(&fewer),
+            cost(&found.best)
+        ));
         found = search::settled(open, found, fewer, variants, say);
     }
     found

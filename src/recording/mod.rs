@@ -26,6 +26,6 @@ pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FI
 pub use folder_keys::did_you_mean;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
-pub use survey::{Gap, Missing, Survey, gap_limit_s, median_interval_s, survey};
+pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
 pub use whole_file::write_whole;

@@ -128,7 +128,7 @@ pub fn median_interval_s(time_s: &[f64]) -> Option<f64> {
 }
 
 /// The median, of the two middle values the upper; reorders `values`.
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
+pub fn median(values: &mut [f64]) -> Option<f64> {
     if values.is_empty() {
         return None;
     }
