@@ -6,9 +6,9 @@ use super::candidates::Variant;
 use super::case::Case;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
+use super::prove;
 use super::search::{self, Found, title};
 use super::without::Step;
-use super::{prove, steady};
 use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.
@@ -49,7 +49,7 @@ pub fn confirm(
 const LEFT_LESS: f64 = 0.1;
 
 /// Takes back one by one the effects without which the sealed runs are foretold better: they only filled in for the
-/// others' laws on the open runs. So do those that most runs by themselves would have with the other sign.
+/// others' laws on the open runs.
 pub(super) fn prune(
     open: &Problem,
     sealed: &Problem,
@@ -62,13 +62,6 @@ pub(super) fn prune(
     }
     let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x).unwrap_or(f64::INFINITY);
     while found.best.model.effects.len() > 1 {
-        if let Some(i) = steady::stands_in(sealed.case, &found.best, sealed.noise) {
-            let start = open.start_without(&found.best, i);
-            let Some(fewer) = open.fit(&found.best.model.without(i), &start) else { break };
-            say(format!("{}: most runs ask for the other sign", found.best.model.effects[i].title()));
-            found = search::settled(open, found, fewer, variants, say);
-            continue;
-        }
         let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
         let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
         let best = fewer.into_iter().flatten().map(|f| (cost(&f), f)).min_by(|a, b| a.0.total_cmp(&b.0));

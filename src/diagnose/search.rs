@@ -180,7 +180,7 @@ pub(super) fn search(
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
 /// Share of the misfit that is much.
-const MUCH: f64 = 0.08;
+const MUCH: f64 = 0.1;
 
 /// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
 fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Vec<&'a Fit> {

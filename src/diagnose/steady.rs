@@ -37,19 +37,6 @@ pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     sizes
 }
 
-/// An effect whose size most runs by themselves would have with the other sign: it stands in for something else.
-pub fn stands_in(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<usize> {
-    let places = fit.model.places();
-    let first = case.parameters.len();
-    let joint = |effect: usize| places.iter().position(|p| *p == (effect, 0)).map(|at| fit.x[first + at]);
-    let is_against = |sizes: &&RunSizes| {
-        let against = |e: &Estimate, of: f64| if of > 0.0 { e.ci95[1] < 0.0 } else { e.ci95[0] > 0.0 };
-        let count = joint(sizes.effect).map_or(0, |of| sizes.runs.iter().filter(|(_, e)| against(e, of)).count());
-        2 * count > sizes.runs.len()
-    };
-    sizes_by_run(case, fit, noise).iter().find(is_against).map(|s| s.effect)
-}
-
 fn size_in(problem: &Problem, fit: &Fit, first: usize, place: usize) -> Option<Estimate> {
     let numbers = &problem.numbers(&fit.model)[first..];
     let rows = problem.rows(&fit.model, &fit.x, first..fit.x.len(), Sides::Both)?;

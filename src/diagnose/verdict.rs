@@ -12,7 +12,7 @@ const LEAST_PROBABILITY: f64 = 0.05;
 /// An answer is one answer from this probability on.
 const SURE: f64 = 0.9;
 /// Share of the baseline's misfit that may be left when the answer is complete: laws are idealisations.
-const LEFT_SHARE: f64 = 0.08;
+const LEFT_SHARE: f64 = 0.1;
 /// Misfit per sample below which nothing is called unknown, in units of the noise's variance.
 const LEFT_LEAST: f64 = 0.015;
 
