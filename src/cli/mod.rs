@@ -14,6 +14,7 @@ mod junit;
 mod model;
 mod observers;
 mod proof;
+mod proof_figure;
 mod run;
 mod scenes;
 mod score;

@@ -9,6 +9,7 @@ use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
 
 use super::CliError;
 use super::files::write;
+use super::proof_figure::proof_svg;
 
 /// Arguments of `smam score`.
 #[derive(Args)]
@@ -61,7 +62,7 @@ pub fn open_all<'a>(
     seals.into_par_iter().map(|(name, seal)| row(&open(name, seal, folders)?, folders)).collect()
 }
 
-/// Writes rows, figures and table, and prints the table.
+/// Writes rows, figures, picture and table, and prints the table.
 pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
     let json = |e: serde_json::Error| CliError::Failed(format!("the score cannot be written as JSON: {e}"));
     let figures = metrics(rows);
@@ -70,5 +71,6 @@ pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
     write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(json)?))?;
     let page = page(rows, &figures);
     write(&out.join("table.md"), &page)?;
+    write(&out.join("proof.svg"), &proof_svg(rows))?;
     super::print_text(&page)
 }

@@ -4,6 +4,7 @@
 //! before and opened after.
 
 mod campaign;
+mod curves;
 mod holdout;
 mod metrics;
 mod row;
@@ -13,6 +14,7 @@ mod table;
 use std::path::PathBuf;
 
 pub use campaign::{Folders, Plan, Planned, answer_case, conceal_case};
+pub use curves::{Share, detection, naming, reliability};
 pub use metrics::{Metric, VISIBLE, metrics};
 pub use row::{Answered, Row, open, row};
 pub use settle::{After, Settled, settle};

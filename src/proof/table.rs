@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::curves::{detection, naming, reliability};
 use super::metrics::{Metric, VISIBLE, wilson};
 use super::row::Row;
 use crate::conceal::{Hiding, Secret};
@@ -32,28 +33,21 @@ pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
     }
     by_misfit(&mut text, rows);
     by_effect(&mut text, rows);
-    reliability(&mut text, rows);
+    reliability_table(&mut text, rows);
     wrong(&mut text, rows);
     text
 }
-
-/// Edges of the bins of misfit per sample.
-const BINS: [f64; 7] = [0.0, 0.01, 0.03, VISIBLE, 0.3, 1.0, 10.0];
 
 fn by_misfit(text: &mut String, rows: &[Row]) {
     text.push_str("\n### By misfit per sample after the baseline's refit\n\n");
     text.push_str(
         "| excess chi2/n | cases with something missing | detected | one effect: right |\n|---|---|---|---|\n",
     );
-    for (i, low) in BINS.iter().enumerate() {
-        let high = BINS.get(i + 1).copied().unwrap_or(f64::INFINITY);
-        let inside = |r: &&Row| r.hiding != Hiding::Nothing && r.excess >= *low && r.excess < high;
-        let own: Vec<&Row> = rows.iter().filter(inside).collect();
-        let one: Vec<&&Row> = own.iter().filter(|r| r.hiding == Hiding::One).collect();
-        let detected = own.iter().filter(|r| r.is_detected()).count();
-        let right = one.iter().filter(|r| r.first().is_some_and(|e| r.secrets.iter().any(|s| e.is(s)))).count();
-        let name = if high.is_finite() { format!("{low} to {high}") } else { format!("above {low}") };
-        let _ = writeln!(text, "| {name} | {} | {} | {} |", own.len(), of(detected, own.len()), of(right, one.len()));
+    for (all, one) in detection(rows).iter().zip(naming(rows)) {
+        let name =
+            if all.to.is_finite() { format!("{} to {}", all.from, all.to) } else { format!("above {}", all.from) };
+        let _ =
+            writeln!(text, "| {name} | {} | {} | {} |", all.count, of(all.hits, all.count), of(one.hits, one.count));
     }
 }
 
@@ -82,23 +76,11 @@ fn by_effect(text: &mut String, rows: &[Row]) {
     }
 }
 
-/// Bins of the probabilities that answers give.
-const PROBABILITIES: [(f64, f64); 6] = [(0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95), (0.95, 1.0)];
-
-fn reliability(text: &mut String, rows: &[Row]) {
+fn reliability_table(text: &mut String, rows: &[Row]) {
     text.push_str("\n### Reliability: probability given against share that was right\n\n| probability | effects named | right |\n|---|---|---|\n");
-    for (low, high) in PROBABILITIES {
-        let (right, count) = in_bin(rows, low, high);
-        let _ = writeln!(text, "| {low} to {high} | {count} | {} |", of(right, count));
+    for bin in reliability(rows) {
+        let _ = writeln!(text, "| {} to {:.2} | {} | {} |", bin.from, bin.to, bin.count, of(bin.hits, bin.count));
     }
-}
-
-/// Named effects whose probability lies in a bin: how many are right, how many there are.
-fn in_bin(rows: &[Row], low: f64, high: f64) -> (usize, usize) {
-    let inside = |p: f64| p >= low && (p < high || high == 1.0);
-    let named = rows.iter().flat_map(|r| r.effects.iter().map(move |e| (r, e)));
-    let own: Vec<_> = named.filter(|(r, e)| r.hiding != Hiding::Unlisted && inside(e.probability)).collect();
-    (own.iter().filter(|(r, e)| r.secrets.iter().any(|s| e.is(s))).count(), own.len())
 }
 
 fn wrong(text: &mut String, rows: &[Row]) {
