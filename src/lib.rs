@@ -16,6 +16,7 @@ pub mod recording;
 pub mod report;
 pub mod scalar;
 pub mod scene;
+pub mod sweep;
 pub mod system;
 pub mod trial;
 #[cfg(feature = "viz")]

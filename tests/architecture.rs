@@ -22,6 +22,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     // Nothing of the simulation, so that the proof is one.
     ("conceal", &["recording"]),
     ("proof", &["conceal", "diagnose", "identify", "recording"]),
+    ("sweep", &["recording", "scene", "system"]),
     ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
     ("view", &["mechanism", "system"]),
@@ -37,6 +38,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "recording",
             "report",
             "scene",
+            "sweep",
             "system",
             "trial",
             "view",
@@ -45,8 +47,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
 ];
 
 /// Crates that belong to one folder: names as they stand in Rust paths, and the folder.
-const OWNED: &[(&str, &str)] =
-    &[("rapier3d_f64", "mechanism"), ("urdf_rs", "mechanism"), ("rerun", "view"), ("diffsol", "conceal")];
+const OWNED: &[(&str, &str)] = &[
+    ("rapier3d_f64", "mechanism"),
+    ("urdf_rs", "mechanism"),
+    ("rerun", "view"),
+    ("diffsol", "conceal"),
+    ("parquet", "sweep"),
+];
 
 /// Roots of the crate; they name every folder and stand outside the order.
 const ROOTS: [&str; 2] = ["lib", "main"];

@@ -10,6 +10,7 @@ use smam::mechanism::MechanismError;
 use smam::proof::ProofError;
 use smam::recording::RecordingError;
 use smam::scene::SceneError;
+use smam::sweep::SweepError;
 use smam::system::{RunError, SystemError};
 use smam::trial::TrialError;
 
@@ -26,6 +27,8 @@ pub enum CliError {
     Diagnose(#[from] DiagnoseError),
     #[error(transparent)]
     Identify(#[from] IdentifyError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     #[error(transparent)]
     Trial(#[from] TrialError),
     #[error(transparent)]
@@ -52,6 +55,7 @@ impl CliError {
             Self::System(SystemError::Diverged { .. })
             | Self::Identify(IdentifyError::System(SystemError::Diverged { .. }))
             | Self::Write { .. }
+            | Self::Sweep(SweepError::Write { .. })
             | Self::Failed(_) => ExitCode::from(1),
             #[cfg(feature = "viz")]
             Self::View(_) => ExitCode::from(1),

@@ -18,6 +18,8 @@ mod proof_figure;
 mod run;
 mod scenes;
 mod score;
+mod sweep;
+mod sweep_page;
 mod trial;
 
 use std::process::ExitCode;
@@ -55,6 +57,8 @@ enum Command {
     Check(check::CheckArguments),
     /// List the scenes that come with the program
     Scenes,
+    /// Run a scene at many points of its keys and tabulate what each run shows
+    Sweep(sweep::SweepArguments),
     /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
     Trial(trial::TrialArguments),
     /// Make recordings of a rig that hides something, with the answer under seal
@@ -80,6 +84,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),
+        Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Trial(arguments)) => trial::trial(&arguments),
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
         Some(Command::Score(arguments)) => score::score(&arguments),

@@ -28,4 +28,4 @@ pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
-pub use whole_file::write_whole;
+pub use whole_file::{write_whole, write_whole_bytes};

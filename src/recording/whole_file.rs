@@ -11,11 +11,16 @@ use tempfile::NamedTempFile;
 /// # Errors
 /// The folder cannot be made or written to, or there is no room.
 pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {
+    write_whole_bytes(path, text.as_bytes())
+}
+
+/// The same for a file that is no text.
+pub fn write_whole_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder)?;
     }
     let mut file = temporary_beside(path)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(bytes)?;
     put_in_place(file, path)
 }
 

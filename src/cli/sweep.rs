@@ -1,0 +1,202 @@
+//! `smam sweep`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use smam::sweep::{Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepError, SweepFile, Table, VarySpec, evaluate};
+
+use super::CliError;
+use super::interrupt::stop_flag;
+use super::sweep_page::write_page;
+
+/// Arguments of `smam sweep`.
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub struct SweepArguments {
+    #[command(subcommand)]
+    command: Option<SweepCommand>,
+    #[command(flatten)]
+    run: RunSweep,
+}
+
+#[derive(Subcommand)]
+enum SweepCommand {
+    /// Put the shards of a sweep together: table.csv, table.parquet, sweep.html
+    Merge {
+        /// Sweep file, as given to the shards
+        sweep: PathBuf,
+        /// Folders that the shards wrote
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+        /// Where to write
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Draw a sweep's page again from its journal
+    Plot {
+        /// Sweep file
+        sweep: PathBuf,
+        /// Folder that the sweep wrote
+        folder: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct RunSweep {
+    /// A sweep file, or with --vary the path or name of a scene
+    #[arg(required = true)]
+    what: Option<String>,
+    /// Vary a key over a range: KEY=FROM:TO:COUNT, or KEY=A,B,C; a grid with several
+    #[arg(long, value_name = "KEY=RANGE")]
+    vary: Vec<String>,
+    /// Measure of each run: max(angle_deg) - min(angle_deg), or NAME=...
+    #[arg(long, value_name = "FIGURES")]
+    measure: Vec<String>,
+    /// Length of each run, s, instead of the scene's
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+    /// Where journal, tables and page go [default: out/sweep_NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Go on with what a run before has left there
+    #[arg(long)]
+    resume: bool,
+    /// Only this part of the points, as 2/7; put parts together with `smam sweep merge`
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    /// Threads [default: all cores]; the table does not depend on it
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// Runs the command.
+pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, CliError> {
+    match &arguments.command {
+        Some(SweepCommand::Merge { sweep, folders, out }) => merge(sweep, folders, out),
+        Some(SweepCommand::Plot { sweep, folder }) => plot(sweep, folder),
+        None => run(&arguments.run),
+    }
+}
+
+fn run(arguments: &RunSweep) -> Result<ExitCode, CliError> {
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|e| CliError::Usage(format!("--threads {threads}: {e}")))?;
+    }
+    let plan = Plan::new(file(arguments)?)?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep_{}", plan.file.name)));
+    let journal = Journal::open(&out, &plan, arguments.resume)?;
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let pending: Vec<u64> = shard.points(plan.count()).filter(|i| !journal.done.contains_key(i)).collect();
+    run_points(&plan, &journal, &pending)?;
+    let table = Table::of_folders(&plan, &[&out])?;
+    finish(&plan, &table, &out, shard)
+}
+
+/// Runs points on all threads; what was begun when Ctrl-C came is finished and kept.
+fn run_points(plan: &Plan, journal: &Journal, pending: &[u64]) -> Result<(), CliError> {
+    eprintln!("{}: {} points, {} of them to do", plan.file.name, plan.count(), pending.len());
+    let bar = ProgressBar::new(pending.len() as u64);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} points, {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let stop = stop_flag();
+    // Points in their order: with rayon's default halves, a kill would leave the far end of the range undone.
+    pending.par_iter().with_max_len(1).try_for_each(|&index| -> Result<(), SweepError> {
+        if stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        journal.add(&evaluate(plan, index))?;
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCode, CliError> {
+    table.write(out)?;
+    write_page(plan, table, out)?;
+    for (index, error) in table.failed().take(5) {
+        eprintln!("point {index} failed: {}", error.lines().next().unwrap_or(""));
+    }
+    let failed = table.failed().count();
+    let own = shard.points(plan.count()).count() as u64;
+    let missing = own.saturating_sub(table.rows.len() as u64);
+    eprintln!("{} rows, {failed} of them failed: {}", table.rows.len(), out.join("table.csv").display());
+    if missing > 0 {
+        eprintln!("{missing} points are not done: go on with --resume");
+        return Ok(ExitCode::from(1));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn merge(sweep: &Path, folders: &[PathBuf], out: &Path) -> Result<ExitCode, CliError> {
+    let plan = Plan::new(SweepFile::load(sweep)?)?;
+    let folders: Vec<&Path> = folders.iter().map(PathBuf::as_path).collect();
+    let table = Table::of_folders(&plan, &folders)?;
+    if table.missing() > 0 {
+        eprintln!("{} of {} points are in none of the folders", table.missing(), table.points);
+    }
+    finish(&plan, &table, out, Shard::WHOLE)
+}
+
+fn plot(sweep: &Path, folder: &Path) -> Result<ExitCode, CliError> {
+    let plan = Plan::new(SweepFile::load(sweep)?)?;
+    write_page(&plan, &Table::of_folders(&plan, &[folder])?, folder)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The sweep that the arguments describe: a file, or a scene with --vary and --measure.
+fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
+    let what = arguments.what.as_deref().unwrap_or_default();
+    if arguments.vary.is_empty() {
+        if !arguments.measure.is_empty() || arguments.duration.is_some() {
+            let message = "--measure and --duration need --vary and the name of a scene";
+            return Err(CliError::Usage(format!("{message}\n  remedy: a sweep file holds its own measures")));
+        }
+        return Ok(SweepFile::load(Path::new(what))?);
+    }
+    let stem = Path::new(what).file_stem().map_or_else(|| what.to_owned(), |s| s.to_string_lossy().into_owned());
+    Ok(SweepFile {
+        format: 1,
+        name: stem,
+        title: String::new(),
+        scene: what.to_owned(),
+        duration_s: arguments.duration,
+        sampling: SamplingSpec::Grid,
+        vary: arguments.vary.iter().map(|v| vary(v)).collect::<Result<_, _>>()?,
+        measure: arguments.measure.iter().map(|m| measure(m)).collect(),
+        output: Vec::new(),
+        set: Vec::new(),
+    })
+}
+
+/// Reads `KEY=0.2:0.8:25` or `KEY=0.2,0.5,0.8`.
+fn vary(text: &str) -> Result<VarySpec, CliError> {
+    let wrong = || CliError::Usage(format!("--vary {text}\n  remedy: write KEY=FROM:TO:COUNT or KEY=A,B,C"));
+    let (key, range) = text.split_once('=').ok_or_else(wrong)?;
+    let key = key.trim().to_owned();
+    let numbers =
+        |separator: char| -> Option<Vec<f64>> { range.split(separator).map(|n| n.trim().parse().ok()).collect() };
+    if !range.contains(':') {
+        let values = numbers(',').ok_or_else(wrong)?;
+        return Ok(VarySpec { key, values, ..VarySpec::default() });
+    }
+    match numbers(':').as_deref() {
+        Some([from, to, count]) if *count >= 1.0 && count.fract() == 0.0 => {
+            Ok(VarySpec { key, from: Some(*from), to: Some(*to), count: Some(*count as u64), ..VarySpec::default() })
+        }
+        _ => Err(wrong()),
+    }
+}
+
+fn measure(text: &str) -> MeasureSpec {
+    match text.split_once('=') {
+        Some((name, of)) => MeasureSpec { name: name.trim().to_owned(), of: of.trim().to_owned() },
+        None => MeasureSpec { name: text.to_owned(), of: text.to_owned() },
+    }
+}

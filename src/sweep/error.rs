@@ -1,0 +1,29 @@
+//! Why a sweep cannot be planned, run or written.
+
+use std::path::PathBuf;
+
+use crate::recording::RecordingError;
+use crate::scene::SceneError;
+use crate::system::SystemError;
+
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    System(#[from] SystemError),
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error("{file}: {message}\n  remedy: docs/sweeps.md shows every key of a sweep")]
+    Syntax { file: PathBuf, message: String },
+    #[error("[[vary]] {key}: {message}\n  remedy: {remedy}")]
+    Vary { key: String, message: String, remedy: String },
+    #[error("[[measure]] {measure}: {message}\n  remedy: {remedy}")]
+    Measure { measure: String, message: String, remedy: String },
+    #[error("[sampling] {message}\n  remedy: {remedy}")]
+    Sampling { message: String, remedy: String },
+    #[error("{file}: {message}\n  remedy: {remedy}")]
+    Journal { file: PathBuf, message: String, remedy: String },
+    #[error("{file}: cannot be written: {source}\n  remedy: give another folder with --out")]
+    Write { file: PathBuf, source: std::io::Error },
+}

@@ -1,0 +1,209 @@
+//! A sweep that was checked: what stands at each point, and which points a shard has.
+
+use std::fmt::Write as _;
+
+use sha2::{Digest, Sha256};
+
+use super::SweepError;
+use super::expression::Measure;
+use super::sampling::{Place, Shares};
+use super::spec::{SamplingSpec, SweepFile, VarySpec};
+use crate::recording::did_you_mean;
+use crate::scene::{Override, Scene, calibration_key};
+use crate::system::Schedule;
+
+/// A sweep ready to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub file: SweepFile,
+    pub measures: Vec<Measure>,
+    pub schedule: Schedule,
+    shares: Shares,
+    set: Vec<Override>,
+    /// SHA-256 of sweep and scene: two plans with the same one have the same points and rows.
+    pub fingerprint: String,
+}
+
+impl Plan {
+    /// Checks keys, ranges and measures against the scene; nothing is run.
+    ///
+    /// # Errors
+    /// Whatever would fail at every point, with the key or measure and the nearest right name.
+    pub fn new(file: SweepFile) -> Result<Self, SweepError> {
+        let set: Vec<Override> = file.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+        let base = with_outputs(Scene::load(&file.scene, &set)?, &file)?;
+        check_keys(&file, &base)?;
+        file.vary.iter().try_for_each(|v| v.check(file.sampling))?;
+        let channels: Vec<&str> = base.file.input.iter().map(|i| i.channel.as_str()).collect();
+        let outputs = base.file.output.iter().map(|o| o.channel.as_str());
+        let channels: Vec<&str> = channels.into_iter().chain(outputs).collect();
+        if file.measure.is_empty() {
+            return Err(SweepError::Measure {
+                measure: file.name.clone(),
+                message: "nothing is measured".to_owned(),
+                remedy: format!("add [[measure]] with name and of; the channels are {}", channels.join(", ")),
+            });
+        }
+        let measures = file.measure.iter().map(|m| Measure::new(m, &channels)).collect::<Result<_, _>>()?;
+        let spec = base.file.simulation;
+        let schedule = Schedule::even(file.duration_s.unwrap_or(spec.duration_s), spec.output_interval_s);
+        let shares = Shares::new(file.sampling, &file.vary)?;
+        let fingerprint = fingerprint(&file, &base);
+        let plan = Self { file, measures, schedule, shares, set, fingerprint };
+        plan.check_ends()?;
+        Ok(plan)
+    }
+
+    /// Number of points.
+    pub fn count(&self) -> u64 {
+        self.shares.count().unwrap_or(0)
+    }
+
+    /// Values of the keys at a point, in the order of `[[vary]]`.
+    pub fn point(&self, index: u64) -> Vec<f64> {
+        self.shares.at(index).into_iter().zip(&self.file.vary).map(|(place, vary)| vary.value(place)).collect()
+    }
+
+    /// The scene at a point.
+    ///
+    /// # Errors
+    /// Values that the scene refuses.
+    pub fn scene(&self, values: &[f64]) -> Result<Scene, SweepError> {
+        let keys = self.file.vary.iter().zip(values).flat_map(|(v, value)| v.keys().map(move |k| (k, *value)));
+        let numbers = keys.map(|(key, value)| Override::number(key, value));
+        let all: Vec<Override> = self.set.iter().cloned().chain(numbers).collect();
+        with_outputs(Scene::load(&self.file.scene, &all)?, &self.file)
+    }
+
+    /// Names of the columns: index, keys, measures.
+    pub fn columns(&self) -> Vec<String> {
+        let keys = self.file.vary.iter().map(|v| v.key.clone());
+        let measures = self.measures.iter().map(|m| m.name.clone());
+        std::iter::once("index".to_owned()).chain(keys).chain(measures).collect()
+    }
+
+    /// Loads the scene with each key at either end of its range, the others at the first point: what the scene refuses
+    /// there is refused before anything runs. Tails of a distribution may still fail at their points.
+    fn check_ends(&self) -> Result<(), SweepError> {
+        let first = self.point(0);
+        for (i, vary) in self.file.vary.iter().enumerate() {
+            for value in ends(vary, self.file.sampling) {
+                let mut values = first.clone();
+                values[i] = value;
+                self.scene(&values)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn ends(vary: &VarySpec, sampling: SamplingSpec) -> Vec<f64> {
+    match (sampling, vary.values.is_empty(), vary.count) {
+        (SamplingSpec::Grid, false, _) => vary.values.clone(),
+        (SamplingSpec::Grid, true, Some(count)) => {
+            vec![vary.value(Place::Nth(0)), vary.value(Place::Nth(count.saturating_sub(1)))]
+        }
+        _ if vary.sd.is_some() => vec![vary.value(Place::Share(0.5))],
+        _ => vec![vary.value(Place::Share(0.0)), vary.value(Place::Share(1.0))],
+    }
+}
+
+fn with_outputs(mut scene: Scene, file: &SweepFile) -> Result<Scene, SweepError> {
+    if file.output.is_empty() {
+        return Ok(scene);
+    }
+    scene.file.output.extend(file.output.iter().cloned());
+    Ok(Scene::from_file(scene.file, &scene.path)?)
+}
+
+fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
+    let known = base.keys();
+    let names: Vec<&str> = known.iter().map(|(key, _)| key.as_str()).collect();
+    for key in file.vary.iter().flat_map(VarySpec::keys) {
+        let refuse = |message: String, remedy: &str| {
+            Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
+        };
+        let Some((_, value)) = known.iter().find(|(name, _)| name == calibration_key(key)) else {
+            let message = format!("the scene has no such key{}", did_you_mean(key, &names));
+            return refuse(message, "`smam check SCENE --keys` lists them");
+        };
+        if value.parse::<f64>().is_err() {
+            return refuse(format!("it is no number but {value}"), "vary a number; set words in `set`");
+        }
+    }
+    Ok(())
+}
+
+fn fingerprint(file: &SweepFile, base: &Scene) -> String {
+    let texts = [toml::to_string(file).unwrap_or_default(), toml::to_string(&base.file).unwrap_or_default()];
+    let mut hasher = Sha256::new();
+    texts.iter().for_each(|t| hasher.update(t.as_bytes()));
+    hasher.finalize().iter().fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
+/// One part of a sweep's points: every `of`-th, from `number` on (counted from 1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    pub number: u64,
+    pub of: u64,
+}
+
+impl Shard {
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Reads `2/7`.
+    ///
+    /// # Errors
+    /// Anything but two numbers with 1 <= first <= second.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+        match numbers {
+            Some((number, of)) if number >= 1 && number <= of => Ok(Self { number, of }),
+            _ => Err(format!("\"{text}\" is no shard: write 2/7 for the second of seven")),
+        }
+    }
+
+    /// Its points of a sweep of `count`.
+    pub fn points(self, count: u64) -> impl Iterator<Item = u64> {
+        (self.number - 1..count).step_by(usize::try_from(self.of).unwrap_or(usize::MAX))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn shards_have_every_point_once() {
+        let all: Vec<u64> = (1..=7).flat_map(|number| Shard { number, of: 7 }.points(40)).collect();
+        assert_eq!(all.len(), 40);
+        assert_eq!(all.into_iter().collect::<BTreeSet<_>>(), (0..40).collect());
+        assert!(Shard::parse("0/3").is_err() && Shard::parse("4/3").is_err() && Shard::parse("a").is_err());
+        assert_eq!(Shard::parse("2/3"), Ok(Shard { number: 2, of: 3 }));
+    }
+
+    fn file(key: &str, from: f64, to: f64, of: &str) -> SweepFile {
+        toml::from_str(&format!(
+            "format = 1\nname = \"t\"\nscene = \"muscle_bench\"\n[[vary]]\nkey = \"{key}\"\nfrom = {from:?}\nto = {to:?}\ncount = 3\n[[measure]]\nname = \"m\"\nof = \"{of}\"\n"
+        ))
+        .expect("a sweep")
+    }
+
+    #[test]
+    fn wrong_keys_ranges_and_measures_are_refused_before_anything_runs() {
+        let good = Plan::new(file("muscles.friction.m0_n", 0.1, 0.2, "range(elongation_mm)")).expect("right");
+        assert_eq!((good.count(), good.point(2)), (3, vec![0.2]));
+        assert_eq!(good.columns(), ["index", "muscles.friction.m0_n", "m"]);
+        let wrong =
+            |key: &str, from: f64, of: &str| Plan::new(file(key, from, 0.2, of)).expect_err("wrong").to_string();
+        let message = wrong("muscles.friction.m0", 0.1, "max(elongation_mm)");
+        assert!(message.contains("did you mean \"muscles.friction.m0_n\"?"), "{message}");
+        assert!(wrong("muscles.friction.m0_n", -0.1, "max(elongation_mm)").contains("m0_n"));
+        assert!(wrong("muscles.tube.wall", 0.1, "max(elongation_mm)").contains("no number"));
+        assert!(wrong("muscles.friction.m0_n", 0.1, "max(elongation_m)").contains("elongation_mm"));
+    }
+}

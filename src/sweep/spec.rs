@@ -1,0 +1,116 @@
+//! A sweep as a file.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::SweepError;
+use crate::scene::OutputSpec;
+
+/// What SWEEP.toml holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepFile {
+    pub format: u32,
+    pub name: String,
+    #[serde(default)]
+    pub title: String,
+    /// Path or stock name of the scene.
+    pub scene: String,
+    /// Length of each run instead of the scene's, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    #[serde(default)]
+    pub sampling: SamplingSpec,
+    pub vary: Vec<VarySpec>,
+    pub measure: Vec<MeasureSpec>,
+    /// Outputs that the scene gets besides its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub output: Vec<OutputSpec>,
+    /// Keys set to one value in every run: `"muscles.damping_n_s_m=0.2"`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
+}
+
+/// How points are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SamplingSpec {
+    /// Every combination of the values; the last key changes fastest.
+    #[default]
+    Grid,
+    /// One sample in each of `count` equal parts of every key's range.
+    LatinHypercube { count: u64, seed: u32 },
+    /// Sobol's sequence, Owen-scrambled by the seed.
+    Sobol { count: u64, seed: u32 },
+    /// Independent draws, each from its own stream of the seed.
+    MonteCarlo { count: u64, seed: u32 },
+}
+
+/// A key with its range, values or distribution.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VarySpec {
+    /// A scene key as `smam check SCENE --keys` lists it, or several joined by `+` that get the same value.
+    pub key: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<f64>,
+    /// Values of a grid between `from` and `to`, both included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
+    /// Equal ratios instead of equal steps.
+    #[serde(default)]
+    pub logarithmic: bool,
+    /// Values of a grid, instead of a range.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<f64>,
+    /// Values to be marked in pictures.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mark: Vec<Mark>,
+    /// Normal distribution, for samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sd: Option<f64>,
+}
+
+/// A value of a key that a picture marks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mark {
+    pub at: f64,
+    pub label: String,
+}
+
+/// A number taken from each run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasureSpec {
+    /// Column of the table, with its unit: `angle_range_deg`.
+    pub name: String,
+    /// `max(angle_deg) - min(angle_deg)`.
+    pub of: String,
+}
+
+impl SweepFile {
+    /// Reads a sweep; unknown keys are refused.
+    ///
+    /// # Errors
+    /// A file that is none, or not a sweep.
+    pub fn load(path: &Path) -> Result<Self, SweepError> {
+        let syntax = |message: String| SweepError::Syntax { file: path.to_owned(), message };
+        let text = std::fs::read_to_string(path).map_err(|e| syntax(e.to_string()))?;
+        let mut file: Self = toml::from_str(&text).map_err(|e| syntax(e.to_string().trim_end().to_owned()))?;
+        if file.format != 1 {
+            return Err(syntax(format!("format = {}: this program reads format 1", file.format)));
+        }
+        // A scene's path is relative to the sweep; a stock name is no path.
+        let beside = path.parent().unwrap_or(Path::new(".")).join(&file.scene);
+        if beside.is_file() {
+            file.scene = beside.display().to_string();
+        }
+        Ok(file)
+    }
+}

@@ -1,0 +1,89 @@
+//! The table of a sweep: one row per point in the order of their index, as CSV and as Parquet.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::SweepError;
+use super::journal::read;
+use super::parquet_file::write_parquet;
+use super::plan::Plan;
+use super::point::Row;
+use crate::recording::write_whole;
+
+/// All rows of a sweep that are there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    pub columns: Vec<String>,
+    pub rows: Vec<Row>,
+    /// Points that the sweep has.
+    pub points: u64,
+}
+
+impl Table {
+    pub fn new(plan: &Plan, rows: BTreeMap<u64, Row>) -> Self {
+        Self { columns: plan.columns(), rows: rows.into_values().collect(), points: plan.count() }
+    }
+
+    /// Reads the journals of folders; a point that several have counts once.
+    ///
+    /// # Errors
+    /// Folders without a journal, or with that of another sweep.
+    pub fn of_folders(plan: &Plan, folders: &[&Path]) -> Result<Self, SweepError> {
+        let mut rows = BTreeMap::new();
+        for folder in folders {
+            rows.extend(read(folder, &plan.fingerprint)?);
+        }
+        Ok(Self::new(plan, rows))
+    }
+
+    /// Points without a row.
+    pub fn missing(&self) -> u64 {
+        self.points - self.rows.len() as u64
+    }
+
+    /// Rows whose point failed.
+    pub fn failed(&self) -> impl Iterator<Item = (u64, &str)> {
+        self.rows.iter().filter_map(|r| Some((r.index, r.outcome.as_ref().err()?.as_str())))
+    }
+
+    /// The numbers of a column but the index; NaN where a point failed.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let at = self.columns.iter().position(|c| c == name)?.checked_sub(1)?;
+        Some(self.rows.iter().map(|r| number(r, at)).collect())
+    }
+
+    /// Writes `table.csv` and `table.parquet`.
+    ///
+    /// # Errors
+    /// A folder that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), SweepError> {
+        let csv = folder.join("table.csv");
+        write_whole(&csv, &self.csv()).map_err(|source| SweepError::Write { file: csv, source })?;
+        write_parquet(self, &folder.join("table.parquet"))
+    }
+
+    fn csv(&self) -> String {
+        let mut text = self.columns.join(",") + ",error\n";
+        for row in &self.rows {
+            let _ = write!(text, "{}", row.index);
+            for at in 0..self.columns.len() - 1 {
+                let value = number(row, at);
+                let _ = if value.is_finite() { write!(text, ",{value}") } else { write!(text, ",") };
+            }
+            let error = row.outcome.as_ref().err().map_or("", String::as_str);
+            let _ = if error.is_empty() {
+                writeln!(text, ",")
+            } else {
+                writeln!(text, ",\"{}\"", error.replace('"', "\"\"").replace('\n', " "))
+            };
+        }
+        text
+    }
+}
+
+/// The number of a row in a column after the index.
+pub(super) fn number(row: &Row, at: usize) -> f64 {
+    let measures = row.outcome.as_deref().unwrap_or(&[]);
+    row.values.iter().chain(measures).nth(at).copied().unwrap_or(f64::NAN)
+}
