@@ -50,7 +50,6 @@ impl Goal {
 /// All figures, in the order of the table.
 pub fn metrics(rows: &[Row]) -> Vec<Metric> {
     let nothing = select(rows, |r| r.hiding == Hiding::Nothing);
-    let hides = select(rows, |r| r.hiding != Hiding::Nothing);
     let visible = select(rows, |r| r.hiding != Hiding::Nothing && r.excess >= VISIBLE);
     let one = select(rows, |r| r.hiding == Hiding::One && r.excess >= VISIBLE && r.is_detected());
     let mut all = vec![
@@ -64,7 +63,8 @@ pub fn metrics(rows: &[Row]) -> Vec<Metric> {
     ];
     all.extend(naming(rows, &one));
     all.extend(unknown(rows));
-    all.extend(gaps(&hides));
+    let listed = select(rows, |r| matches!(r.hiding, Hiding::One | Hiding::Several));
+    all.extend(gaps(&listed));
     all.extend(settled(rows));
     let wrong = ("confidently_wrong", "an effect named with > 0.9 that is not there");
     all.push(share(wrong, &select(rows, |_| true), Row::is_confidently_wrong, Goal::AtMost(0.02)));
@@ -170,10 +170,10 @@ fn mean_set(sets: &[&Row]) -> Metric {
     mean(("set_size", "mean size of that set"), &values, Goal::AtMost(1.5), false)
 }
 
-/// Median and tenth percentile of the gap closed, with the order statistics that bound them at 95 %.
-fn gaps(hides: &[&Row]) -> [Metric; 2] {
+/// Median and tenth percentile of the gap closed where something listed is hidden (what is not listed no scene can hold), with the order statistics that bound them at 95 %.
+fn gaps(listed: &[&Row]) -> [Metric; 2] {
     let mut values: Vec<f64> =
-        hides.iter().filter(|r| r.is_detected() && r.excess >= VISIBLE).filter_map(|r| r.gap_closed).collect();
+        listed.iter().filter(|r| r.is_detected() && r.excess >= VISIBLE).filter_map(|r| r.gap_closed).collect();
     values.sort_by(f64::total_cmp);
     let count = values.len();
     let at = |q: f64| values.get(((count.max(1) - 1) as f64 * q.clamp(0.0, 1.0)) as usize).copied().unwrap_or(f64::NAN);

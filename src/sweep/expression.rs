@@ -33,9 +33,9 @@ impl Measure {
                 rest = &rest[open + 1..];
                 continue;
             }
-            let close = rest
-                .find(')')
-                .ok_or_else(|| refuse("a bracket is not closed".to_owned(), "close it: max(angle_deg)".to_owned()))?;
+            let Some(close) = rest[open..].find(')').map(|i| open + i) else {
+                return Err(refuse("a bracket is not closed".to_owned(), "close it: max(angle_deg)".to_owned()));
+            };
             calls.push(call(word, &rest[open + 1..close], channels).map_err(|(m, r)| refuse(m, r))?);
             text.push_str(ahead);
             text.push_str(&format!("{{figure_{:04}}}", calls.len() - 1));

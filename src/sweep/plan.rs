@@ -200,7 +200,7 @@ mod tests {
         assert_eq!(good.columns(), ["index", "muscles.friction.m0_n", "m"]);
         let wrong =
             |key: &str, from: f64, of: &str| Plan::new(file(key, from, 0.2, of)).expect_err("wrong").to_string();
-        let message = wrong("muscles.friction.m0", 0.1, "max(elongation_mm)");
+        let message = wrong("muscles.friction.m0n", 0.1, "max(elongation_mm)");
         assert!(message.contains("did you mean \"muscles.friction.m0_n\"?"), "{message}");
         assert!(wrong("muscles.friction.m0_n", -0.1, "max(elongation_mm)").contains("m0_n"));
         assert!(wrong("muscles.tube.wall", 0.1, "max(elongation_mm)").contains("no number"));

@@ -31,8 +31,11 @@ pub enum Shares {
     },
 }
 
-/// Dimensions that Sobol's sequence is tabulated for.
+/// Dimensions and length that Sobol's sequence is tabulated for.
 const SOBOL_KEYS: usize = 256;
+const SOBOL_COUNT: u64 = 1 << 16;
+/// Points of one sweep: rows of more would not fit into the memory of one machine.
+const MOST_POINTS: u64 = 100_000_000;
 
 impl Shares {
     /// # Errors
@@ -40,19 +43,26 @@ impl Shares {
     pub fn new(sampling: SamplingSpec, vary: &[VarySpec]) -> Result<Self, SweepError> {
         let refuse = |message: String, remedy: &str| Err(SweepError::Sampling { message, remedy: remedy.to_owned() });
         let keys = vary.len();
+        if sampling.count().is_some_and(|count| count > MOST_POINTS) {
+            return refuse(format!("more than {MOST_POINTS} points"), "split the sweep");
+        }
         let shares = match sampling {
             SamplingSpec::Grid => Self::Grid { counts: vary.iter().map(VarySpec::grid_count).collect() },
             SamplingSpec::LatinHypercube { count, seed } => {
                 Self::LatinHypercube { parts: parts(keys, count, seed), seed }
             }
-            SamplingSpec::Sobol { count, seed } if keys <= SOBOL_KEYS => Self::Sobol { keys, count, seed },
-            SamplingSpec::Sobol { .. } => {
-                return refuse(format!("sobol: {keys} keys"), "vary at most 256 keys, or take latin_hypercube");
+            SamplingSpec::Sobol { count, seed } if keys <= SOBOL_KEYS && count <= SOBOL_COUNT => {
+                Self::Sobol { keys, count, seed }
+            }
+            SamplingSpec::Sobol { count, .. } => {
+                let message = format!("sobol: {count} points of {keys} keys");
+                return refuse(message, "take at most 65536 points of 256 keys, or method = \"latin_hypercube\"");
             }
             SamplingSpec::MonteCarlo { count, seed } => Self::MonteCarlo { keys, count, seed },
         };
         match shares.count() {
             None => refuse("the grid has more points than can be counted".to_owned(), "take fewer values, or samples"),
+            Some(count) if count > MOST_POINTS => refuse(format!("the grid has {count} points"), "split the sweep"),
             Some(0) => refuse("there is no point".to_owned(), "give at least one key, and a count of at least 1"),
             Some(_) => Ok(shares),
         }
@@ -255,5 +265,8 @@ mod tests {
         assert!(VarySpec { sd: Some(1.0), ..range(2) }.check(grid).is_err());
         assert!(range(2).check(grid).is_ok());
         assert!(Shares::new(grid, &vec![range(u64::MAX / 2); 3]).is_err());
+        assert!(Shares::new(grid, &vec![range(10_000); 3]).is_err());
+        let sobol = |count| Shares::new(SamplingSpec::Sobol { count, seed: 1 }, &[range(1)]);
+        assert!(sobol(1 << 16).is_ok() && sobol((1 << 16) + 1).is_err());
     }
 }

@@ -47,6 +47,18 @@ pub enum SamplingSpec {
     MonteCarlo { count: u64, seed: u32 },
 }
 
+impl SamplingSpec {
+    /// Number of samples; none of a grid.
+    pub fn count(self) -> Option<u64> {
+        match self {
+            Self::Grid => None,
+            Self::LatinHypercube { count, .. } | Self::Sobol { count, .. } | Self::MonteCarlo { count, .. } => {
+                Some(count)
+            }
+        }
+    }
+}
+
 /// A key with its range, values or distribution.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
