@@ -9,6 +9,7 @@ use super::seal::{seal, sealed_text};
 use super::solve::solve;
 use super::stock::{Calibration, Rig};
 use super::{Hiding, draw};
+use crate::recording::{Channel, Recording};
 
 /// A plunger that goes to a position over three seconds and stays for seven.
 fn held(to_m: f64) -> Vec<Drive> {
@@ -75,4 +76,28 @@ fn programmes_stay_within_the_stroke() {
             }
         }
     }
+}
+
+/// The run added is the programme asked for, on a rig that has aged by all the runs before.
+#[test]
+fn a_run_asked_for_is_played_after_the_others() {
+    let drawn = draw("a", Rig::MuscleBench, Hiding::Nothing, 3).expect("a case");
+    let t: Vec<f64> = (0..300).map(|k| f64::from(k) * SAMPLE_S).collect();
+    let asked_mm: Vec<f64> = t.iter().map(|t| 0.5 * t).collect();
+    let asked = Recording::new(t, vec![Channel::new("plunger_mm", asked_mm)]).expect("a recording");
+    let quiet = super::case::Truth {
+        noise: drawn.truth.noise.iter().map(|n| super::ChannelNoise { sd: 0.0, ..*n }).collect(),
+        decoys: Vec::new(),
+        ..drawn.truth.clone()
+    };
+    let played = super::record_asked(&quiet, &asked).expect("a run");
+    assert_eq!(played.time_s().len(), 300);
+    assert!((played.channel("plunger_mm").expect("there").values[200] - 1.0).abs() < 1e-9);
+    let plant = Plant::new(Rig::MuscleBench, quiet.calibration);
+    let drive = vec![Drive { positions_m: (0..300).map(|k| 0.5e-3 * f64::from(k) * SAMPLE_S).collect() }];
+    let expected = solve(&plant, &drive).expect("the same");
+    let shown = &played.channel("elongation_mm").expect("there").values;
+    assert!(shown.iter().zip(&expected[0]).all(|(a, b)| (a - b).abs() < 1e-4));
+    let random = super::record_drawn(&drawn.truth, 20.0).expect("a run");
+    assert!((random.time_s().last().copied().unwrap_or(0.0) - 20.0).abs() < 0.2);
 }

@@ -1,6 +1,7 @@
 //! A sweep that was checked: what stands at each point, and which points a shard has.
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use sha2::{Digest, Sha256};
 
@@ -9,7 +10,7 @@ use super::expression::Measure;
 use super::sampling::{Place, Shares};
 use super::spec::{SamplingSpec, SweepFile, VarySpec};
 use crate::recording::did_you_mean;
-use crate::scene::{Override, Scene, calibration_key};
+use crate::scene::{Override, Scene, SceneError, calibration_key};
 use crate::system::Schedule;
 
 /// A sweep ready to run.
@@ -20,6 +21,9 @@ pub struct Plan {
     pub schedule: Schedule,
     shares: Shares,
     set: Vec<Override>,
+    /// The scene's file as it was when the sweep began, and where it stands.
+    text: String,
+    path: PathBuf,
     /// SHA-256 of sweep and scene: two plans with the same one have the same points and rows.
     pub fingerprint: String,
 }
@@ -49,7 +53,10 @@ impl Plan {
         let schedule = Schedule::even(file.duration_s.unwrap_or(spec.duration_s), spec.output_interval_s);
         let shares = Shares::new(file.sampling, &file.vary)?;
         let fingerprint = fingerprint(&file, &base);
-        let plan = Self { file, measures, schedule, shares, set, fingerprint };
+        let path = base.path;
+        let text =
+            std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let plan = Self { file, measures, schedule, shares, set, text, path, fingerprint };
         plan.check_ends()?;
         Ok(plan)
     }
@@ -72,7 +79,7 @@ impl Plan {
         let keys = self.file.vary.iter().zip(values).flat_map(|(v, value)| v.keys().map(move |k| (k, *value)));
         let numbers = keys.map(|(key, value)| Override::number(key, value));
         let all: Vec<Override> = self.set.iter().cloned().chain(numbers).collect();
-        with_outputs(Scene::load(&self.file.scene, &all)?, &self.file)
+        with_outputs(Scene::parse(&self.text, &self.path, &all)?, &self.file)
     }
 
     /// Names of the columns: index, keys, measures.
