@@ -130,7 +130,7 @@ fn worst_s(runs: &[SideBySide], starts_s: &[f64]) -> Option<[f64; 2]> {
 
 fn table_of_runs(runs: &[SideBySide], starts_s: &[f64]) -> String {
     let row = |(run, start_s): (&SideBySide, &f64)| {
-        let marked = run.windows_s.iter().map(|(from, to)| to - from).sum::<f64>();
+        let marked = run.windows_s.iter().fold(0.0, |all, (from, to)| all + (to - from));
         format!("| {} | {start_s:.0} s | {:.0} s | {marked:.0} s |", run.run, length_s(run))
     };
     let rows: Vec<String> = runs.iter().zip(starts_s).map(row).collect();
