@@ -156,7 +156,9 @@ fn mean(names: (&str, &str), values: &[f64], goal: Goal, percent: bool) -> Metri
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
     let half = 1.96 * (variance / n).sqrt();
-    figure(names, mean, [mean - half, mean + half], values.len(), goal.words(percent), goal)
+    // A mean of shares is no greater than 1.
+    let most = if percent { 1.0 } else { f64::INFINITY };
+    figure(names, mean, [mean - half, (mean + half).min(most)], values.len(), goal.words(percent), goal)
 }
 
 fn mean_probability(one: &[&Row]) -> Metric {
