@@ -127,6 +127,27 @@ fn a_cut_line_in_the_journal_is_a_point_to_do() {
     assert!(tables(&out) == expected);
 }
 
+/// A shard is the same sweep from whatever folder it is begun, by whatever path.
+#[test]
+fn where_a_sweep_stands_is_no_part_of_it() {
+    let (folder, _, at) = sweep(SWEEP);
+    let beside = SWEEP.replace("scene = \"muscle_bench\"", "scene = \"scene.toml\"");
+    fs::write(folder.path().join("sweep.toml"), beside).expect("written");
+    let stock = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/muscle_bench.toml");
+    fs::copy(stock, folder.path().join("scene.toml")).expect("copied");
+    let from = |directory: &Path, file: &str, shard: &str, out: &str| {
+        let done =
+            command(&[file, "--shard", shard, "--out", &at(out)]).current_dir(directory).output().expect("starts");
+        assert!(done.status.success(), "{}", text(&done.stderr));
+    };
+    from(folder.path(), "sweep.toml", "1/2", "one");
+    from(folder.path().parent().expect("a parent"), &at("sweep.toml"), "2/2", "two");
+    let merged = smam(&["merge", &at("sweep.toml"), &at("one"), &at("two"), "--out", &at("merged")]);
+    assert!(merged.status.success(), "{}", text(&merged.stderr));
+    let part = smam(&["merge", &at("sweep.toml"), &at("one"), "--out", &at("part")]);
+    assert!(text(&part.stderr).contains("30 points are not done"), "{}", text(&part.stderr));
+}
+
 #[test]
 fn what_lies_there_is_not_written_over() {
     let (_folder, file, at) = sweep(SWEEP);

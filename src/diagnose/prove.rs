@@ -1,4 +1,4 @@
-//! Step 7: what the effects gain on runs that had no part in choosing or fitting them.
+//! Step 7: what the effects gain on runs that had no part in fitting them (`confirm` may take effects back by them).
 
 use std::collections::BTreeMap;
 

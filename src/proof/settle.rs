@@ -60,7 +60,7 @@ fn after(
     out: &Path,
     added: impl FnOnce() -> Result<Recording, ProofError>,
 ) -> Result<After, ProofError> {
-    let own = Folders { cases: out.join("cases"), answers: out.join("answers") };
+    let own = Folders::below(out);
     if !own.answers.join(&truth.name).join("diagnosis.json").is_file() {
         let case = own.cases.join(&truth.name);
         add_run(&folders.cases.join(&truth.name), &case, &added()?)?;

@@ -52,7 +52,7 @@ impl Plan {
         let spec = base.file.simulation;
         let schedule = Schedule::even(file.duration_s.unwrap_or(spec.duration_s), spec.output_interval_s);
         let shares = Shares::new(file.sampling, &file.vary)?;
-        let fingerprint = fingerprint(&file, &base);
+        let fingerprint = fingerprint(&file, &base)?;
         let path = base.path;
         let text =
             std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
@@ -141,14 +141,17 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
     Ok(())
 }
 
-fn fingerprint(file: &SweepFile, base: &Scene) -> String {
-    let texts = [toml::to_string(file).unwrap_or_default(), toml::to_string(&base.file).unwrap_or_default()];
+/// Of what sweep and scene hold; not of where they stand, so that shards may be begun from any folder.
+fn fingerprint(file: &SweepFile, base: &Scene) -> Result<String, SweepError> {
+    let syntax = |e: toml::ser::Error| SweepError::Syntax { file: base.path.clone(), message: e.to_string() };
+    let anywhere = SweepFile { scene: base.file.name.clone(), ..file.clone() };
     let mut hasher = Sha256::new();
-    texts.iter().for_each(|t| hasher.update(t.as_bytes()));
-    hasher.finalize().iter().fold(String::new(), |mut hex, byte| {
+    hasher.update(toml::to_string(&anywhere).map_err(syntax)?);
+    hasher.update(toml::to_string(&base.file).map_err(syntax)?);
+    Ok(hasher.finalize().iter().fold(String::new(), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
-    })
+    }))
 }
 
 /// One part of a sweep's points: every `of`-th, from `number` on (counted from 1).

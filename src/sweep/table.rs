@@ -37,9 +37,9 @@ impl Table {
         Ok(Self::new(plan, rows))
     }
 
-    /// Points without a row.
-    pub fn missing(&self) -> u64 {
-        self.points - self.rows.len() as u64
+    /// Whether a point has a row.
+    pub fn has(&self, index: u64) -> bool {
+        self.rows.binary_search_by_key(&index, |r| r.index).is_ok()
     }
 
     /// Rows whose point failed.
