@@ -154,6 +154,10 @@ fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
             let message = "--measure and --duration need --vary and the name of a scene";
             return Err(CliError::Usage(format!("{message}\n  remedy: a sweep file holds its own measures")));
         }
+        if !Path::new(what).is_file() {
+            let remedy = "give a sweep file (docs/sweeps.md), or a scene with --vary KEY=FROM:TO:COUNT and --measure";
+            return Err(CliError::Usage(format!("{what}: there is no such sweep file\n  remedy: {remedy}")));
+        }
         return Ok(SweepFile::load(Path::new(what))?);
     }
     let stem = Path::new(what).file_stem().map_or_else(|| what.to_owned(), |s| s.to_string_lossy().into_owned());
