@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::muscle::{Coil, Friction, Stop};
 
 use super::check::Place;
-use super::{FrictionSpec, LinearSpec, MusclesSpec, SceneError, TubeSpec};
+use super::{FrictionSpec, LinearSpec, MusclesSpec, SceneError, TubeSpec, WallSpec};
 
 /// Checks `[muscles]` and the tables in it.
 pub(super) fn check_make(m: &MusclesSpec, file: &Path) -> Result<(), SceneError> {
@@ -56,6 +56,7 @@ fn check_tube<'a>(tube: &TubeSpec, at: impl Fn(&str) -> Place<'a>) -> Result<(),
             "give the diameters in m, outer larger than inner",
         ));
     }
+    check_area_growth(tube, &place)?;
     let place = at("[muscles.tube.material]");
     tube.material.check().map_err(|e| place.error(e.to_string(), "give the moduli in Pa, above zero"))?;
     let place = at("[muscles.tube.coil]");
@@ -67,6 +68,24 @@ fn check_tube<'a>(tube: &TubeSpec, at: impl Fn(&str) -> Place<'a>) -> Result<(),
     let place = at("[muscles.tube.closed_stop]");
     let stop = Stop { stiffness_n_m: stop.stiffness_n_m, damping_n_s_m: stop.damping_n_s_m };
     stop.check().map_err(|e| place.error(e.to_string(), STIFF))
+}
+
+/// A bore that grows, on a wall that the coil holds.
+fn check_area_growth(tube: &TubeSpec, place: &Place) -> Result<(), SceneError> {
+    place.finite("area_growth_1_m", tube.area_growth_1_m)?;
+    if !(0.0..=20.0).contains(&tube.area_growth_1_m) {
+        return Err(place.error(
+            format!("area_growth_1_m = {} must lie between 0 and 20", tube.area_growth_1_m),
+            "leave it out for a coil that holds its bore; a few 1/m widen it by tens of percent",
+        ));
+    }
+    if tube.area_growth_1_m != 0.0 && tube.wall == WallSpec::Unilateral {
+        return Err(place.error(
+            "area_growth_1_m and wall = \"unilateral\" exclude each other".to_owned(),
+            "leave one of them out: a wall off its coil has an area of its own",
+        ));
+    }
+    Ok(())
 }
 
 fn check_friction(f: &FrictionSpec, place: &Place) -> Result<(), SceneError> {

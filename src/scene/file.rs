@@ -118,6 +118,9 @@ pub struct TubeSpec {
     /// Whether the wall stays on the coil (`held`) or may come off it (`unilateral`).
     #[serde(default)]
     pub wall: WallSpec,
+    /// `b` of `dV/de = A_c (1 + 2 b e)`, 1/m: a bore that takes more fluid the longer it is. 0: the coil holds it.
+    #[serde(default)]
+    pub area_growth_1_m: f64,
     pub coil: CoilSpec,
     /// The coil closed on its turns: no elongation below zero.
     #[serde(skip_serializing_if = "Option::is_none")]

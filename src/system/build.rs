@@ -359,5 +359,6 @@ fn tube_elastic(tube: &TubeSpec, rest_length_m: f64) -> Result<Elastic<f64>, cra
             WallSpec::Unilateral => WallCondition::Unilateral,
         },
         coil: Coil { stiffness_n_m: tube.coil.stiffness_n_m, preload_n: tube.coil.preload_n },
+        area_growth_1_m: tube.area_growth_1_m,
     })
 }

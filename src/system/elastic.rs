@@ -7,8 +7,8 @@ use crate::scalar::Scalar;
 /// Conservative law of a muscle.
 #[derive(Clone, Debug)]
 pub enum Elastic<D> {
-    /// A microtube in a coil.
-    Tube { wall: Wall<D>, condition: WallCondition, coil: Coil<D> },
+    /// A microtube in a coil. While the coil holds the wall, `dV/de = A_c (1 + 2 b e)` with `b` = `area_growth_1_m`.
+    Tube { wall: Wall<D>, condition: WallCondition, coil: Coil<D>, area_growth_1_m: D },
     /// `F_pull = k e + b p`: a muscle known only by its stiffness and by the pull that pressure adds
     /// (b > 0: contracts when pressurised, as twisted and coiled tubes do).
     Linear { stiffness_n_m: D, pressure_gain_m2: D },
@@ -31,17 +31,17 @@ impl<D: Scalar> Elastic<D> {
     /// The law at elongation `e`, m, and gauge pressure `p`, Pa.
     pub fn at(&self, e: D, p: D) -> ElasticPoint<D> {
         match self {
-            Self::Tube { wall, condition: WallCondition::Held, coil } => {
+            Self::Tube { wall, condition: WallCondition::Held, coil, area_growth_1_m } => {
                 let (wall_pull, wall_stiffness) = wall.pull_and_stiffness(e);
-                let area = D::constant(wall.geometry().coil_area_m2());
+                let (area, area_slope) = grown_area(wall, *area_growth_1_m, e);
                 ElasticPoint {
                     pull_n: wall_pull + coil.pull_n(e) - p * area,
-                    stiffness_n_m: wall_stiffness + coil.stiffness_n_m,
+                    stiffness_n_m: wall_stiffness + coil.stiffness_n_m - p * area_slope,
                     area_m2: area,
                     compliance_m3_pa: D::constant(0.0),
                 }
             }
-            Self::Tube { wall, condition: WallCondition::Unilateral, coil } => {
+            Self::Tube { wall, condition: WallCondition::Unilateral, coil, .. } => {
                 let free = wall.unilateral(e, p);
                 ElasticPoint {
                     pull_n: free.pull_n + coil.pull_n(e),
@@ -84,11 +84,18 @@ impl<D: Scalar> Elastic<D> {
     pub fn holding_pressure_pa(&self, e: D, load_n: D) -> D {
         let zero = D::constant(0.0);
         match self {
-            Self::Tube { wall, coil, .. } => {
+            Self::Tube { wall, coil, area_growth_1_m, .. } => {
                 let (wall_pull, _) = wall.pull_and_stiffness(e);
-                (wall_pull + coil.pull_n(e) - load_n) / wall.geometry().coil_area_m2()
+                (wall_pull + coil.pull_n(e) - load_n) / grown_area(wall, *area_growth_1_m, e).0
             }
             Self::Linear { .. } => zero,
         }
     }
+}
+
+/// `dV/de = A_c (1 + 2 b e)`, m², and its slope, m.
+fn grown_area<D: Scalar>(wall: &Wall<D>, growth_1_m: D, e: D) -> (D, D) {
+    let area = wall.geometry().coil_area_m2();
+    let slope = growth_1_m * (2.0 * area);
+    (slope * e + area, slope)
 }

@@ -266,7 +266,7 @@ fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
 /// Energy of wall and coil; for a wall that may leave its coil `U(e, p)` at its own radius.
 fn elastic_energy(elastic: &Elastic<f64>, e: f64, p: f64) -> f64 {
     match elastic {
-        Elastic::Tube { wall, condition, coil } => {
+        Elastic::Tube { wall, condition, coil, .. } => {
             let wall_energy = match condition {
                 crate::muscle::WallCondition::Held => wall.energy_j(e),
                 crate::muscle::WallCondition::Unilateral => wall.unilateral(e, p).energy_j,

@@ -85,10 +85,11 @@ impl Elastic<f64> {
     fn lift<D: Scalar>(&self) -> Elastic<D> {
         let c = D::constant;
         match self {
-            Self::Tube { wall, condition, coil } => Elastic::Tube {
+            Self::Tube { wall, condition, coil, area_growth_1_m } => Elastic::Tube {
                 wall: wall.with_material(wall.material().map(D::constant)),
                 condition: *condition,
                 coil: Coil { stiffness_n_m: c(coil.stiffness_n_m), preload_n: c(coil.preload_n) },
+                area_growth_1_m: c(*area_growth_1_m),
             },
             Self::Linear { stiffness_n_m, pressure_gain_m2 } => {
                 Elastic::Linear { stiffness_n_m: c(*stiffness_n_m), pressure_gain_m2: c(*pressure_gain_m2) }

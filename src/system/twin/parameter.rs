@@ -12,6 +12,7 @@ use super::Twin;
 pub enum TwinParameter {
     TubeC1,
     CoilStiffness,
+    AreaGrowth,
     UpstreamCompliance,
     DownstreamCompliance,
     FrictionM0,
@@ -32,6 +33,7 @@ pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
     Some(match key {
         "muscles.tube.material.c1_pa" => P::TubeC1,
         "muscles.tube.coil.stiffness_n_m" => P::CoilStiffness,
+        "muscles.tube.area_growth_1_m" => P::AreaGrowth,
         "hydraulics.upstream_compliance_m3_pa" => P::UpstreamCompliance,
         "hydraulics.downstream_compliance_m3_pa" => P::DownstreamCompliance,
         "muscles.friction.m0_n" => P::FrictionM0,
@@ -89,6 +91,7 @@ impl TwinParameter {
                 *wall = wall.with_material(material);
             }
             (Self::CoilStiffness, Elastic::Tube { coil, .. }, _, _) => coil.stiffness_n_m = value,
+            (Self::AreaGrowth, Elastic::Tube { area_growth_1_m, .. }, _, _) => *area_growth_1_m = value,
             (Self::LinearStiffness, Elastic::Linear { stiffness_n_m, .. }, _, _) => *stiffness_n_m = value,
             (Self::PressureGain, Elastic::Linear { pressure_gain_m2, .. }, _, _) => *pressure_gain_m2 = value,
             (Self::FrictionM0, _, Some(friction), _) => friction.m0_n = value,
