@@ -14,6 +14,7 @@ pub mod muscle;
 pub mod proof;
 pub mod recording;
 pub mod report;
+pub mod reproduce;
 pub mod scalar;
 pub mod scene;
 pub mod sweep;

@@ -25,6 +25,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sweep", &["recording", "scene", "system"]),
     ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
+    ("reproduce", &["effects", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"]),
     ("view", &["mechanism", "system"]),
     (
         "cli",
@@ -37,6 +38,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "proof",
             "recording",
             "report",
+            "reproduce",
             "scene",
             "sweep",
             "system",

@@ -9,6 +9,7 @@ use smam::identify::IdentifyError;
 use smam::mechanism::MechanismError;
 use smam::proof::ProofError;
 use smam::recording::RecordingError;
+use smam::reproduce::ReproduceError;
 use smam::scene::SceneError;
 use smam::sweep::SweepError;
 use smam::system::{RunError, SystemError};
@@ -35,6 +36,8 @@ pub enum CliError {
     Proof(#[from] ProofError),
     #[error(transparent)]
     Conceal(#[from] ConcealError),
+    #[error(transparent)]
+    Reproduce(#[from] ReproduceError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]

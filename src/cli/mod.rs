@@ -15,6 +15,7 @@ mod model;
 mod observers;
 mod proof;
 mod proof_figure;
+mod reproduce;
 mod run;
 mod scenes;
 mod score;
@@ -67,6 +68,8 @@ enum Command {
     Score(score::ScoreArguments),
     /// Conceal, diagnose and score many cases: the proof, repeated on your own seed
     Proof(proof::ProofArguments),
+    /// Make the paper's figures again, each printed number beside ours
+    Reproduce(reproduce::ReproduceArguments),
     /// Generate a model file
     Model(model::ModelArguments),
 }
@@ -89,6 +92,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
         Some(Command::Score(arguments)) => score::score(&arguments),
         Some(Command::Proof(arguments)) => proof::proof(&arguments),
+        Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
     }
 }

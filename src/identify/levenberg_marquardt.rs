@@ -125,12 +125,16 @@ impl Search<'_> {
                 damped[(j, j)] += damping * (normal[(j, j)] + 1e-9 * scale);
             }
             if let Some(cholesky) = damped.cholesky() {
-                let next = (u - cholesky.solve(&gradient)).map(|x| x.clamp(0.0, 1.0));
+                let free = u - cholesky.solve(&gradient);
+                let next = free.map(|x| x.clamp(0.0, 1.0));
                 let promised = 1.0 - (r + jacobian * (&next - u)).norm_squared() / r.norm_squared();
-                if promised < worth_while {
+                // A step cut off at a bound may promise nothing where a shorter one still does.
+                if promised < worth_while && next == free {
                     return None;
                 }
-                if let Some(there) = self.evaluate(&next).filter(|t| t.norm_squared() < r.norm_squared()) {
+                if promised >= worth_while
+                    && let Some(there) = self.evaluate(&next).filter(|t| t.norm_squared() < r.norm_squared())
+                {
                     return Some((next, there, (damping / 10.0).max(1e-12)));
                 }
             }
@@ -153,6 +157,15 @@ mod tests {
         let bounds = [Bounds { min: 0.0, max: 10.0 }, Bounds { min: 0.0, max: 2.0 }];
         let result = minimise(&residuals, &[1.0, 1.0], &bounds, LmOptions::default()).expect("start is valid");
         assert!((result.parameters[0] - 3.0).abs() < 1e-5 && (result.parameters[1] - 0.4).abs() < 1e-5, "{result:?}");
+    }
+
+    /// Two parameters that nearly trade off: the undamped step leaves the box, and cut off it leads uphill.
+    #[test]
+    fn a_step_cut_off_at_a_bound_is_shortened() {
+        let residuals = |x: &[f64]| Some(DVector::from_vec(vec![30.0 * (x[0] - x[1]), 0.1 * (x[0] + x[1] - 6.0)]));
+        let bounds = [Bounds { min: 0.0, max: 1.0 }, Bounds { min: 0.0, max: 10.0 }];
+        let result = minimise(&residuals, &[0.5, 0.5], &bounds, LmOptions::default()).expect("valid");
+        assert!((result.parameters[0] - 1.0).abs() < 1e-3 && (result.parameters[1] - 1.0).abs() < 1e-2, "{result:?}");
     }
 
     #[test]

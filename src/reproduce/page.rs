@@ -1,0 +1,77 @@
+//! The page and the JSON of what was reproduced.
+
+use serde_json::{Value, json};
+
+use crate::report::{HtmlPage, figure_svg};
+
+use super::{Chapter, Figure, Row};
+
+const SIZE: (f64, f64) = (720.0, 300.0);
+
+/// A figure of the paper with what was made of it.
+pub type Made = (&'static Figure, Chapter);
+
+/// One HTML page: the table of all numbers, then each figure.
+pub fn page(made: &[Made]) -> String {
+    let mut page = HtmlPage::new("Thai et al. 2021, made again");
+    page.paragraph(
+        "Every number that the paper prints beside ours. The paper published no raw data: shapes are compared with its \
+         printed hysteresis model and printed parameters. 'given' was taken over as an input; 'shown' has nothing to be \
+         compared with, or was printed about recordings that nobody else has.",
+    );
+    page.table(&HEADER, &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>());
+    for (figure, chapter) in made {
+        page.heading(&format!("{}: {}", figure.name, figure.title));
+        chapter.text.iter().for_each(|text| {
+            page.paragraph(text);
+        });
+        if !chapter.panels.is_empty() {
+            page.figure(&figure_svg(&chapter.panels, SIZE.0, SIZE.1), figure.title);
+        }
+    }
+    page.finish()
+}
+
+/// Heads of the table of numbers.
+pub const HEADER: [&str; 7] = ["figure", "quantity", "paper", "ours", "deviation", "", "remark"];
+
+/// A row as text, unit included.
+pub fn cells(figure: &Figure, row: &Row) -> Vec<String> {
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{} {}", short(v), row.unit));
+    vec![
+        figure.name.to_owned(),
+        row.quantity.clone(),
+        number(row.paper),
+        number(row.ours),
+        row.deviation().map_or_else(|| "-".to_owned(), |d| format!("{}{}", if d > 0.0 { "+" } else { "" }, short(d))),
+        row.standing.word().to_owned(),
+        row.remark.clone(),
+    ]
+}
+
+/// About four digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        0.0 => "0".to_owned(),
+        s if !(1e-3..1e5).contains(&s) => format!("{value:.3e}"),
+        s if s >= 100.0 => format!("{value:.1}"),
+        s if s >= 1.0 => format!("{value:.3}"),
+        _ => format!("{value:.4}"),
+    }
+}
+
+/// The same as `reproduce.json`: a list of figures, each with its rows.
+pub fn json(made: &[Made]) -> Value {
+    let row = |r: &Row| {
+        json!({
+            "quantity": r.quantity, "unit": r.unit, "paper": r.paper, "ours": r.ours,
+            "deviation": r.deviation(), "standing": r.standing, "remark": r.remark,
+        })
+    };
+    let figures = made.iter().map(|(figure, chapter)| {
+        let rows: Vec<Value> = chapter.rows.iter().map(row).collect();
+        json!({ "figure": figure.name, "title": figure.title, "text": chapter.text, "rows": rows })
+    });
+    json!({ "format": 1, "source": "Thai et al. 2021, doi 10.1109/LRA.2021.3072599", "figures": figures.collect::<Vec<_>>() })
+}

@@ -1,0 +1,148 @@
+//! Playing stock scenes: the full scene, and its fast model where a figure needs many runs.
+
+use crate::effects::EffectTable;
+use crate::recording::Recording;
+use crate::scene::{Override, Program, Scene};
+use crate::system::{InputSource, Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+
+use super::ReproduceError;
+use super::error::lacking;
+
+/// One run of a stock scene, with what differs from it.
+#[derive(Clone, Default)]
+pub struct Play {
+    pub scene: &'static str,
+    pub overrides: Vec<Override>,
+    pub effects: Vec<EffectTable>,
+    /// Channel and programme.
+    pub inputs: Vec<(&'static str, Program)>,
+    /// Of the scene, if none is given.
+    pub duration_s: Option<f64>,
+}
+
+/// A run of a scene as delivered.
+pub fn stock(scene: &'static str) -> Play {
+    Play { scene, ..Play::default() }
+}
+
+/// A programme from its TOML, lengths in m.
+pub fn program(figure: &'static str, toml: &str) -> Result<Program, ReproduceError> {
+    let table = toml.parse::<toml::Table>().map_err(|e| lacking(figure, e.to_string()))?;
+    Program::parse(&table, "m").map_err(|e| lacking(figure, e))
+}
+
+/// A raised cosine, `stroke/2 (1 - cos 2 pi f t)`.
+pub fn sine(figure: &'static str, stroke_m: f64, frequency_hz: f64) -> Result<Program, ReproduceError> {
+    program(figure, &format!("kind = \"sine\"\nstroke_m = {stroke_m:e}\nfrequency_hz = {frequency_hz:e}"))
+}
+
+/// An effect of the catalogue.
+pub fn effect(name: &str, element: &str, parameters: &[(&str, f64)]) -> EffectTable {
+    EffectTable {
+        name: name.to_owned(),
+        element: element.to_owned(),
+        channel: None,
+        parameters: parameters.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
+    }
+}
+
+impl Play {
+    /// With a number of the scene changed.
+    pub fn with(mut self, key: &str, value: f64) -> Self {
+        self.overrides.push(Override::number(key, value));
+        self
+    }
+
+    /// With an effect.
+    pub fn and(mut self, effect: EffectTable) -> Self {
+        self.effects.push(effect);
+        self
+    }
+
+    /// Driven by a programme.
+    pub fn driven(mut self, channel: &'static str, program: Program) -> Self {
+        self.inputs.push((channel, program));
+        self
+    }
+
+    /// For so long.
+    pub fn lasting(mut self, duration_s: f64) -> Self {
+        self.duration_s = Some(duration_s);
+        self
+    }
+
+    /// The scene as it is played, programmes apart.
+    pub fn scene(&self) -> Result<Scene, ReproduceError> {
+        let mut scene = Scene::load(self.scene, &self.overrides)?;
+        scene.file.effect.extend(self.effects.iter().cloned());
+        Ok(scene)
+    }
+
+    fn schedule(&self, scene: &Scene) -> Schedule {
+        let spec = &scene.file.simulation;
+        Schedule::even(self.duration_s.unwrap_or(spec.duration_s), spec.output_interval_s)
+    }
+
+    /// Plays the full scene, rigid bodies included.
+    pub fn run(&self) -> Result<Recording, ReproduceError> {
+        let scene = self.scene()?;
+        let schedule = self.schedule(&scene);
+        let mut simulation = Simulation::new(scene)?;
+        for (channel, program) in &self.inputs {
+            simulation.set_input(channel, InputSource::Program(program.clone()));
+        }
+        Ok(record(&mut simulation, &schedule)?)
+    }
+
+    /// The scene's fast model with the inputs of this run.
+    pub fn fast(&self) -> Result<Fast, ReproduceError> {
+        let scene = self.scene()?;
+        let twin = Twin::new(&scene)?;
+        let times_s = self.schedule(&scene).0;
+        let given = |channel: &str| self.inputs.iter().find(|(c, _)| *c == channel).map(|(_, p)| p.clone());
+        let programs =
+            scene.file.input.iter().zip(&scene.programs).map(|(i, p)| given(&i.channel).unwrap_or_else(|| p.clone()));
+        let inputs = programs.map(|p| times_s.iter().map(|t| p.value(*t)).collect()).collect();
+        Ok(Fast { twin, run: TwinRun { times_s, inputs, plan: None } })
+    }
+}
+
+/// A fast model and what drives it.
+pub struct Fast {
+    twin: Twin,
+    run: TwinRun,
+}
+
+impl Fast {
+    pub fn times_s(&self) -> &[f64] {
+        &self.run.times_s
+    }
+
+    /// An input of the scene along the run, mm.
+    pub fn input_mm(&self, index: usize) -> Vec<f64> {
+        self.run.inputs[index].iter().map(|x| x * 1e3).collect()
+    }
+
+    /// One output channel with numbers of the scene changed and effects added; none where it diverges.
+    pub fn channel(
+        &self,
+        column: &str,
+        numbers: &[(&str, f64)],
+        effects: &[EffectTable],
+    ) -> Result<Vec<f64>, ReproduceError> {
+        let index = self.twin.columns().position(|c| c == column);
+        let index = index.ok_or_else(|| lacking("-", format!("the scene has no channel {column}")))?;
+        let parameters = numbers.iter().map(|(key, value)| {
+            let parameter = self.twin.parameter(key);
+            parameter.map(|p| (p, *value)).ok_or_else(|| lacking("-", format!("the fast model cannot vary {key}")))
+        });
+        let effects = effects.iter().map(|e| e.effect().map_err(|error| lacking("-", error.to_string())));
+        let setting = TwinSetting {
+            parameters: parameters.collect::<Result<_, _>>()?,
+            effects: effects.collect::<Result<_, _>>()?,
+        };
+        let mut series =
+            self.twin.simulate(&self.run, &setting).ok_or_else(|| lacking("-", "the fast model diverges"))?;
+        Ok(series.swap_remove(index))
+    }
+}
