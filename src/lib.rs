@@ -6,6 +6,7 @@
 pub mod conceal;
 pub mod diagnose;
 pub mod effects;
+pub mod feedforward;
 pub mod hydraulics;
 pub mod hysteresis;
 pub mod identify;

@@ -14,6 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
     ("hysteresis", &["scalar"]),
+    ("feedforward", &["hysteresis"]),
     ("effects", &["scalar"]),
     ("scene", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar"]),
     ("system", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
@@ -25,7 +26,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sweep", &["recording", "scene", "system"]),
     ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
-    ("reproduce", &["effects", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"]),
+    (
+        "reproduce",
+        &["effects", "feedforward", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"],
+    ),
     ("view", &["mechanism", "system"]),
     (
         "cli",

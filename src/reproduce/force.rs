@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use crate::identify::loops::Form;
 use crate::recording::Recording;
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series};
 
 use super::error::lacking;
-use super::loops::{Loop, bounds};
+use super::identified::{fitted, recorded};
+use super::loops::{Loop, bounds, straight_line};
 use super::rig::{Play, program, sine, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -83,16 +85,6 @@ fn pull_at_no_pressure(run: &Recording) -> Option<f64> {
     Some(f[i] + (f[i + 1] - f[i]) * p[i] / (p[i] - p[i + 1]))
 }
 
-/// Slope, offset and R² of the least-squares line.
-fn straight_line(x: &[f64], y: &[f64]) -> (f64, f64, f64) {
-    let n = x.len() as f64;
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
-    let (mx, my) = (mean(x), mean(y));
-    let about = |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
-    let (xx, xy, yy) = (about(x, mx, x, mx), about(x, mx, y, my), about(y, my, y, my));
-    (xy / xx, my - xy / xx * mx, xy * xy / (xx * yy))
-}
-
 /// Figs. 4g and 7: the plunger withdrawn and let back at three lengths.
 pub fn held() -> Result<Chapter, ReproduceError> {
     const FIGURE: &str = "4g";
@@ -122,14 +114,38 @@ pub fn held() -> Result<Chapter, ReproduceError> {
         ));
         series.push(Series { label: format!("{length_mm} mm"), colour, x: cycle.x, y: cycle.y });
     }
-    chapter.panels = vec![Panel {
+    let (modelled, row) = fig_7(&series[1])?;
+    chapter.rows.push(row);
+    let forces = Panel {
         title: vec!["Force of a muscle held at 65, 75 and 85 mm; plunger positive where fluid is withdrawn".to_owned()],
         x_label: "plunger withdrawn (mm)".to_owned(),
         y_label: "force (N)".to_owned(),
         series,
         ..Panel::default()
-    }];
+    };
+    chapter.panels = vec![forces, modelled];
     Ok(chapter)
+}
+
+/// Fig. 7: the paper's form, identified on the loop at 75 mm; force stands in the place of elongation.
+fn fig_7(cycle: &Series) -> Result<(Panel, Row), ReproduceError> {
+    const FIGURE: &str = "4g";
+    let time_s: Vec<f64> = (0..cycle.x.len()).map(|i| i as f64 * 0.01).collect();
+    let run = recorded("75 mm", &time_s, &cycle.x, &cycle.y, 11);
+    let model = fitted(FIGURE, std::slice::from_ref(&run), Form::Paper)?;
+    let line = |label: &str, colour, y: Vec<f64>| Series { label: label.to_owned(), colour, x: cycle.x.clone(), y };
+    let panel = Panel {
+        title: vec!["The paper's form on the force at 75 mm".to_owned()],
+        x_label: "plunger withdrawn (mm)".to_owned(),
+        y_label: "force (N)".to_owned(),
+        behind: vec![line("stock rig", "#bdbdbd", run.output_mm.clone())],
+        series: vec![line("paper's form", BLUE, model.model.follow(&time_s, &cycle.x))],
+        ..Panel::default()
+    };
+    let rms_n = model.mean_square_mm2.sqrt();
+    let met = rms_n < 0.02 * bounds(&cycle.y).1;
+    let remark = "RMS; paper: fitted well, no number printed; met below 2 % of the greatest force";
+    Ok((panel, Row::judged("paper's form on the force at 75 mm", "N", None, rms_n, met, remark)))
 }
 
 /// The stroke that leaves a tenth of the pressure, m: what the compliances give up.

@@ -91,6 +91,16 @@ pub fn mean_speed(time_s: &[f64], y: &[f64]) -> f64 {
     way / (time_s[time_s.len() - 1] - time_s[0])
 }
 
+/// Slope, offset and R² of the least-squares line.
+pub fn straight_line(x: &[f64], y: &[f64]) -> (f64, f64, f64) {
+    let n = x.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (mx, my) = (mean(x), mean(y));
+    let about = |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
+    let (xx, xy, yy) = (about(x, mx, x, mx), about(x, mx, y, my), about(y, my, y, my));
+    (xy / xx, my - xy / xx * mx, xy * xy / (xx * yy))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

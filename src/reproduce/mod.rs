@@ -10,9 +10,11 @@ mod endurance;
 mod error;
 mod force;
 mod frequency;
+mod identified;
 mod lifting;
 mod loops;
 mod page;
+mod models;
 mod printed;
 mod programmes;
 mod pulley;
@@ -20,6 +22,7 @@ mod rig;
 mod routing;
 mod search;
 mod sizes;
+mod tracking;
 
 pub use chapter::{Chapter, Row, Standing};
 pub use error::ReproduceError;
@@ -43,12 +46,10 @@ pub const FIGURES: &[Figure] = &[
     Figure { name: "4cd", title: "routing of the line, and a tendon in a sheath", make: routing::chapter },
     Figure { name: "4e", title: "the loop from 0.2 to 1.5 Hz", make: frequency::loops },
     Figure { name: "4f", title: "2000 s at 80 % and 0.1 Hz", make: endurance::chapter },
-    Figure {
-        name: "4g",
-        title: "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)",
-        make: force::held,
-    },
+    Figure { name: "4g", title: "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)", make: force::held },
     Figure { name: "printed", title: "first principles against the printed model", make: printed::chapter },
+    Figure { name: "5", title: "three models on one loop, and on others (Figs. 5, 6)", make: models::chapter },
     Figure { name: "8", title: "the pulley's positions", make: pulley::chapter },
     Figure { name: "10", title: "the catheter bends, grips, moves, releases", make: catheter::chapter },
+    Figure { name: "feedforward", title: "tracking with the model inverted (announced in section VII)", make: tracking::chapter },
 ];

@@ -68,8 +68,14 @@ impl Bench {
         Ok(Candidate { name, colour, numbers, cycle, rms_mm })
     }
 
-    /// Least squares over the loop from the stock values.
+    /// Least squares over the loop from the stock values; a bound that is met is widened once.
     fn fitted(&self, bounds: &[(&'static str, Bounds)], start: &[f64]) -> Vec<(&'static str, f64)> {
+        let found = self.within(bounds, start);
+        let widened: Vec<_> = bounds.iter().zip(&found).map(|((key, b), (_, x))| (*key, widened(*b, *x))).collect();
+        if widened == bounds { found } else { self.within(&widened, &found.iter().map(|f| f.1).collect::<Vec<_>>()) }
+    }
+
+    fn within(&self, bounds: &[(&'static str, Bounds)], start: &[f64]) -> Vec<(&'static str, f64)> {
         let named = |x: &[f64]| bounds.iter().map(|(key, _)| *key).zip(x.iter().copied()).collect::<Vec<_>>();
         let residuals = |x: &[f64]| {
             let cycle = self.cycle(&named(x)).ok()?;
@@ -80,6 +86,15 @@ impl Bench {
         let options = LmOptions { max_iterations: 60, relative_decrease: 1e-6, difference: 1e-2 };
         let found = minimise(&residuals, start, &ranges, options);
         named(&found.map_or_else(|| start.to_vec(), |f| f.parameters))
+    }
+}
+
+/// The range half as wide again on the side where `x` met it.
+fn widened(b: Bounds, x: f64) -> Bounds {
+    let (close, more) = (1e-6 * (b.max - b.min), 0.5 * (b.max - b.min));
+    Bounds {
+        min: if x - b.min < close { (b.min - more).max(0.05 * b.min) } else { b.min },
+        max: if b.max - x < close { b.max + more } else { b.max },
     }
 }
 

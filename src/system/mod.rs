@@ -45,7 +45,7 @@ pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
 };
 pub use rosenbrock::Stepper;
-pub use run::{RunError, Schedule, record, run};
+pub use run::{Driver, RunError, Schedule, record, record_driven, run};
 pub use simulation::Simulation;
 pub use state::PlantState;
 pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

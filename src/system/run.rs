@@ -2,11 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::recording::{Channel, Recording};
+use crate::recording::{Channel, PiecewiseLinear, Recording};
 
 use super::channels::Channels;
 use super::observe::Observer;
-use super::{Simulation, SystemError, Warnings};
+use super::{InputSource, Simulation, SystemError, Warnings};
 
 /// The instants at which a run is recorded, s; increasing, the first one is the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,8 +64,77 @@ where
     Ok(warnings)
 }
 
+/// Someone who drives a run as it goes: a controller.
+pub trait Driver {
+    /// The inputs that are driven, with their values at the start, SI.
+    fn start(&self) -> Vec<(String, f64)>;
+
+    /// The output that is watched.
+    fn watched(&self) -> &str;
+
+    /// The driven inputs at `next_s`, SI, after the watched output read `measured` (in its column's unit) now; the
+    /// inputs go straight there.
+    fn choose(&mut self, next_s: f64, measured: f64) -> Vec<f64>;
+}
+
+/// As [`record`], with a driver that chooses inputs from instant to instant.
+///
+/// # Errors
+/// As [`record`]; a driver that drives or watches a channel the scene does not have.
+pub fn record_driven(
+    simulation: &mut Simulation,
+    schedule: &Schedule,
+    driver: &mut dyn Driver,
+) -> Result<Recording, SystemError> {
+    let mut now = driver.start();
+    check_names(simulation, now.iter().map(|(name, _)| name.as_str()), driver.watched())?;
+    let (mut at, mut chosen) = (schedule.0.first().copied().unwrap_or(0.0), Vec::new());
+    record_steps(simulation, schedule, |simulation, next_s, channels, values| {
+        let measured = channels.names.iter().position(|n| n == driver.watched()).map_or(f64::NAN, |i| values[i]);
+        chosen = driver.choose(next_s, measured);
+        for ((channel, before), after) in now.iter_mut().zip(&chosen) {
+            if let Some(line) = PiecewiseLinear::new(&[at, next_s], &[*before, *after]) {
+                simulation.set_input(channel, InputSource::Recorded(line));
+            }
+            *before = *after;
+        }
+        at = next_s;
+    })
+}
+
+fn check_names<'a>(
+    simulation: &Simulation,
+    driven: impl Iterator<Item = &'a str>,
+    watched: &str,
+) -> Result<(), SystemError> {
+    let file = &simulation.scene().file;
+    let refuse = |table: &str, name: &str, known: Vec<&str>| SystemError::Name {
+        file: simulation.scene().path.clone(),
+        table: table.to_owned(),
+        message: format!("there is no channel {name}"),
+        remedy: format!("use one of: {}", known.join(", ")),
+    };
+    let inputs: Vec<&str> = file.input.iter().map(|i| i.channel.as_str()).collect();
+    let outputs: Vec<&str> = file.output.iter().map(|o| o.channel.as_str()).collect();
+    for name in driven {
+        if !inputs.contains(&name) {
+            return Err(refuse("[[input]]", name, inputs));
+        }
+    }
+    if outputs.contains(&watched) { Ok(()) } else { Err(refuse("[[output]]", watched, outputs)) }
+}
+
 /// Runs over the schedule and returns the recording: inputs first, then outputs, in their columns' units.
 pub fn record(simulation: &mut Simulation, schedule: &Schedule) -> Result<Recording, SystemError> {
+    record_steps(simulation, schedule, |_, _, _, _| {})
+}
+
+/// Records; before each interval `before` sees the instant at its end and the channels at its start.
+fn record_steps(
+    simulation: &mut Simulation,
+    schedule: &Schedule,
+    mut before: impl FnMut(&mut Simulation, f64, &Channels, &[f64]),
+) -> Result<Recording, SystemError> {
     let mut channels = Channels::new(simulation)?;
     if let Some(&first) = schedule.0.first() {
         simulation.start_at(first);
@@ -74,6 +143,7 @@ pub fn record(simulation: &mut Simulation, schedule: &Schedule) -> Result<Record
     let mut values = Vec::new();
     for &time in &schedule.0 {
         if time > simulation.time_s() {
+            before(simulation, time, &channels, &values);
             simulation.advance_to(time)?;
         }
         channels.read(simulation, &mut values);
