@@ -18,7 +18,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("effects", &["scalar"]),
     ("scene", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar"]),
     ("system", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
-    ("identify", &["effects", "recording", "scalar", "scene", "system"]),
+    ("identify", &["effects", "hysteresis", "recording", "scalar", "scene", "system"]),
     ("diagnose", &["effects", "identify", "recording", "scalar", "scene", "system"]),
     // Nothing of the simulation, so that the proof is one.
     ("conceal", &["recording"]),
@@ -59,6 +59,7 @@ const OWNED: &[(&str, &str)] = &[
     ("rerun", "view"),
     ("diffsol", "conceal"),
     ("parquet", "sweep"),
+    ("pulp", "hysteresis"),
 ];
 
 /// Roots of the crate; they name every folder and stand outside the order.

@@ -1,7 +1,7 @@
 //! The generalized asymmetric Bouc-Wen model.
 
 use super::branch::Branch;
-use super::error::{HysteresisError, positive};
+use super::error::{HysteresisError, not_negative, positive};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +53,21 @@ impl<D: Scalar> AsymmetricBoucWen<D> {
         Ok(())
     }
 
+    /// Whether every closed loop turns the same way, `∮ z dx >= 0`: the pull-back is nowhere negative.
+    ///
+    /// With `z²/(2A)` as stored energy, `z dx` less what is stored is `|z|^(n+1)` times the pull-back over `A`. A pull-back on a
+    /// side of `x = 0` that the input never visits, by its least and greatest value, does not matter.
+    pub fn check_loops(&self, range_mm: [f64; 2]) -> Result<(), HysteresisError> {
+        self.check()?;
+        let visited = [(-1.0, range_mm[0] < 0.0), (1.0, range_mm[1] > 0.0)];
+        for (side, _) in visited.into_iter().filter(|(_, visited)| *visited) {
+            for (way, sign) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                not_negative("asymmetric Bouc-Wen", "pull-back", self.pull_back(side, way, sign).value())?;
+            }
+        }
+        Ok(())
+    }
+
     /// Output, mm.
     pub fn output(&self, x_mm: D, z: D) -> D {
         self.alpha_x * x_mm + self.alpha_z * z
@@ -72,13 +87,17 @@ impl<D: Scalar> AsymmetricBoucWen<D> {
         let length = to_mm - from_mm;
         let way = if length.value() < 0.0 { -1.0 } else { 1.0 };
         let side = if (from_mm + to_mm).value() < 0.0 { -1.0 } else { 1.0 };
-        let branch = Branch {
+        self.branch(side, way).travel(z, length * way)
+    }
+
+    /// The state's law on one side of `x = 0` (1 or -1) while the input goes up (`way` 1) or down (-1).
+    pub(super) fn branch(&self, side: f64, way: f64) -> Branch<D> {
+        Branch {
             drive: self.a * way,
             decay_above: self.pull_back(side, way, 1.0),
             decay_below: self.pull_back(side, way, -1.0),
             exponent: self.n,
-        };
-        branch.travel(z, length * way)
+        }
     }
 
     /// `psi sgn(v z)`: the decay for given signs of `x`, `v` and `z`.

@@ -63,31 +63,43 @@ impl<D: Scalar> Branch<D> {
             return z + self.slope(z) * length;
         }
         let (mut done, mut share) = (0.0, 1.0);
+        // The slope at the end of a step that holds is that at the start of the next.
+        let mut slope = self.slope(z);
         for _ in 0..MOST_STEPS {
             let last = done + share >= 1.0;
             let taken = if last { 1.0 - done } else { share };
-            let (next, error) = self.step(z, length * taken);
-            let ratio = (TOLERANCE * z.value().abs().max(1.0) / error.max(1e-300)).powf(0.2);
-            if ratio >= 1.0 {
-                z = next;
+            let (next, next_slope, error) = self.step(z, slope, length * taken);
+            let allowed = TOLERANCE * z.value().abs().max(1.0);
+            if error <= allowed {
+                (z, slope) = (next, next_slope);
                 done += taken;
                 if last {
                     return z;
                 }
             }
-            share = taken * (0.9 * ratio).clamp(0.1, 5.0);
+            share = taken * (0.9 * (allowed / error.max(1e-300)).powf(0.2)).clamp(0.1, 5.0);
         }
         D::constant(f64::NAN)
     }
 
-    fn step(&self, z: D, h: D) -> (D, f64) {
-        let mut slopes = [self.slope(z); 7];
+    /// How fast the state forgets near its limit, 1/mm: `n r |z|^(n-1)` where `r |z|^n = |c|`.
+    pub fn fading(&self) -> f64 {
+        let decay = self.decay_above.value().abs().max(self.decay_below.value().abs());
+        let (n, drive) = (self.exponent.value(), self.drive.value().abs());
+        n * decay.powf(1.0 / n) * drive.powf(1.0 - 1.0 / n)
+    }
+
+    /// The next state, the slope there, and the error.
+    fn step(&self, z: D, slope: D, h: D) -> (D, D, f64) {
+        let mut slopes = [slope; 7];
         let mut next = z;
         for (stage, weights) in STAGES.iter().enumerate() {
             next = z + h * combine(weights, &slopes);
             slopes[stage + 1] = self.slope(next);
         }
-        (next, (h * combine(&ERROR, &slopes)).value().abs())
+        // Only the plain value of the error decides.
+        let error: f64 = ERROR.iter().zip(&slopes).map(|(e, k)| e * k.value()).sum();
+        (next, slopes[6], (h.value() * error).abs())
     }
 
     fn slope(&self, z: D) -> D {

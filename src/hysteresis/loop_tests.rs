@@ -129,13 +129,13 @@ fn parameter_sets_are_readable_text() {
 #[test]
 fn val_play_loop_area() {
     // A play of half width r over a stroke s > 2r: the loop's area is 2r (s - 2r).
-    let model = PrandtlIshlinskii { gain: 0.0, elements: vec![PlayElement { weight: 1.0, half_width: 0.2 }] };
+    let model = PrandtlIshlinskii::classical(0.0, vec![PlayElement { weight: 1.0, half_width: 0.2 }]);
     let path = plunger(3, 20_000);
     let mut state = model.rest(0.0);
     let mut area = 0.0;
     let mut last = (0.0, 0.0);
     for (i, &x) in path.iter().enumerate() {
-        model.advance(&mut state, x);
+        model.advance(&mut state, x, 0.0);
         let y = model.output(x, &state);
         if i > 40_000 {
             area -= 0.5 * (y + last.1) * (x - last.0);
@@ -148,7 +148,12 @@ fn val_play_loop_area() {
 #[test]
 fn a_spring_with_slider_is_the_rest_of_a_play() {
     let play = Play { half_width: 0.3 };
-    let slip = MaxwellSlip { gain: 0.0, elements: vec![SlipElement { stiffness: 2.0, limit: 0.6 }] };
+    let slip = MaxwellSlip {
+        gain: 0.0,
+        curvature: 0.0,
+        gate: Gate::None,
+        elements: vec![SlipElement { stiffness: 2.0, reach: 0.3 }],
+    };
     let (mut w, mut x, mut state) = (0.0f64, 0.0f64, slip.rest());
     for target in [1.0, 0.6, -0.4, 0.1, 2.0, 1.9] {
         w = play.advance(w, target);

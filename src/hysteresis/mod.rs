@@ -1,24 +1,39 @@
 //! Displacement-form hysteresis: what comes out at the muscle's end for a plunger that moved so and so.
 //!
 //! Lengths are in **mm**, as in Thai et al. 2021, whose parameters carry these units. All laws here are
-//! rate-independent: they follow the path of the input, not its speed.
+//! rate-independent: they follow the path of the input, not its speed. The one exception is a Prandtl-Ishlinskii
+//! sum that is told to widen with speed.
 
 mod asymmetric;
 mod branch;
 mod error;
+mod family;
+mod lanes;
 mod model;
 mod paper;
 mod play;
+mod power;
+mod slip;
 mod symmetric;
 
 #[cfg(test)]
 mod loop_tests;
 #[cfg(test)]
+mod passivity_tests;
+#[cfg(test)]
 mod path_tests;
 
 pub use asymmetric::AsymmetricBoucWen;
 pub use error::HysteresisError;
+pub use family::HysteresisModel;
+pub use lanes::{LANES, mean_squares};
 pub use model::DisplacementModel;
 pub use paper::{Gate, PaperModel};
-pub use play::{MaxwellSlip, Play, PlayElement, PrandtlIshlinskii, SlipElement};
+pub use play::{Play, PlayElement, PrandtlIshlinskii};
+pub use slip::{MaxwellSlip, SlipElement};
 pub use symmetric::SymmetricBoucWen;
+
+/// What a parameter is that a scene does not name.
+fn zero<D: crate::scalar::Scalar>() -> D {
+    D::constant(0.0)
+}

@@ -1,5 +1,6 @@
-//! The three displacement-form models behind one interface.
+//! The three models of the Bouc-Wen kind behind one interface; [`super::HysteresisModel`] adds those with several states.
 
+use super::branch::Branch;
 use super::error::HysteresisError;
 use super::{AsymmetricBoucWen, Gate, PaperModel, SymmetricBoucWen};
 use crate::scalar::Scalar;
@@ -33,6 +34,34 @@ impl<D: Scalar> DisplacementModel<D> {
             Self::Symmetric(model) => model.advance(z, from_mm, to_mm),
             Self::Asymmetric(model) => model.advance(z, from_mm, to_mm),
             Self::Paper(model) => model.advance(z, from_mm, to_mm),
+        }
+    }
+
+    /// The state's law on one side of `x = 0` (1 or -1) while the input goes up (`way` 1) or down (-1).
+    pub(super) fn branch(&self, side: f64, way: f64) -> Branch<D> {
+        match self {
+            Self::Symmetric(model) => model.branch(way),
+            Self::Asymmetric(model) => model.branch(side, way),
+            Self::Paper(model) => model.branch(way),
+        }
+    }
+
+    /// What the output is a sum of, by this form alone: a curve, the input, and the state's factor.
+    pub fn terms(&self, x_mm: D) -> [D; 3] {
+        let [zero, one] = [0.0, 1.0].map(D::constant);
+        match self {
+            Self::Paper(_) if x_mm.value() < 0.0 => [zero; 3],
+            Self::Paper(model) => [model.powered(x_mm), x_mm, model.gate.factor(x_mm)],
+            Self::Symmetric(_) | Self::Asymmetric(_) => [zero, x_mm, one],
+        }
+    }
+
+    /// The output's weights of the terms.
+    pub fn gains(&self) -> [D; 3] {
+        match self {
+            Self::Symmetric(m) => [D::constant(0.0), m.gamma_x, m.gamma_z],
+            Self::Asymmetric(m) => [D::constant(0.0), m.alpha_x, m.alpha_z],
+            Self::Paper(m) => [m.alpha_x1, m.alpha_x2, m.alpha_z],
         }
     }
 
@@ -89,6 +118,19 @@ impl<D: Scalar> DisplacementModel<D> {
             Self::Symmetric(model) => model.check(),
             Self::Asymmetric(model) => model.check(),
             Self::Paper(model) => model.check(),
+        }
+    }
+
+    /// Whether every closed loop within the range of inputs turns the same way, `∮ z dx >= 0`: the unloading branch
+    /// stays above the loading one where the gain of `z` is negative, below where it is positive, and the energy that such a
+    /// loop stands for is never gained.
+    ///
+    /// Sufficient conditions, each with its proof at the model's own `check_loops`.
+    pub fn check_loops(&self, range_mm: [f64; 2]) -> Result<(), HysteresisError> {
+        match self {
+            Self::Symmetric(model) => model.check_loops(),
+            Self::Asymmetric(model) => model.check_loops(range_mm),
+            Self::Paper(model) => model.check_loops(),
         }
     }
 }

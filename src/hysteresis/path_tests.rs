@@ -39,6 +39,58 @@ fn sampling_does_not_matter() {
     }
 }
 
+/// Places and times of the same path, each straight piece cut into equal parts.
+fn timed(pieces: usize) -> (Vec<f64>, Vec<f64>) {
+    let path = refined(pieces);
+    let time = (0..path.len()).map(|i| i as f64 / pieces as f64).collect();
+    (time, path)
+}
+
+#[test]
+fn sampling_does_not_matter_to_sums_of_plays_and_sliders() {
+    let plays = [(1.0, 0.05), (2.0, 0.2)].map(|(weight, half_width)| PlayElement { weight, half_width });
+    let sliders = [(-2.0, 0.1), (-1.0, 0.4)].map(|(stiffness, reach)| SlipElement { stiffness, reach });
+    let sum = PrandtlIshlinskii { curvature: 0.1, asymmetry: 0.1, ..PrandtlIshlinskii::classical(7.0, plays.to_vec()) };
+    let slip = MaxwellSlip { gain: 7.0, curvature: 0.1, gate: Gate::Tanh, elements: sliders.to_vec() };
+    for model in [
+        HysteresisModel::PrandtlIshlinskii(sum.clone()),
+        HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii { rate_s: 0.02, ..sum }),
+        HysteresisModel::MaxwellSlip(slip),
+    ] {
+        let last = |pieces: usize| -> f64 {
+            let (time, path) = timed(pieces);
+            model.follow(&time, &path).last().copied().unwrap()
+        };
+        for pieces in [7, 300] {
+            assert!((last(pieces) - last(1)).abs() < 1e-9, "{model:?}: {} {}", last(pieces), last(1));
+        }
+        let again = model.with_parameters(&model.parameters()).unwrap();
+        assert_eq!(again, model);
+        assert_eq!(model.parameter_names().len(), model.parameters().len());
+        assert!(model.with_parameters(&[1.0]).is_err());
+    }
+}
+
+#[test]
+fn a_faster_path_makes_a_wider_loop() {
+    let width = |duration_s: f64| {
+        let plays = vec![PlayElement { weight: 1.0, half_width: 0.1 }];
+        let model = PrandtlIshlinskii { rate_s: 0.02, ..PrandtlIshlinskii::classical(0.0, plays) };
+        let model = HysteresisModel::PrandtlIshlinskii(model);
+        let mut state = model.rest(0.0);
+        let mut at = |from: f64, to: f64| {
+            model.advance(&mut state, from, to, duration_s);
+            model.output(to, &state)
+        };
+        let up = at(0.0, 1.5);
+        at(1.5, 3.0);
+        at(3.0, 1.5) - up
+    };
+    // 2 (r + tau v)
+    assert!((width(1.0) - 2.0 * (0.1 + 0.02 * 1.5)).abs() < 1e-12);
+    assert!((width(0.5) - 2.0 * (0.1 + 0.02 * 3.0)).abs() < 1e-12);
+}
+
 #[test]
 fn a_runaway_state_is_not_a_number() {
     let model = SymmetricBoucWen::from_array([1.0f64, 1.0, 1.0, -3.0, 0.0, 2.0]);

@@ -1,7 +1,7 @@
 //! The symmetric Bouc-Wen model.
 
 use super::branch::Branch;
-use super::error::{HysteresisError, positive};
+use super::error::{HysteresisError, not_negative, positive};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +42,15 @@ impl<D: Scalar> SymmetricBoucWen<D> {
         positive(MODEL, "lambda + delta", (self.lambda + self.delta).value())
     }
 
+    /// Whether every closed loop turns the same way, `∮ z dx >= 0`: `lambda >= |delta|`.
+    ///
+    /// With `z²/(2K)` as stored energy, `z dx` less what is stored is `|z|^(n+1) (lambda + delta sgn(z dx)) |dx|/K`.
+    /// Source: Erlicher and Point 2004.
+    pub fn check_loops(&self) -> Result<(), HysteresisError> {
+        self.check()?;
+        not_negative("symmetric Bouc-Wen", "lambda - |delta|", self.lambda.value() - self.delta.value().abs())
+    }
+
     /// Output, mm.
     pub fn output(&self, x_mm: D, z: D) -> D {
         self.gamma_x * x_mm + self.gamma_z * z
@@ -51,12 +60,16 @@ impl<D: Scalar> SymmetricBoucWen<D> {
     pub fn advance(&self, z: D, from_mm: D, to_mm: D) -> D {
         let way = to_mm - from_mm;
         let sign = if way.value() < 0.0 { -1.0 } else { 1.0 };
-        let branch = Branch {
+        self.branch(sign).travel(z, way * sign)
+    }
+
+    /// The state's law while the input goes up (`sign` 1) or down (-1).
+    pub(super) fn branch(&self, sign: f64) -> Branch<D> {
+        Branch {
             drive: self.k * sign,
             decay_above: self.lambda + self.delta * sign,
             decay_below: self.lambda - self.delta * sign,
             exponent: self.n,
-        };
-        branch.travel(z, way * sign)
+        }
     }
 }

@@ -6,6 +6,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// Dampings tried for one step, each four times the last.
+const TRIES: usize = 16;
+
 /// Range of one parameter, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -38,17 +41,32 @@ pub struct LmResult {
     pub evaluations: usize,
 }
 
+/// Residuals at a point, `None` where the model cannot be evaluated.
+pub type Residuals<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync + 'a;
+/// Jacobian of the residuals at a point.
+pub type Slopes<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
+
 /// Minimises `sum r_i(x)²` within bounds (Levenberg-Marquardt with projection, forward differences).
 ///
 /// `residuals` returns `None` where the model cannot be evaluated; such points are stepped back from. Returns `None`
 /// when the start itself cannot be evaluated.
-pub fn minimise(
-    residuals: &(dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync),
+pub fn minimise(residuals: &Residuals<'_>, start: &[f64], bounds: &[Bounds], options: LmOptions) -> Option<LmResult> {
+    descend(Search { residuals, slopes: None, bounds, evaluations: 0 }, start, options)
+}
+
+/// As [`minimise`], with exact slopes: `slopes` returns the Jacobian of the residuals at a point, in the parameters' own
+/// units. Each of its columns counts as one evaluation.
+pub fn minimise_with_slopes(
+    residuals: &Residuals<'_>,
+    slopes: &Slopes<'_>,
     start: &[f64],
     bounds: &[Bounds],
     options: LmOptions,
 ) -> Option<LmResult> {
-    let mut search = Search { residuals, bounds, evaluations: 0 };
+    descend(Search { residuals, slopes: Some(slopes), bounds, evaluations: 0 }, start, options)
+}
+
+fn descend(mut search: Search<'_>, start: &[f64], options: LmOptions) -> Option<LmResult> {
     let mut u = search.to_unit(start);
     let mut r = search.evaluate(&u)?;
     // Nearly Gauss-Newton at first: more would creep along a valley in which two parameters trade off.
@@ -70,7 +88,8 @@ pub fn minimise(
 
 /// Parameters are searched as shares of their ranges, so that their units do not matter.
 struct Search<'a> {
-    residuals: &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync),
+    residuals: &'a Residuals<'a>,
+    slopes: Option<&'a Slopes<'a>>,
     bounds: &'a [Bounds],
     evaluations: usize,
 }
@@ -96,6 +115,13 @@ impl Search<'_> {
 
     fn jacobian(&mut self, u: &DVector<f64>, r: &DVector<f64>, difference: f64) -> DMatrix<f64> {
         self.evaluations += u.len();
+        if let Some(slopes) = self.slopes {
+            let mut jacobian = slopes(&self.scaled_back(u)).unwrap_or_else(|| DMatrix::zeros(r.len(), u.len()));
+            for (mut column, b) in jacobian.column_iter_mut().zip(self.bounds) {
+                column *= b.max - b.min;
+            }
+            return jacobian;
+        }
         let column = |j: usize| {
             // Away from the nearer bound.
             let h = if u[j] < 0.5 { difference } else { -difference };
@@ -108,6 +134,9 @@ impl Search<'_> {
     }
 
     /// A step that lowers the cost, or `None` when damping finds none or the linear model promises too little.
+    ///
+    /// Parameters on a bound that the descent would leave stay there. A step that the box cuts and that then promises
+    /// nothing is no sign of the end: a more damped one turns towards the gradient.
     fn step(
         &mut self,
         u: &DVector<f64>,
@@ -116,23 +145,21 @@ impl Search<'_> {
         mut damping: f64,
         worth_while: f64,
     ) -> Option<(DVector<f64>, DVector<f64>, f64)> {
-        let normal = jacobian.tr_mul(jacobian);
-        let gradient = jacobian.tr_mul(r);
+        let (normal, gradient) = self.free_of_bounds(u, jacobian.tr_mul(jacobian), jacobian.tr_mul(r));
         let scale = normal.diagonal().max().max(f64::MIN_POSITIVE);
-        for _ in 0..12 {
+        for _ in 0..TRIES {
             let mut damped = normal.clone();
             for j in 0..u.len() {
                 damped[(j, j)] += damping * (normal[(j, j)] + 1e-9 * scale);
             }
             if let Some(cholesky) = damped.cholesky() {
-                let free = u - cholesky.solve(&gradient);
-                let next = free.map(|x| x.clamp(0.0, 1.0));
+                let whole = u - cholesky.solve(&gradient);
+                let next = whole.map(|x| x.clamp(0.0, 1.0));
                 let promised = 1.0 - (r + jacobian * (&next - u)).norm_squared() / r.norm_squared();
-                // A step cut off at a bound may promise nothing where a shorter one still does.
-                if promised < worth_while && next == free {
+                if promised < worth_while && whole == next {
                     return None;
                 }
-                if promised >= worth_while
+                if promised > 0.0
                     && let Some(there) = self.evaluate(&next).filter(|t| t.norm_squared() < r.norm_squared())
                 {
                     return Some((next, there, (damping / 10.0).max(1e-12)));
@@ -141,6 +168,25 @@ impl Search<'_> {
             damping = (damping * 4.0).max(1e-9);
         }
         None
+    }
+
+    /// The normal equations with the parameters held that stand on a bound and would go beyond it.
+    fn free_of_bounds(
+        &self,
+        u: &DVector<f64>,
+        mut normal: DMatrix<f64>,
+        mut gradient: DVector<f64>,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        for j in 0..u.len() {
+            if (u[j] <= 0.0 && gradient[j] > 0.0) || (u[j] >= 1.0 && gradient[j] < 0.0) {
+                let own = normal[(j, j)];
+                normal.row_mut(j).fill(0.0);
+                normal.column_mut(j).fill(0.0);
+                normal[(j, j)] = own;
+                gradient[j] = 0.0;
+            }
+        }
+        (normal, gradient)
     }
 }
 
@@ -166,6 +212,18 @@ mod tests {
         let bounds = [Bounds { min: 0.0, max: 1.0 }, Bounds { min: 0.0, max: 10.0 }];
         let result = minimise(&residuals, &[0.5, 0.5], &bounds, LmOptions::default()).expect("valid");
         assert!((result.parameters[0] - 1.0).abs() < 1e-3 && (result.parameters[1] - 1.0).abs() < 1e-2, "{result:?}");
+    }
+
+    #[test]
+    fn exact_slopes_end_at_the_same_place() {
+        let at = |x: &[f64], i: usize| x[0] * (-x[1] * i as f64).exp();
+        let residuals = |x: &[f64]| Some(DVector::from_fn(20, |i, _| at(x, i) - at(&[3.0, 0.4], i)));
+        let slope = |x: &[f64], i: usize, j: usize| if j == 0 { at(x, i) / x[0] } else { -(i as f64) * at(x, i) };
+        let slopes = |x: &[f64]| Some(DMatrix::from_fn(20, 2, |i, j| slope(x, i, j)));
+        let bounds = [Bounds { min: 0.0, max: 10.0 }, Bounds { min: 0.0, max: 2.0 }];
+        let result = minimise_with_slopes(&residuals, &slopes, &[1.0, 1.0], &bounds, LmOptions::default());
+        let found = result.expect("start is valid").parameters;
+        assert!((found[0] - 3.0).abs() < 1e-7 && (found[1] - 0.4).abs() < 1e-7, "{found:?}");
     }
 
     #[test]

@@ -1,9 +1,11 @@
-//! From recordings to parameters: replaying what was recorded, and fitting the numbers a rig does not tell.
+//! From recordings to parameters: replaying what was recorded, fitting the numbers a rig does not tell, and identifying
+//! displacement-form hysteresis from loops ([`loops`]).
 
 mod fit;
 mod levenberg_marquardt;
+pub mod loops;
 mod replay;
 
 pub use fit::{FitReport, FittedParameter, fit_rig_parameters};
-pub use levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise};
+pub use levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise, minimise_with_slopes};
 pub use replay::{IdentifyError, RecordedRun, check_channels, condition_overrides, load_runs, replay};

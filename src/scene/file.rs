@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::EffectTable;
 use crate::hydraulics::{Fluid, Line, Syringe};
-use crate::hysteresis::DisplacementModel;
+use crate::hysteresis::HysteresisModel;
 use crate::mechanism::{MechanismSpec, RouteSpec};
 use crate::muscle::Material;
 
@@ -100,9 +100,9 @@ pub struct MusclesSpec {
     pub tube: Option<TubeSpec>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSpec>,
-    /// The paper's displacement-form hysteresis instead of hydraulics and muscle: elongation = output of the model.
+    /// A displacement-form hysteresis instead of hydraulics and muscle: elongation = output of the model.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub displacement: Option<DisplacementModel<f64>>,
+    pub displacement: Option<HysteresisModel<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionSpec>,
 }

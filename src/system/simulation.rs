@@ -38,7 +38,8 @@ pub struct Simulation {
     inertia: DMatrix<f64>,
     positions: Vec<f64>,
     target: Vec<f64>,
-    hysteresis_z: Vec<f64>,
+    /// States of the displacement models, in the order of `built.displacements`.
+    hysteresis: Vec<Vec<f64>>,
     pub(super) energy: Option<EnergyBook>,
 }
 
@@ -69,7 +70,7 @@ impl Simulation {
             inertia: DMatrix::zeros(joints, joints),
             positions: vec![0.0; joints],
             target: vec![0.0; joints],
-            hysteresis_z: vec![0.0; built.displacements.len()],
+            hysteresis: vec![Vec::new(); built.displacements.len()],
             energy: None,
             scene,
             mechanism,
@@ -122,9 +123,9 @@ impl Simulation {
         for (span, input) in spans.iter_mut().zip(&self.inputs) {
             span.value = input.value(self.time_s);
         }
-        if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement) {
-            for (i, d) in self.built.displacements.iter().enumerate() {
-                spans[d.input].value = model.output(spans[d.plunger].value * 1e3, self.hysteresis_z[i]) * 1e-3;
+        if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) {
+            for (d, state) in self.built.displacements.iter().zip(&self.hysteresis) {
+                spans[d.input].value = model.output(spans[d.plunger].value * 1e3, state) * 1e-3;
             }
         }
         spans
@@ -153,6 +154,11 @@ impl Simulation {
     fn hold_spans(&mut self) {
         for (span, input) in self.spans.iter_mut().zip(&self.inputs) {
             *span = InputSpan { value: input.value(self.time_s), slope: 0.0 };
+        }
+        if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) {
+            for (d, state) in self.built.displacements.iter().zip(&mut self.hysteresis) {
+                *state = model.rest(self.spans[d.plunger].value * 1e3);
+            }
         }
     }
 
@@ -238,13 +244,13 @@ impl Simulation {
             let value = span.value;
             *span = InputSpan { value, slope: (input.value(start_s + h) - value) / h };
         }
-        let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement) else { return };
-        for (i, &Displacement { plunger, input, .. }) in self.built.displacements.iter().enumerate() {
+        let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) else { return };
+        for (&Displacement { plunger, input, .. }, state) in self.built.displacements.iter().zip(&mut self.hysteresis) {
             let from_mm = self.spans[plunger].value * 1e3;
             let to_mm = from_mm + self.spans[plunger].slope * h * 1e3;
-            let before = model.output(from_mm, self.hysteresis_z[i]);
-            self.hysteresis_z[i] = model.advance(self.hysteresis_z[i], from_mm, to_mm);
-            let after = model.output(to_mm, self.hysteresis_z[i]);
+            let before = model.output(from_mm, state);
+            model.advance(state, from_mm, to_mm, h);
+            let after = model.output(to_mm, state);
             self.spans[input] = InputSpan { value: before * 1e-3, slope: (after - before) * 1e-3 / h };
         }
     }

@@ -1,0 +1,78 @@
+//! The Maxwell-slip model: springs whose far ends slide.
+
+use super::Gate;
+use super::error::{HysteresisError, all_of_one_sign, positive};
+use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
+
+/// One spring with a slider of a Maxwell-slip sum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlipElement<D> {
+    /// Output per stretch of the spring.
+    pub stiffness: D,
+    /// Stretch at which the far end slides, > 0, in the unit of the input.
+    pub reach: D,
+}
+
+/// Maxwell-slip model: `y = g x + q x² + G(x) sum k_i e_i`, each stretch `e_i` following `x` within `+- reach_i`.
+///
+/// `x`, `y`, `reach` in mm; `g`, `k_i` dimensionless, `q` in 1/mm. The state is the `e_i`. `G` is 1, or `tanh x` as in the
+/// paper's model, which closes the loop at `x = 0` and so makes it asymmetric. With `k_i > 0` unloading lies below
+/// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
+/// generalized Maxwell-slip model); the gate is borrowed from Thai et al. 2021.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
+pub struct MaxwellSlip<D> {
+    /// Output per input beside the sliders.
+    pub gain: D,
+    /// Output per squared input, 1/mm.
+    #[serde(default = "super::zero")]
+    pub curvature: D,
+    #[serde(default = "not_gated")]
+    pub gate: Gate,
+    pub elements: Vec<SlipElement<D>>,
+}
+
+fn not_gated() -> Gate {
+    Gate::None
+}
+
+impl<D: Scalar> MaxwellSlip<D> {
+    /// All springs relaxed.
+    pub fn rest(&self) -> Vec<D> {
+        vec![D::constant(0.0); self.elements.len()]
+    }
+
+    /// Moves the input by `step` without turning; exact; `state` has one entry per element.
+    pub fn advance(&self, state: &mut [D], step: D) {
+        for (stretch, element) in state.iter_mut().zip(&self.elements) {
+            let free = *stretch + step;
+            *stretch = if free.value() > element.reach.value() {
+                element.reach
+            } else if free.value() < -element.reach.value() {
+                -element.reach
+            } else {
+                free
+            };
+        }
+    }
+
+    pub fn output(&self, x: D, state: &[D]) -> D {
+        let springs: D = self.elements.iter().zip(state).map(|(e, &stretch)| e.stiffness * stretch).sum();
+        (self.gain + self.curvature * x) * x + self.gate.factor(x) * springs
+    }
+
+    /// Whether every slider has a reach.
+    pub fn check(&self) -> Result<(), HysteresisError> {
+        self.elements.iter().try_for_each(|e| positive(MODEL, "reach", e.reach.value()))
+    }
+
+    /// Whether every loop turns the same way: stiffnesses of one sign, each element then dissipates by itself.
+    pub fn check_loops(&self) -> Result<(), HysteresisError> {
+        self.check()?;
+        all_of_one_sign(MODEL, "stiffness", self.elements.iter().map(|e| e.stiffness.value()))
+    }
+}
+
+const MODEL: &str = "Maxwell-slip";

@@ -1,0 +1,135 @@
+//! Identification of the displacement-form hysteresis models from recorded loops: plunger in, elongation out.
+//!
+//! F is the mean squared error in mm², as in Thai et al. 2021. What is wrong by construction is fixed and said (a
+//! scale that the data cannot hold); what the data leave open is found from the slopes and said too.
+
+mod cma;
+mod data;
+mod form;
+mod intervals;
+mod problem;
+mod search;
+mod swarm;
+mod warnings;
+
+#[cfg(test)]
+mod recovery_tests;
+
+pub use cma::CmaOptions;
+pub use data::{LoopRun, LoopScale};
+pub use form::{Form, ParameterSpec};
+pub use intervals::{Certainty, certainty};
+pub use problem::Problem;
+pub use search::{Found, Method, SearchOptions, search};
+pub use swarm::SwarmOptions;
+
+use crate::hysteresis::HysteresisModel;
+use crate::recording::{RecordingError, noise_sd};
+
+/// Why a loop cannot be identified.
+#[derive(Debug, thiserror::Error)]
+pub enum LoopError {
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error(
+        "{file}: column \"{column}\" is no length; name a column that ends in a unit of length, such as elongation_mm"
+    )]
+    Unit { file: String, column: String },
+    #[error(
+        "{file}: {counted} samples to fit over {travel_mm} mm of input: too little; record whole strokes, at least 50 samples"
+    )]
+    TooLittle { file: String, counted: usize, travel_mm: f64 },
+    #[error("no run to fit: every one is held out; mark one with use = \"fit\"")]
+    NoRun,
+    #[error(
+        "{form}: no parameters within their bounds can follow the data; look at them first (`smam compare`, a plot)"
+    )]
+    NoStart { form: &'static str },
+}
+
+/// One identified parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identified {
+    pub spec: ParameterSpec,
+    pub value: f64,
+    /// Half the 95 % interval; `None` for a fixed one.
+    pub half_width: Option<f64>,
+    pub on_bound: bool,
+}
+
+/// An identified model and how sure it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identification {
+    pub form: Form,
+    pub method: Method,
+    pub model: HysteresisModel<f64>,
+    /// In the order of [`HysteresisModel::parameters`].
+    pub parameters: Vec<Identified>,
+    /// F over all samples that count, mm².
+    pub mean_square_mm2: f64,
+    pub samples: usize,
+    /// Model evaluations; of a Jacobian each column counts as one.
+    pub evaluations: usize,
+    pub certainty: Certainty,
+    /// Names of the free parameters, in the order of the certainty's.
+    pub free: Vec<String>,
+    /// White noise of the output by its own look, mm.
+    pub noise_mm: Option<f64>,
+    pub warnings: Vec<String>,
+}
+
+/// Identifies one form from runs.
+pub fn identify(runs: &[LoopRun], form: Form, options: &SearchOptions) -> Result<Identification, LoopError> {
+    if runs.is_empty() {
+        return Err(LoopError::NoRun);
+    }
+    let scale = LoopScale::of(runs);
+    let problem = Problem::new(runs, form, &scale);
+    let no_start = || LoopError::NoStart { form: form.name() };
+    let found = search(&problem, options).ok_or_else(no_start)?;
+    let residuals = problem.residuals(&found.parameters).ok_or_else(no_start)?;
+    let slopes = problem.slopes(&found.parameters).ok_or_else(no_start)?;
+    let model = problem.model(&found.parameters).ok_or_else(no_start)?;
+    let certainty = certainty(&residuals, &slopes);
+    let mut half_widths = certainty.half_width.iter();
+    let values = problem.all(&found.parameters);
+    let parameters: Vec<Identified> = problem
+        .specs
+        .iter()
+        .zip(values)
+        .map(|(spec, value)| Identified {
+            half_width: if spec.fixed.is_none() { half_widths.next().copied() } else { None },
+            on_bound: spec.fixed.is_none() && (value - spec.min).min(spec.max - value) < 1e-6 * (spec.max - spec.min),
+            spec: spec.clone(),
+            value,
+        })
+        .collect();
+    let identification = Identification {
+        form,
+        method: options.method,
+        model,
+        parameters,
+        mean_square_mm2: residuals.norm_squared() / residuals.len() as f64,
+        samples: residuals.len(),
+        evaluations: found.evaluations,
+        certainty,
+        free: problem.free().iter().map(|s| s.name.clone()).collect(),
+        noise_mm: runs.iter().filter_map(|r| noise_sd(&r.time_s, &r.output_mm)).reduce(f64::min),
+        warnings: Vec::new(),
+    };
+    let warnings = warnings::warnings(&identification, &scale);
+    Ok(Identification { warnings, ..identification })
+}
+
+/// F of a model on runs that had no part in finding it, mm²; the model starts each at rest.
+pub fn mean_square_on(model: &HysteresisModel<f64>, runs: &[LoopRun]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for run in runs {
+        let outputs = model.follow(&run.time_s, &run.input_mm);
+        for (y, measured) in outputs.iter().zip(&run.output_mm).filter(|(_, m)| m.is_finite()) {
+            sum += (y - measured) * (y - measured);
+            count += 1.0;
+        }
+    }
+    sum / count
+}

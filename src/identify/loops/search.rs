@@ -1,0 +1,153 @@
+//! Four ways to the least F.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise_with_slopes};
+use super::cma::{CmaOptions, cma};
+use super::form::ParameterSpec;
+use super::problem::Problem;
+use super::swarm::{SwarmOptions, least, swarm};
+
+/// How parameters are searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Particle swarm, as in the paper.
+    Pso,
+    /// Covariance matrix adaptation.
+    Cma,
+    /// Levenberg-Marquardt with exact slopes from the middle of the bounds and from drawn places.
+    Lm,
+    /// The same from the middle and from the best of a few places spread over the box, their gains solved for.
+    #[default]
+    Hybrid,
+}
+
+impl std::str::FromStr for Method {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "pso" => Ok(Self::Pso),
+            "cma" => Ok(Self::Cma),
+            "lm" => Ok(Self::Lm),
+            "hybrid" => Ok(Self::Hybrid),
+            _ => Err(format!("no method `{text}`; known: pso, cma, lm, hybrid")),
+        }
+    }
+}
+
+/// What to do, and how long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchOptions {
+    pub method: Method,
+    pub seed: u64,
+    /// Descents (beside the one from the middle), or repetitions of a swarm; the best one counts.
+    pub starts: usize,
+    pub swarm: SwarmOptions,
+    pub cma: CmaOptions,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { method: Method::Hybrid, seed: 1, starts: 3, swarm: SwarmOptions::default(), cma: CmaOptions::default() }
+    }
+}
+
+/// Where a search ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The free parameters.
+    pub parameters: Vec<f64>,
+    pub mean_square_mm2: f64,
+    pub evaluations: usize,
+}
+
+/// Places of the hybrid's look around, at least; a power of two, as the sequence likes it.
+const LOOKS: usize = 32;
+/// Far below what noise decides; each further step costs a Jacobian.
+const DESCENT: LmOptions = LmOptions { max_iterations: 60, relative_decrease: 1e-7, difference: 1e-6 };
+
+/// The free parameters of least F; `None` if no place within the bounds gives a model.
+pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
+    let runs = (0..options.starts.max(1) as u64).map(|start| options.seed.wrapping_add(start));
+    match options.method {
+        Method::Pso => best(runs.map(|seed| by_swarm(problem, options.swarm, seed))),
+        Method::Cma => best(runs.map(|seed| by_cma(problem, options.cma, seed))),
+        Method::Lm => {
+            let middle = from_unit(problem, &vec![0.5; problem.free().len()]);
+            let drawn = (1..options.starts.max(1)).map(|i| look(problem, i, options.seed));
+            best(std::iter::once(middle).chain(drawn).map(|place| descend(problem, &problem.with_best_gains(&place)?)))
+        }
+        Method::Hybrid => hybrid(problem, options),
+    }
+}
+
+/// The best of several, with the evaluations of all.
+fn best(found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
+    let all: Vec<Found> = found.flatten().collect();
+    let evaluations = all.iter().map(|f| f.evaluations).sum();
+    let best = all.into_iter().min_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2))?;
+    Some(Found { evaluations, ..best }).filter(|f| f.mean_square_mm2.is_finite())
+}
+
+/// Looks around with the gains solved for, then descends from the best places.
+fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
+    let places = (0..LOOKS).filter_map(|i| problem.with_best_gains(&look(problem, i, options.seed)));
+    let mut looks: Vec<(f64, Vec<f64>)> = Vec::with_capacity(LOOKS);
+    let places: Vec<Vec<f64>> = places.collect();
+    looks.extend(problem.mean_squares(&places).into_iter().zip(places));
+    looks.retain(|(f, _)| f.is_finite());
+    looks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The middle too: in a box with forbidden corners it is often the surest start.
+    let middle = problem.with_best_gains(&from_unit(problem, &vec![0.5; problem.free().len()]));
+    let starts = looks.into_iter().map(|(_, place)| place).take(options.starts.max(1)).chain(middle);
+    let found = best(starts.map(|place| descend(problem, &place)))?;
+    Some(Found { evaluations: found.evaluations + LOOKS + 1, ..found })
+}
+
+/// A place of the scrambled Sobol sequence over the box.
+fn look(problem: &Problem<'_>, index: usize, seed: u64) -> Vec<f64> {
+    let coordinate = |d: usize| f64::from(sobol_burley::sample(index as u32, d as u32, (seed ^ (seed >> 32)) as u32));
+    from_unit(problem, &(0..problem.free().len()).map(coordinate).collect::<Vec<_>>())
+}
+
+fn by_swarm(problem: &Problem<'_>, options: SwarmOptions, seed: u64) -> Option<Found> {
+    let values = |places: &[Vec<f64>]| unit_values(problem, places);
+    let (place, value) = swarm(problem.free().len(), &values, options, seed);
+    let evaluations = options.particles * (options.iterations + 1);
+    Some(Found { parameters: from_unit(problem, &place), mean_square_mm2: value, evaluations })
+}
+
+/// From a drawn place: the middle of the box would be the same start each time.
+fn by_cma(problem: &Problem<'_>, options: CmaOptions, seed: u64) -> Option<Found> {
+    let values = |places: &[Vec<f64>]| unit_values(problem, places);
+    let dimension = problem.free().len();
+    let drawn: Vec<Vec<f64>> = (0..LOOKS)
+        .map(|i| (0..dimension).map(|d| f64::from(sobol_burley::sample(i as u32, d as u32, seed as u32))).collect())
+        .collect();
+    let start = &drawn[least(&values(&drawn))];
+    let (place, value, evaluations) = cma(start, &values, options, seed);
+    let evaluations = evaluations + LOOKS;
+    Some(Found { parameters: from_unit(problem, &place), mean_square_mm2: value, evaluations })
+}
+
+fn unit_values(problem: &Problem<'_>, places: &[Vec<f64>]) -> Vec<f64> {
+    let sets: Vec<Vec<f64>> = places.iter().map(|place| from_unit(problem, place)).collect();
+    problem.mean_squares(&sets)
+}
+
+fn from_unit(problem: &Problem<'_>, place: &[f64]) -> Vec<f64> {
+    let value = |(spec, &u): (&&ParameterSpec, &f64)| {
+        if spec.is_scale { spec.min * (spec.max / spec.min).powf(u) } else { spec.min + u * (spec.max - spec.min) }
+    };
+    problem.free().iter().zip(place).map(value).collect()
+}
+
+fn descend(problem: &Problem<'_>, start: &[f64]) -> Option<Found> {
+    let bounds: Vec<Bounds> = problem.free().iter().map(|s| Bounds { min: s.min, max: s.max }).collect();
+    let (residuals, slopes) = (|x: &[f64]| problem.residuals(x), |x: &[f64]| problem.slopes(x));
+    let LmResult { parameters, cost, evaluations } =
+        minimise_with_slopes(&residuals, &slopes, start, &bounds, DESCENT)?;
+    Some(Found { parameters, mean_square_mm2: cost / problem.counted() as f64, evaluations })
+}
