@@ -9,6 +9,8 @@ mod diagnose_view;
 mod effects;
 mod error;
 mod files;
+mod identify;
+mod identify_page;
 mod interrupt;
 mod junit;
 mod model;
@@ -52,6 +54,8 @@ enum Command {
     Compare(compare::CompareArguments),
     /// Find the physics that recordings show and the scene lacks
     Diagnose(diagnose::DiagnoseArguments),
+    /// Identify a displacement-form hysteresis model from recorded loops
+    Identify(identify::IdentifyArguments),
     /// List the physics that a scene may leave out, or show one
     Effects(effects::EffectsArguments),
     /// Read a scene and say whether it is right
@@ -84,6 +88,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),
+        Some(Command::Identify(arguments)) => identify::identify(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes) => scenes::scenes(),

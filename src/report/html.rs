@@ -5,6 +5,8 @@ use super::svg::escaped;
 const STYLE: &str = "body{font-family:system-ui,sans-serif;max-width:110rem;margin:2rem auto;padding:0 1rem;\
 color:#222;line-height:1.5}table{border-collapse:collapse;margin:1rem 0}th,td{border-bottom:1px solid #ccc;\
 padding:.25rem .8rem;text-align:right}th:first-child,td:first-child{text-align:left}\
+.remarks td{white-space:nowrap;vertical-align:top}.remarks td:nth-child(2),.remarks td:last-child,\
+.remarks th:nth-child(2),.remarks th:last-child{text-align:left;white-space:normal}\
 figure{margin:1.5rem 0}figure svg{max-width:100%;height:auto}figcaption{color:#444}";
 
 /// A page in the making. All text is escaped; only figures are taken as they are.
@@ -33,7 +35,16 @@ impl HtmlPage {
 
     /// Adds a table of a header and rows of text.
     pub fn table(&mut self, header: &[&str], rows: &[Vec<String>]) -> &mut Self {
-        self.body.push_str("<table>\n<tr>");
+        self.table_of("", header, rows)
+    }
+
+    /// A table whose second and last columns are text that wraps; numbers between them stay on a line.
+    pub fn table_of_remarks(&mut self, header: &[&str], rows: &[Vec<String>]) -> &mut Self {
+        self.table_of(" class=\"remarks\"", header, rows)
+    }
+
+    fn table_of(&mut self, class: &str, header: &[&str], rows: &[Vec<String>]) -> &mut Self {
+        self.body.push_str(&format!("<table{class}>\n<tr>"));
         for name in header {
             self.body.push_str(&format!("<th>{}</th>", escaped(name)));
         }

@@ -30,6 +30,9 @@ impl Standing {
     }
 }
 
+/// The unit of a statement: 1 is yes, 0 is no.
+pub(super) const YES_NO: &str = "yes/no";
+
 /// One number: the paper's, ours, and what their difference is worth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -67,6 +70,11 @@ impl Row {
     ) -> Self {
         let standing = if met { Standing::Met } else { Standing::NotMet };
         Self { quantity: quantity.into(), unit, paper, ours: Some(ours), standing, remark: remark.into() }
+    }
+
+    /// A statement of the paper that holds here or does not.
+    pub fn stated(quantity: impl Into<String>, holds: bool, remark: impl Into<String>) -> Self {
+        Self::judged(quantity, YES_NO, Some(1.0), f64::from(u8::from(holds)), holds, remark)
     }
 
     /// A number of ours that the paper does not print.

@@ -4,6 +4,7 @@
 //! there. There are no raw data of the paper: shapes are compared with its *printed model* (eqs. 3-4 with the printed
 //! parameters), numbers with the printed numbers, and a row says so where neither exists.
 
+mod calibration;
 mod catheter;
 mod chapter;
 mod endurance;
@@ -13,8 +14,8 @@ mod frequency;
 mod identified;
 mod lifting;
 mod loops;
-mod page;
 mod models;
+mod page;
 mod printed;
 mod programmes;
 mod pulley;
@@ -46,10 +47,18 @@ pub const FIGURES: &[Figure] = &[
     Figure { name: "4cd", title: "routing of the line, and a tendon in a sheath", make: routing::chapter },
     Figure { name: "4e", title: "the loop from 0.2 to 1.5 Hz", make: frequency::loops },
     Figure { name: "4f", title: "2000 s at 80 % and 0.1 Hz", make: endurance::chapter },
-    Figure { name: "4g", title: "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)", make: force::held },
+    Figure {
+        name: "4g",
+        title: "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)",
+        make: force::held,
+    },
     Figure { name: "printed", title: "first principles against the printed model", make: printed::chapter },
     Figure { name: "5", title: "three models on one loop, and on others (Figs. 5, 6)", make: models::chapter },
     Figure { name: "8", title: "the pulley's positions", make: pulley::chapter },
     Figure { name: "10", title: "the catheter bends, grips, moves, releases", make: catheter::chapter },
-    Figure { name: "feedforward", title: "tracking with the model inverted (announced in section VII)", make: tracking::chapter },
+    Figure {
+        name: "feedforward",
+        title: "tracking with the model inverted (announced in section VII)",
+        make: tracking::chapter,
+    },
 ];

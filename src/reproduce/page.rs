@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::report::{HtmlPage, figure_svg};
 
+use super::chapter::YES_NO;
 use super::{Chapter, Figure, Row};
 
 const SIZE: (f64, f64) = (720.0, 300.0);
@@ -19,7 +20,10 @@ pub fn page(made: &[Made]) -> String {
          printed hysteresis model and printed parameters. 'given' was taken over as an input; 'shown' has nothing to be \
          compared with, or was printed about recordings that nobody else has.",
     );
-    page.table(&HEADER, &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>());
+    page.table_of_remarks(
+        &HEADER,
+        &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>(),
+    );
     for (figure, chapter) in made {
         page.heading(&format!("{}: {}", figure.name, figure.title));
         chapter.text.iter().for_each(|text| {
@@ -37,16 +41,28 @@ pub const HEADER: [&str; 7] = ["figure", "quantity", "paper", "ours", "deviation
 
 /// A row as text, unit included.
 pub fn cells(figure: &Figure, row: &Row) -> Vec<String> {
-    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{} {}", short(v), row.unit));
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| with_unit(v, row.unit));
     vec![
         figure.name.to_owned(),
         row.quantity.clone(),
         number(row.paper),
         number(row.ours),
-        row.deviation().map_or_else(|| "-".to_owned(), |d| format!("{}{}", if d > 0.0 { "+" } else { "" }, short(d))),
+        match row.deviation() {
+            Some(d) if row.unit != YES_NO => format!("{}{}", if d > 0.0 { "+" } else { "" }, short(d)),
+            _ => "-".to_owned(),
+        },
         row.standing.word().to_owned(),
         row.remark.clone(),
     ]
+}
+
+/// The unit `1` is none; `yes/no` is a word.
+fn with_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "1" => short(value),
+        YES_NO => (if value == 0.0 { "no" } else { "yes" }).to_owned(),
+        _ => format!("{} {unit}", short(value)),
+    }
 }
 
 /// About four digits.

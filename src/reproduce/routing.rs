@@ -100,13 +100,10 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         ));
     }
     let grows = sheaths.windows(2).all(|w| w[1].1.area() > w[0].1.area());
-    rows.push(Row::judged(
+    rows.push(Row::stated(
         "the sheath's loop grows with every winding",
-        "1",
-        Some(1.0),
-        f64::from(u8::from(grows)),
         grows,
-        "1: yes; the paper states it of tendon-sheath mechanisms",
+        "the paper states it of tendon-sheath mechanisms",
     ));
     Ok(Chapter { text: text(), panels: panels(&loops, &sheaths), rows })
 }

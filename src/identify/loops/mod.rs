@@ -32,17 +32,19 @@ pub enum LoopError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     #[error(
-        "{file}: column \"{column}\" is no length; name a column that ends in a unit of length, such as elongation_mm"
+        "{file}: column \"{column}\" is no length\n  remedy: name a column that ends in a unit of length, such as elongation_mm"
     )]
     Unit { file: String, column: String },
     #[error(
-        "{file}: {counted} samples to fit over {travel_mm} mm of input: too little; record whole strokes, at least 50 samples"
+        "{file}: {counted} samples to fit over {travel_mm} mm of input are too little\n  \
+         remedy: record whole strokes, at least 50 samples"
     )]
     TooLittle { file: String, counted: usize, travel_mm: f64 },
-    #[error("no run to fit: every one is held out; mark one with use = \"fit\"")]
+    #[error("no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml")]
     NoRun,
     #[error(
-        "{form}: no parameters within their bounds can follow the data; look at them first (`smam compare`, a plot)"
+        "{form}: no parameters within their bounds can follow the data\n  remedy: look at the recording first; input and \
+         output may be exchanged (--input, --output)"
     )]
     NoStart { form: &'static str },
 }

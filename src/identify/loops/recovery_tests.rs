@@ -77,7 +77,9 @@ fn val_without_noise_the_truth_comes_back() {
 fn val_hybrid_needs_a_twentieth_of_the_swarm() {
     let (form, truth) = (Form::Paper, &truths()[2].1);
     let run = [noisy(form, truth, 0.027, 7)];
-    let by = |method| identify(&run, form, &SearchOptions { method, starts: 1, ..SearchOptions::default() }).unwrap();
+    let cma = CmaOptions { most_evaluations: 8_000, ..CmaOptions::default() };
+    let by =
+        |method| identify(&run, form, &SearchOptions { method, starts: 1, cma, ..SearchOptions::default() }).unwrap();
     let (swarm, hybrid, cma, lm) = (by(Method::Pso), by(Method::Hybrid), by(Method::Cma), by(Method::Lm));
     for found in [&swarm, &hybrid, &cma, &lm] {
         println!("{:?}: F = {:.9}, {} evaluations", found.method, found.mean_square_mm2, found.evaluations);

@@ -1,0 +1,120 @@
+//! The page of an identification: loop, history, residual, parameters, warnings.
+
+use smam::identify::loops::{Identification, LoopRun};
+use smam::report::{BLUE, GREY, HtmlPage, ORANGE, Panel, Series, VERMILION, figure_svg};
+
+use super::identify::{Loops, unseen};
+
+const SIZE: (f64, f64) = (860.0, 300.0);
+
+/// The whole page.
+pub fn page(found: &[Identification], loops: &Loops) -> String {
+    let mut page = HtmlPage::new(&format!("Hysteresis models of {}", loops.name));
+    page.paragraph(
+        "F is the mean squared error between model and measured elongation, mm². Each model starts every run at rest. \
+         Noise: standard deviation of the output's white noise, from the output alone.",
+    );
+    page.table(
+        &["model", "F (mm²)", "root (mm)", "F unseen (mm²)", "noise (mm)", "evaluations"],
+        &summary(found, loops),
+    );
+    for identification in found {
+        one(&mut page, identification, loops);
+    }
+    page.finish()
+}
+
+fn summary(found: &[Identification], loops: &Loops) -> Vec<Vec<String>> {
+    let or_dash = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.6}"));
+    let row = |f: &Identification| {
+        vec![
+            format!("{}, {} free parameters", f.form.name(), f.free.len()),
+            format!("{:.6}", f.mean_square_mm2),
+            format!("{:.4}", f.mean_square_mm2.sqrt()),
+            or_dash(unseen(f, loops)),
+            or_dash(f.noise_mm),
+            f.evaluations.to_string(),
+        ]
+    };
+    found.iter().map(row).collect()
+}
+
+fn one(page: &mut HtmlPage, found: &Identification, loops: &Loops) {
+    page.heading(found.form.name());
+    let runs = loops.fit.iter().map(|r| (r, "fitted")).chain(loops.holdout.iter().map(|r| (r, "not seen by the fit")));
+    for (run, part) in runs {
+        let svg = figure_svg(&panels(found, run), SIZE.0, SIZE.1);
+        page.figure(&svg, &format!("{}, {part}: measured (broad) and model; history; model minus measured.", run.name));
+    }
+    page.table(&["parameter", "value", "95 % interval", "searched", "bounds because"], &parameters(found));
+    page.paragraph(&how_certain(found));
+    found.warnings.iter().for_each(|w| {
+        page.paragraph(&format!("Note: {w}."));
+    });
+    let header: Vec<&str> = std::iter::once("correlation").chain(found.free.iter().map(String::as_str)).collect();
+    page.table(&header, &correlations(found));
+}
+
+fn panels(found: &Identification, run: &LoopRun) -> Vec<Panel> {
+    let model = found.model.follow(&run.time_s, &run.input_mm);
+    let residual: Vec<f64> = model.iter().zip(&run.output_mm).map(|(y, m)| y - m).collect();
+    let line = |label: &str, colour, x: &[f64], y: &[f64]| Series {
+        label: label.to_owned(),
+        colour,
+        x: x.to_vec(),
+        y: y.to_vec(),
+    };
+    let panel = |title: &str, x_label: &str, y_label: &str, behind, series| Panel {
+        title: vec![title.to_owned()],
+        x_label: x_label.to_owned(),
+        y_label: y_label.to_owned(),
+        behind,
+        series,
+        ..Panel::default()
+    };
+    let pair =
+        |x: &[f64]| (vec![line("measured", ORANGE, x, &run.output_mm)], vec![line(found.form.name(), BLUE, x, &model)]);
+    let (loop_behind, loop_model) = pair(&run.input_mm);
+    let (time_behind, time_model) = pair(&run.time_s);
+    let off = vec![line("model - measured", VERMILION, &run.time_s, &residual)];
+    let zero = vec![line("", GREY, &[run.time_s[0], run.time_s[run.time_s.len() - 1]], &[0.0, 0.0])];
+    vec![
+        panel("Loop", "plunger (mm)", "elongation (mm)", loop_behind, loop_model),
+        panel("History", "time (s)", "elongation (mm)", time_behind, time_model),
+        panel("Residual", "time (s)", "elongation (mm)", Vec::new(), [zero, off].concat()),
+    ]
+}
+
+fn parameters(found: &Identification) -> Vec<Vec<String>> {
+    let row = |p: &smam::identify::loops::Identified| {
+        let searched = format!("{:.4} .. {:.4}", p.spec.min, p.spec.max);
+        let (interval, searched, why) = match (p.half_width, p.spec.fixed) {
+            (Some(h), _) => (format!("± {h:.2e}"), searched, p.spec.why),
+            (None, fixed) => ("fixed".to_owned(), "–".to_owned(), fixed.map_or("", |(_, why)| why)),
+        };
+        vec![p.spec.name.clone(), format!("{:.6}", p.value), interval, searched, why.to_owned()]
+    };
+    found.parameters.iter().map(row).collect()
+}
+
+fn how_certain(found: &Identification) -> String {
+    let certainty = &found.certainty;
+    let noise = if certainty.memory == 0 {
+        "Residuals are white; intervals are those of least squares".to_owned()
+    } else {
+        format!(
+            "Residuals are related (neighbours {:.3}, over {} samples); intervals use their own autocovariance, tapered to \
+             zero there",
+            certainty.colour, certainty.memory
+        )
+    };
+    format!("{noise}. Condition number of JᵀJ, columns scaled: {:.2e}.", certainty.condition)
+}
+
+fn correlations(found: &Identification) -> Vec<Vec<String>> {
+    let row = |(i, name): (usize, &String)| {
+        let values = (0..found.free.len()).map(|j| format!("{:.2}", found.certainty.correlation[(i, j)]));
+        std::iter::once(name.clone()).chain(values).collect()
+    };
+    found.free.iter().enumerate().map(row).collect()
+}
