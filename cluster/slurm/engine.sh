@@ -1,4 +1,4 @@
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154
 # A Slurm cluster of two nodes on this machine, in the folder `scratch`: munged, slurmctld, one slurmd per node. No systemd, no cgroups, any user.
 
 NODES=(node1 node2)

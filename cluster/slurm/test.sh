@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# shellcheck disable=SC1091,SC2154 # names of testing.sh and engine.sh
 # Runs a sweep on a Slurm cluster of two nodes on this machine, and kills: the program, a node, a task; one is cancelled. Then submits
 # what is missing again, and compares the merged table with that of one run. SMAM: the program. Exit code 77: no Slurm here.
 set -euo pipefail
