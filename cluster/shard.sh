@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # One shard of a sweep, wherever an engine puts it.
 #   shard.sh I N OUT COMMAND...     COMMAND: smam sweep SWEEP.toml, with what else it needs (--threads)
-# Goes on where the shard stands, begins again when the program was killed, and marks a shard that is complete.
+# Goes on where the shard stands, begins again when the program was killed, and marks a shard that is complete. Of that the journal stays;
+# tables and pages are those of the merge, which reads journals alone.
 # Asked to stop (TERM, INT, USR1), the points that run are finished and the exit code is 75: start it again later.
 # After USR1, an engine's warning of the time limit, SMAM_AGAIN is run: the command that has the engine do so.
 set -euo pipefail
@@ -40,7 +41,11 @@ attempt() {
 while [ -z "$stopped" ]; do
     before=$(lines)
     attempt "$@"
-    [ "$status" -ne 0 ] || { touch "$folder/done"; exit 0; }
+    if [ "$status" -eq 0 ]; then
+        touch "$folder/done"
+        rm -f "$folder"/table.{csv,parquet} "$folder"/sweep.{html,svg}
+        exit 0
+    fi
     # Another attempt must have gained a point, or one that always dies, or outlasts the time limit, would be tried for ever.
     [ "$(lines)" -gt "$before" ] || { say "exit code $status, and no point gained"; exit "$status"; }
     [ -z "$stopped" ] || break

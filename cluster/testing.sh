@@ -47,6 +47,7 @@ reference() {
 format = 1
 name = "cluster_test"
 scene = "muscle_bench"
+duration_s = 15.0
 
 [sampling]
 method = "sobol"

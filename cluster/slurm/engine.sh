@@ -29,11 +29,11 @@ node_up() { # NODE
     slurmd -D -N "$1" >>"$scratch/log/$1.txt" 2>&1 &
     daemons+=($!)
     echo $! >"$scratch/$1/id"
-    wait_until 60 "$1 idle" node_is "$1" idle
+    wait_until 60 "$1 at work" node_is "$1" 'idle|mixed|allocated|completing'
 }
 
-node_is() { # NODE STATE
-    [[ $(sinfo --noheader --nodes="$1" --format=%T 2>/dev/null) == "$2"* ]]
+node_is() { # NODE STATES
+    sinfo --noheader --nodes="$1" --format=%T | grep -qE "^($2)"
 }
 
 # kill -9 of all that runs on a node: slurmd, the keepers of its jobs, the jobs. As when its plug is pulled.
@@ -61,7 +61,7 @@ descendants() { # PROCESS
 
 engine_down() {
     scancel --quiet --user="$(id -u)" 2>/dev/null
-    sleep 0.5
+    sleep 1
     for id in "${daemons[@]}"; do kill -TERM "$id" 2>/dev/null; done
     sleep 1
     for id in "${daemons[@]}"; do kill -KILL "$id" 2>/dev/null; done

@@ -51,7 +51,7 @@ say "node1 lost, with shard $lost at $(points_of "$lost") of $PER_SHARD points"
 midway hit_none --nodes=node2
 warned=$shard
 # As --signal does before the time limit. scancel repeats itself, as the shard is soon back in the queue; once is enough.
-timeout 3 scancel --batch --signal=USR1 "$(job_says "${array}_$warned" JobId)" 2>/dev/null || true
+timeout 3 scancel --batch --signal=USR1 "$(job_says "${array}_$warned" JobId)" 2>/dev/null &
 say "shard $warned warned of its time limit at $had of $PER_SHARD points"
 
 midway hit_none --nodes=node2
