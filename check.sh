@@ -15,9 +15,6 @@ cargo fmt --check
 say "lints"
 if command -v shellcheck >/dev/null; then
     shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh
-elif [ -n "${SMAM_REQUIRE_CLUSTER:-}" ]; then
-    echo "shellcheck is not installed" >&2
-    exit 1
 else
     echo "skipped: shellcheck is not installed"
 fi

@@ -14,6 +14,9 @@ from hyperqueue import Job
 from hyperqueue.client import Client
 from hyperqueue.ffi.protocol import ResourceRequest
 
+# Workers that may be lost under a shard before it is taken for the cause, and fails.
+LOST_WORKERS = 5
+
 CLUSTER = Path(__file__).resolve().parent.parent
 
 
@@ -49,6 +52,7 @@ def sweep_job(sweep, smam, out, shards, cpus):
             logged(out / "log" / f"shard_{i}.txt", CLUSTER / "shard.sh", i, shards, out, smam, "sweep", sweep, "--threads", cpus),
             name=f"shard {i}/{shards}",
             resources=ResourceRequest(cpus=cpus),
+            crash_limit=LOST_WORKERS,
             stdout=None,
             stderr=None,
         )
@@ -64,6 +68,14 @@ def logged(log, *command):
     return ["bash", "-c", 'exec "$@" >>"$0" 2>&1', str(log), *map(str, command)]
 
 
+def connected(server_dir):
+    try:
+        return Client(server_dir)
+    except Exception as error:
+        reason = str(error).splitlines()[0]
+        sys.exit(f"error: no HyperQueue server: {reason}\n  remedy: hq server start, or --server-dir; server and package of one version")
+
+
 def main():
     asked = arguments()
     smam = shutil.which(asked.smam)
@@ -74,7 +86,7 @@ def main():
     out = (asked.out or Path("out") / f"sweep_{asked.sweep.stem}").resolve()
     (out / "log").mkdir(parents=True, exist_ok=True)
 
-    client = Client(asked.server_dir)
+    client = connected(asked.server_dir)
     job = sweep_job(asked.sweep.resolve(), str(Path(smam).resolve()), out, asked.shards, asked.cpus)
     submitted = client.submit(job)
     shards = [task.name for task in job.tasks[:-1]]

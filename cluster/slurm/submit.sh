@@ -5,11 +5,11 @@ set -euo pipefail
 
 usage="usage: submit.sh SWEEP.toml --shards N [--out DIR] [--at-once K] [-- OPTIONS OF SBATCH...]
   --shards N    tasks of the array; each gets every N-th point
-  --out DIR     shards, logs and the merged table [default: out/sweep_NAME of the sweep file's stem]
+  --out DIR     shards, logs and the merged table [default: out/sweep_STEM, of the sweep file]
   --at-once K   run at most K tasks at a time
   -- OPTIONS    for array and merge, such as --partition=... --account=... --time=... ; --cpus-per-task=C gives each shard C threads
 SMAM names the program [default: smam, from PATH]"
-refuse() { printf 'error: %s\n' "$@" >&2; exit 2; }
+refuse() { echo "error: $1" >&2; shift; printf '%s\n' "$@" >&2; exit 2; }
 
 cluster=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 sweep='' shards='' out='' at_once=''
@@ -21,6 +21,7 @@ while [ $# -gt 0 ]; do
             printf -v "${option/-/_}" '%s' "$2"
             shift
             ;;
+        -h | --help) echo "$usage" && exit ;;
         --) shift && break ;;
         -*) refuse "$1 is no option" "$usage" ;;
         *) [ -z "$sweep" ] || refuse "$1: one sweep file at a time" "$usage"; sweep=$1 ;;
@@ -33,7 +34,8 @@ done
 smam=$(command -v "${SMAM:-smam}") || refuse "${SMAM:-smam}: no such program" "  remedy: SMAM=/path/to/smam, on a disk that all nodes see"
 
 # Slurm's own limit on the numbers of an array's tasks.
-largest=$(scontrol show config | awk '$1 == "MaxArraySize" { print $3 - 1 }')
+settings=$(scontrol show config) || refuse "Slurm does not answer" "  remedy: submit from a machine where squeue works"
+largest=$(awk '$1 == "MaxArraySize" { print $3 - 1 }' <<<"$settings")
 [ "$shards" -le "${largest:-1000}" ] || refuse "--shards $shards: this cluster's MaxArraySize allows $largest" "  remedy: fewer shards"
 
 out=${out:-out/sweep_$(basename "$sweep" .toml)}
