@@ -9,6 +9,12 @@ say() { printf '   %s\n' "$*"; }
 ok() { printf 'ok    %s\n' "$*"; }
 fail() { printf 'FAIL  %s\n' "$*" >&2; exit 1; }
 skip() { printf 'skipped: %s\n' "$*" >&2; exit 77; }
+needs() { # REMEDY PROGRAMS...
+    local program
+    for program in "${@:2}"; do
+        command -v "$program" >/dev/null || skip "$program is not installed (Debian: $1)"
+    done
+}
 
 # The test again under a time limit, which ends it as Ctrl-C would: it cleans up.
 limited() { # SECONDS SCRIPT

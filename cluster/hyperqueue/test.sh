@@ -10,6 +10,7 @@ target=${CARGO_TARGET_DIR:-$here/../../target}
 version=0.27.0
 . "$here/../testing.sh"
 limited 240 "$here/test.sh"
+needs "apt-get install python3-venv procps" python3 pgrep
 smam=$(realpath "${SMAM:-$target/release/smam}")
 [ -x "$smam" ] || fail "$smam is no program: cargo build --release, or SMAM=..."
 

@@ -9,9 +9,7 @@ PATH=$PATH:/usr/sbin:/sbin
 . "$here/../testing.sh"
 . "$here/engine.sh"
 limited 300 "$here/test.sh"
-for program in slurmctld slurmd sbatch munged; do
-    command -v "$program" >/dev/null || skip "$program is not installed (Debian: apt-get install slurm-wlm munge)"
-done
+needs "apt-get install slurm-wlm munge procps" slurmctld slurmd sbatch munged pgrep
 smam=$(realpath "${SMAM:-$here/../../target/release/smam}")
 [ -x "$smam" ] || fail "$smam is no program: cargo build --release, or SMAM=..."
 
