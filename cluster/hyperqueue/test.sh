@@ -9,7 +9,6 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 target=${CARGO_TARGET_DIR:-$here/../../target}
 version=0.27.0
 . "$here/../testing.sh"
-limited 240 "$here/test.sh"
 needs "apt-get install python3-venv procps" python3 pgrep
 smam=$(realpath "${SMAM:-$target/release/smam}")
 [ -x "$smam" ] || fail "$smam is no program: cargo build --release, or SMAM=..."
@@ -20,6 +19,7 @@ if ! "$python" -c 'import hyperqueue' 2>/dev/null; then
     { python3 -m venv "$venv" && "$python" -m pip install --quiet --disable-pip-version-check "hyperqueue==$version"; } ||
         { rm -rf "$venv"; skip "hyperqueue $version could not be installed (no python3 venv, or no network)"; }
 fi
+limited 300 "$here/test.sh"
 
 server='' workers=()
 # One process of the engine, ready; its id in `started`.
@@ -51,7 +51,7 @@ submit() { # RUN
 running_on() { # WORKER
     local task
     for task in $(pgrep -P "$1"); do
-        tr '\0' '\n' <"/proc/$task/cmdline" 2>/dev/null | grep -A1 -x '.*/shard.sh' | tail -n 1
+        { tr '\0' '\n' <"/proc/$task/cmdline"; } 2>/dev/null | grep -A1 -x '.*/shard.sh' | tail -n 1
     done
 }
 hit_none() { running_on "$1" | grep -vxE "${killed:-no}|${lost:-no}" || true; }
