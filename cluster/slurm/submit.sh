@@ -3,19 +3,19 @@
 # Again with the same arguments: only the shards that are not complete are submitted.
 set -euo pipefail
 
-usage="usage: submit.sh SWEEP.toml --shards N [--out DIR] [--at-once K] [-- OPTIONS OF SBATCH...]
+usage="usage: submit.sh SWEEP.toml --shards N [--out DIR] [--smam PATH] [--at-once K] [-- OPTIONS OF SBATCH...]
   --shards N    tasks of the array; each gets every N-th point
   --out DIR     shards, logs and the merged table [default: out/sweep_STEM, of the sweep file]
+  --smam PATH   the program, on a disk that all nodes see [default: smam, from PATH]
   --at-once K   run at most K tasks at a time
-  -- OPTIONS    for array and merge, such as --partition=... --account=... --time=... ; --cpus-per-task=C gives each shard C threads
-SMAM names the program [default: smam, from PATH]"
+  -- OPTIONS    for array and merge, such as --partition=... --account=... --time=... ; --cpus-per-task=C gives each shard C threads"
 refuse() { echo "error: $1" >&2; shift; printf '%s\n' "$@" >&2; exit 2; }
 
 cluster=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-sweep='' shards='' out='' at_once=''
+sweep='' shards='' out='' smam=smam at_once=''
 while [ $# -gt 0 ]; do
     case $1 in
-        --shards | --out | --at-once)
+        --shards | --out | --smam | --at-once)
             [ $# -gt 1 ] || refuse "$1 needs a value" "$usage"
             option=${1#--}
             printf -v "${option/-/_}" '%s' "$2"
@@ -31,7 +31,7 @@ done
 [ -f "$sweep" ] || refuse "'$sweep' is no sweep file" "$usage"
 [[ $shards =~ ^[1-9][0-9]*$ ]] || refuse "--shards '$shards': give a whole number, at least 1" "$usage"
 [[ $at_once =~ ^([1-9][0-9]*)?$ ]] || refuse "--at-once '$at_once': give a whole number, at least 1" "$usage"
-smam=$(command -v "${SMAM:-smam}") || refuse "${SMAM:-smam}: no such program" "  remedy: SMAM=/path/to/smam, on a disk that all nodes see"
+program=$(command -v "$smam") || refuse "$smam: no such program" "  remedy: --smam /path/to/smam"
 
 # Slurm's own limit on the numbers of an array's tasks.
 settings=$(scontrol show config) || refuse "Slurm does not answer" "  remedy: submit from a machine where squeue works"
@@ -40,9 +40,10 @@ largest=$(awk '$1 == "MaxArraySize" { print $3 - 1 }' <<<"$settings")
 
 out=${out:-out/sweep_$(basename "$sweep" .toml)}
 mkdir -p "$out/log"
-sweep=$(realpath "$sweep") smam=$(realpath "$smam") out=$(realpath "$out")
+sweep=$(realpath "$sweep") smam=$(realpath "$program") out=$(realpath "$out")
 # Two runs of a shard would do no harm, and its work twice.
-! squeue --me --noheader --format=%Z | grep -qFx "$out" ||
+queued=$(squeue --me --noheader --format=%Z)
+! grep -qFx "$out" <<<"$queued" ||
     refuse "$out: jobs of this folder are still in the queue" "  remedy: wait for them, or end them with scancel (squeue --me)"
 
 undone=$("$cluster/undone.sh" "$shards" "$out" | paste -sd,)

@@ -18,7 +18,7 @@ reference
 engine_up
 ok "$(slurmctld -V): ${#NODES[@]} nodes of one core"
 
-submit() { SMAM=$smam "$here/submit.sh" "$sweep" --shards "$SHARDS" --out "$out" "$@"; }
+submit() { "$here/submit.sh" "$sweep" --smam "$smam" --shards "$SHARDS" --out "$out" "$@"; }
 running() { squeue --noheader --name=out --states=running --format=%K "$@"; }
 # Those of them that nothing has befallen yet.
 killed='' lost='' warned=''
