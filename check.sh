@@ -13,6 +13,11 @@ say "format"
 cargo fmt --check
 
 say "lints"
+if command -v shellcheck >/dev/null; then
+    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh
+else
+    echo "skipped: shellcheck is not installed"
+fi
 cargo clippy --no-default-features --all-targets -- -D warnings
 
 say "tests: library, contracts, documentation"
@@ -38,6 +43,15 @@ if [ "${#failed[@]}" -gt 0 ]; then
     echo "scenes that failed: ${failed[*]}" >&2
     exit 1
 fi
+
+say "sweeps on Slurm and HyperQueue, killed on the way"
+for test in cluster/slurm/test.sh cluster/hyperqueue/test.sh; do
+    status=0
+    SMAM=$smam "$test" || status=$?
+    # 77: the engine is not here. That is no failure at a desk; where it must be here (CI), it is.
+    if [ "$status" -eq 77 ] && [ -z "${SMAM_REQUIRE_CLUSTER:-}" ]; then continue; fi
+    [ "$status" -eq 0 ] || { echo "$test failed (exit code $status)" >&2; exit 1; }
+done
 
 say "the README's first command"
 rm -f out/bending_catheter.csv out/bending_catheter.rrd
