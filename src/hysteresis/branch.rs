@@ -6,6 +6,8 @@ use crate::scalar::Scalar;
 const TOLERANCE: f64 = 1e-12;
 /// A state that needs more steps on one stretch runs away.
 const MOST_STEPS: usize = 20_000;
+/// So does one that wants steps of so small a share of it: its slope has no end.
+const LEAST_SHARE: f64 = 1e-12;
 /// Dormand and Prince's stages (autonomous form), the fifth-order solution last.
 const STAGES: [&[f64]; 6] = [
     &[1.0 / 5.0],
@@ -62,10 +64,13 @@ impl<D: Scalar> Branch<D> {
         if whole == 0.0 {
             return z + self.slope(z) * length;
         }
-        let (mut done, mut share) = (0.0, 1.0);
+        let (mut done, mut share) = (0.0, 1.0_f64);
         // The slope at the end of a step that holds is that at the start of the next.
         let mut slope = self.slope(z);
         for _ in 0..MOST_STEPS {
+            if share.is_nan() || share < LEAST_SHARE || !slope.value().is_finite() {
+                break;
+            }
             let last = done + share >= 1.0;
             let taken = if last { 1.0 - done } else { share };
             let (next, next_slope, error) = self.step(z, slope, length * taken);
@@ -77,7 +82,7 @@ impl<D: Scalar> Branch<D> {
                     return z;
                 }
             }
-            share = taken * (0.9 * (allowed / error.max(1e-300)).powf(0.2)).clamp(0.1, 5.0);
+            share = taken * (0.9 * (allowed / error).powf(0.2)).clamp(0.1, 5.0);
         }
         D::constant(f64::NAN)
     }
