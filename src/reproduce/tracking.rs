@@ -9,7 +9,7 @@ use crate::scene::{Override, Program};
 use crate::system::{Driver, InputSource, Schedule, Simulation, record_driven};
 
 use super::identified::{fitted, recorded};
-use super::loops::{bounds, rms_apart, straight_line};
+use super::loops::{rms_apart, straight_line};
 use super::rig::{Play, program, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -19,7 +19,9 @@ const INTERVAL_S: f64 = 0.01;
 const FORMS: [Form; 4] = [Form::Paper, Form::Asymmetric, Form::PrandtlIshlinskiiRate, Form::MaxwellSlip];
 /// From rest into the wanted motion, s.
 const LEAD_IN_S: f64 = 3.0;
-/// Samples of the training run, s: its strokes are straight, and models are exact between samples.
+/// The training run: three sines, Hz, with their shares of the range; none of them is a motion's.
+const TRAINING: [(f64, f64); 3] = [(0.13, 0.5), (0.053, 0.3), (0.21, 0.2)];
+const TRAINING_S: f64 = 70.0;
 const TRAINING_INTERVAL_S: f64 = 0.05;
 /// Time constant of the trim, s.
 const TRIM_S: f64 = 0.15;
@@ -36,8 +38,8 @@ struct Rig {
     output: &'static str,
     /// mm of travel per unit of the output: 1 for an elongation, lever times radian for an angle.
     travel_mm: f64,
-    /// Turning points of the training programme, mm of input, 5 s apart.
-    training_mm: &'static [f64],
+    /// Range of the input while training, mm.
+    training_mm: [f64; 2],
     /// Least and greatest wanted output, in its unit. The least stays clear of where the rig itself cannot follow: what
     /// friction leaves of an elongation or a bend takes suction to go.
     wanted: [f64; 2],
@@ -54,7 +56,7 @@ const RIGS: [Rig; 3] = [
         plungers: &[("plunger_mm", 1.0)],
         output: "elongation_mm",
         travel_mm: 1.0,
-        training_mm: &[0.0, 3.0, 0.0, 2.7, 0.3, 2.4, 0.6, 2.1, 0.9, 1.8, 0.0, 1.5, 0.2, 1.0, 0.0],
+        training_mm: [0.0, 2.8],
         wanted: [3.0, 22.0],
         goal: 10.0,
     },
@@ -64,7 +66,7 @@ const RIGS: [Rig; 3] = [
         plungers: &[("plunger_1_mm", -1.0), ("plunger_2_mm", 1.0)],
         output: "angle_deg",
         travel_mm: 8.0 * DEGREE,
-        training_mm: &[0.0, 1.1, -1.1, 1.0, -1.0, 0.8, -0.8, 0.6, -0.6, 0.4, -0.4, 0.2, -0.2, 0.1, 0.0],
+        training_mm: [-1.1, 1.1],
         wanted: [-50.0, 50.0],
         goal: 5.0,
     },
@@ -74,7 +76,7 @@ const RIGS: [Rig; 3] = [
         plungers: &[("plunger_1_mm", -1.0)],
         output: "bend_deg",
         travel_mm: 2.62 * DEGREE,
-        training_mm: &[0.0, 1.4, 0.0, 1.25, 0.15, 1.1, 0.3, 0.95, 0.4, 0.8, 0.0, 0.6, 0.1, 0.4, 0.0],
+        training_mm: [0.0, 1.35],
         wanted: [25.0, 115.0],
         goal: 5.0,
     },
@@ -107,17 +109,25 @@ impl Rig {
         }
     }
 
+    /// The training input, mm: from home to the middle of its range, then strokes of changing size about it.
+    fn training_input_mm(&self) -> (Vec<f64>, Vec<f64>) {
+        let [low, high] = self.training_mm;
+        let times = Schedule::even(TRAINING_S, TRAINING_INTERVAL_S).0;
+        let wave = |f: f64, t: f64| (std::f64::consts::TAU * f * t).sin();
+        let shape = |t: f64| TRAINING.iter().map(|(f, share)| share * wave(*f, t)).sum::<f64>();
+        let lead = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * (t / LEAD_IN_S).min(1.0)).cos());
+        let input = times.iter().map(|t| lead(*t) * (0.5 * (low + high) + 0.5 * (high - low) * shape(*t))).collect();
+        (times, input)
+    }
+
     /// The training run, the output as mm of travel.
     fn training(&self) -> Result<LoopRun, ReproduceError> {
-        let times: Vec<f64> = (0..self.training_mm.len()).map(|i| 5.0 * i as f64).collect();
-        let mut play =
-            self.play().with("simulation.output_interval_s", TRAINING_INTERVAL_S).lasting(times[times.len() - 1]);
+        let (times, input) = self.training_input_mm();
+        let mut play = self.play().with("simulation.output_interval_s", TRAINING_INTERVAL_S).lasting(TRAINING_S);
         for (channel, sign) in self.plungers {
-            let values: Vec<f64> = self.training_mm.iter().map(|x| x * sign * 1e-3).collect();
-            play = play.driven(
-                channel,
-                program(FIGURE, &format!("kind = \"points\"\ntime_s = {times:?}\nvalue_m = {values:?}"))?,
-            );
+            let values: Vec<f64> = input.iter().map(|x| x * sign * 1e-3).collect();
+            let points = format!("kind = \"points\"\ntime_s = {times:?}\nvalue_m = {values:?}");
+            play = play.driven(channel, program(FIGURE, &points)?);
         }
         let run = play.run()?;
         let (channel, sign) = self.plungers[0];
@@ -188,8 +198,8 @@ impl Driver for Tracking<'_> {
             Base::Inverse(inverse) => inverse.step(wanted_mm, INTERVAL_S),
         };
         let trim = self.control.trim.as_mut().map_or(0.0, |t| t.step(error, INTERVAL_S));
-        let (low, high) = bounds(self.rig.training_mm);
-        let input_mm = (base + trim).clamp(1.1 * low - 0.1, 1.1 * high + 0.1);
+        let [low, high] = self.rig.training_mm;
+        let input_mm = (base + trim).clamp(low - 0.2, high + 0.2);
         self.rig.plungers.iter().map(|(_, sign)| input_mm * sign * 1e-3).collect()
     }
 }
@@ -209,8 +219,9 @@ impl Taught {
             FORMS.par_iter().map(|form| fitted(FIGURE, std::slice::from_ref(&run), *form)).collect();
         let best = models?.into_iter().min_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
         let (slope, offset_mm, _) = straight_line(&run.input_mm, &run.output_mm);
-        let (low, high) = bounds(&run.input_mm);
-        let limits = Limits { input_mm: [low, high], speed_mm_s: 4.0 * (high - low), least_slope: 0.15 };
+        let [low, high] = rig.training_mm;
+        let limits =
+            Limits { input_mm: [low, high + 0.1 * (high - low)], speed_mm_s: 4.0 * (high - low), least_slope: 0.15 };
         let model = best.ok_or_else(|| super::error::lacking(FIGURE, "no form could be identified"))?;
         Ok(Self { slope, offset_mm, model, limits })
     }
@@ -233,7 +244,7 @@ impl Taught {
 pub fn chapter() -> Result<Chapter, ReproduceError> {
     let made: Result<Vec<(Vec<Row>, Panel)>, ReproduceError> = RIGS.par_iter().map(of_rig).collect();
     let (rows, panels): (Vec<Vec<Row>>, Vec<Panel>) = made?.into_iter().unzip();
-    let text = "A model is identified from a training run of straight strokes of falling size and inverted along the \
+    let text = "A model is identified from a training run of three sines, none of them wanted later, and inverted along the \
                 wanted motion, which keeps clear of the closed coil and of the straight tube: what friction leaves there \
                 takes suction to go. Without: the line of best fit turned round. The error is the root mean square over 30 s. \
                 Feedback adds an integral trim; it is also tried on a muscle that is not the one identified (C1 a fifth \
