@@ -5,8 +5,8 @@ use smam::sweep::{LimitSpec, Mark, MeasureSpec, ObjectiveSpec, Plan, SamplingSpe
 
 /// Lines of one panel; more values of a second key are thinned to so many.
 const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, "#404040"];
-/// Broad lines behind: where a limit is broken.
-const BEYOND: [&str; 4] = ["#f3b49f", "#f2d58a", "#c9b6dc", "#b9d9ec"];
+/// Strips where a limit is broken.
+const BEYOND: [&str; 4] = [VERMILION, ORANGE, PURPLE, BLUE];
 const TRIED: &str = "#bdbdbd";
 
 /// Each measure over the first key.
@@ -92,15 +92,22 @@ fn is_line(plan: &Plan) -> bool {
     plan.file.sampling == SamplingSpec::Grid && plan.file.vary.len() == 1
 }
 
-/// Broad lines behind a measure where limits are broken.
+/// Strips below a measure along the values of the key at which limits are broken, one for each.
 fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
-    let series = |(limit, colour): (&LimitSpec, &'static str)| {
+    let least = y.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
+    // A measure that never changes has an axis of its own.
+    let step = if reach(y) > 1e-9 * least.abs() { 0.06 * reach(y) } else { 0.1 };
+    let is_broken = |limit: &LimitSpec| -> Vec<bool> {
         let of = table.column(&limit.measure).unwrap_or_default();
-        let shown = of.iter().zip(y).map(|(v, y)| if excess(limit, *v) > 0.0 { *y } else { f64::NAN }).collect();
+        of.iter().map(|v| excess(limit, *v) > 0.0).collect()
+    };
+    let all = plan.file.limit.iter().map(|limit| (limit, is_broken(limit))).filter(|(_, at)| at.contains(&true));
+    let strip = |(i, ((limit, at), colour)): (usize, ((&LimitSpec, Vec<bool>), &'static str))| {
+        let level = least - (i + 1) as f64 * step;
+        let shown = at.iter().map(|b| if *b { level } else { f64::NAN }).collect();
         line(broken(limit), colour, x.to_vec(), shown)
     };
-    let all = plan.file.limit.iter().zip(BEYOND.into_iter().cycle()).map(series);
-    all.filter(|s| s.y.iter().any(|v| v.is_finite())).collect()
+    all.zip(BEYOND.into_iter().cycle()).enumerate().map(strip).collect()
 }
 
 /// Lines over the first key of a grid, one for each value of the second; crosses for samples.

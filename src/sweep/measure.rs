@@ -131,7 +131,7 @@ fn enclosed(x: &[f64], y: &[f64]) -> f64 {
 /// Time that a series spends at or below a level, s: intervals of which both ends are.
 pub(super) fn time_below(time_s: &[f64], y: &[f64], level: f64) -> f64 {
     let spans = time_s.windows(2).zip(y.windows(2));
-    spans.filter(|(_, y)| y[0] <= level && y[1] <= level).map(|(t, _)| t[1] - t[0]).sum()
+    spans.filter(|(_, y)| y[0] <= level && y[1] <= level).map(|(t, _)| t[1] - t[0]).fold(0.0, |all, span| all + span)
 }
 
 #[cfg(test)]

@@ -63,6 +63,7 @@ impl Plan {
         let text =
             std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
+        plan.evolution()?;
         plan.check_ends()?;
         Ok(plan)
     }
