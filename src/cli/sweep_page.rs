@@ -9,7 +9,7 @@ use super::CliError;
 use super::files::write;
 use super::sweep_panels::{bars, broken, front_panel, panels, short};
 
-const SIZE: (f64, f64) = (720.0, 260.0);
+const SIZE: (f64, f64) = (860.0, 260.0);
 /// Rows of the table of the best; `best.csv` has them all.
 const BEST_SHOWN: usize = 20;
 

@@ -18,7 +18,7 @@ pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
         let mut behind = if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() };
         behind.extend(first.mark.iter().map(|mark| upright(mark, "#9e9e9e", &y)));
         if let ([best], true) = (best, is_line(plan)) {
-            let mark = Mark { at: x[*best], label: format!("best: {:.4}", x[*best]) };
+            let mark = Mark { at: x[*best], label: format!("best: {}", x[*best]) };
             behind.push(upright(&mark, GREEN, &y));
         }
         Panel {
@@ -96,18 +96,25 @@ fn is_line(plan: &Plan) -> bool {
 fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
     let least = y.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
     // A measure that never changes has an axis of its own.
-    let step = if reach(y) > 1e-9 * least.abs() { 0.06 * reach(y) } else { 0.1 };
+    let step = if reach(y) > 1e-9 * least.abs().max(1e-9) { 0.06 * reach(y) } else { 0.1 };
     let is_broken = |limit: &LimitSpec| -> Vec<bool> {
         let of = table.column(&limit.measure).unwrap_or_default();
         of.iter().map(|v| excess(limit, *v) > 0.0).collect()
     };
     let all = plan.file.limit.iter().map(|limit| (limit, is_broken(limit))).filter(|(_, at)| at.contains(&true));
     let strip = |(i, ((limit, at), colour)): (usize, ((&LimitSpec, Vec<bool>), &'static str))| {
-        let level = least - (i + 1) as f64 * step;
-        let shown = at.iter().map(|b| if *b { level } else { f64::NAN }).collect();
-        line(broken(limit), colour, x.to_vec(), shown)
+        let (along, level) = (stretches(x, &at), least - (i + 1) as f64 * step);
+        let y = along.iter().map(|x| if x.is_finite() { level } else { f64::NAN }).collect();
+        line(broken(limit), colour, along, y)
     };
     all.zip(BEYOND.into_iter().cycle()).enumerate().map(strip).collect()
+}
+
+/// Ends of the stretches of a grid that belong to chosen values, half-way to those beside them, cut by NaN.
+fn stretches(x: &[f64], chosen: &[bool]) -> Vec<f64> {
+    let middle = |i: usize, j: usize| 0.5 * (x[i] + x[j.min(x.len() - 1)]);
+    let own = (0..x.len()).filter(|&i| chosen[i]);
+    own.flat_map(|i| [middle(i, i.saturating_sub(1)), middle(i, i + 1), f64::NAN]).collect()
 }
 
 /// Lines over the first key of a grid, one for each value of the second; crosses for samples.
@@ -161,4 +168,16 @@ fn crosses(x: &[f64], y: &[f64], reach: (f64, f64)) -> Series {
         up.extend([*y, *y, f64::NAN, y - dy, y + dy, f64::NAN]);
     }
     line(String::new(), BLUE, along, up)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_value_has_a_stretch_of_its_own() {
+        let found = stretches(&[1.0, 2.0, 4.0], &[true, false, true]);
+        assert_eq!([found[0], found[1], found[3], found[4]], [1.0, 1.5, 3.0, 4.0]);
+        assert!(found[2].is_nan() && found.len() == 6);
+    }
 }

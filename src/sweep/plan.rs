@@ -198,10 +198,15 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// Of what sweep and scene hold; not of where they stand, so that shards may be begun from any folder.
+/// Of what sweep and scene hold; not of where they stand, so that shards may be begun from any folder, nor of what is wanted
+/// of points that do not depend on it.
 fn fingerprint(file: &SweepFile, base: &Scene) -> Result<String, SweepError> {
     let syntax = |e: toml::ser::Error| SweepError::Syntax { file: base.path.clone(), message: e.to_string() };
-    let anywhere = SweepFile { scene: base.file.name.clone(), ..file.clone() };
+    let mut anywhere = SweepFile { scene: base.file.name.clone(), ..file.clone() };
+    if !matches!(file.sampling, SamplingSpec::Nsga2 { .. }) {
+        anywhere.objective.clear();
+        anywhere.limit.clear();
+    }
     let mut hasher = Sha256::new();
     hasher.update(toml::to_string(&anywhere).map_err(syntax)?);
     hasher.update(toml::to_string(&base.file).map_err(syntax)?);
