@@ -48,6 +48,17 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     write(&folder.join("sweep.html"), &page.finish())
 }
 
+/// A number to five digits.
+fn digits(value: f64) -> String {
+    let power = value.abs().log10().floor();
+    match value {
+        0.0 => "0".to_owned(),
+        _ if !value.is_finite() => "-".to_owned(),
+        _ if !(-4.0..9.0).contains(&power) => format!("{value:.4e}"),
+        _ => format!("{value:.*}", (4.0 - power).max(0.0) as usize),
+    }
+}
+
 /// A path without `.` and the `..` that can be resolved in it.
 fn plain(path: &str) -> String {
     let mut shown = PathBuf::new();
@@ -81,7 +92,7 @@ fn best_points(page: &mut HtmlPage, plan: &Plan, table: &Table, best: &[usize]) 
     let row = |i: &usize| {
         let row = &table.rows[*i];
         let numbers = row.values.iter().chain(row.outcome.as_deref().unwrap_or(&[]));
-        std::iter::once(row.index.to_string()).chain(numbers.map(|v| format!("{v:.4}"))).collect()
+        std::iter::once(row.index.to_string()).chain(numbers.map(|v| digits(*v))).collect()
     };
     let rows: Vec<Vec<String>> = best.iter().step_by(every).map(row).collect();
     page.table(&header, &rows);
@@ -103,7 +114,7 @@ fn influences(page: &mut HtmlPage, found: &Sensitivity, svg: &str) {
 /// Values of the keys at a row, in words.
 fn at(plan: &Plan, table: &Table, row: usize) -> String {
     let keys = plan.file.vary.iter().zip(&table.rows[row].values);
-    keys.map(|(v, value)| format!("{} {value:.4}", short(&v.key))).collect::<Vec<_>>().join(", ")
+    keys.map(|(v, value)| format!("{} {}", short(&v.key), digits(*value))).collect::<Vec<_>>().join(", ")
 }
 
 fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
@@ -113,7 +124,7 @@ fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
         let least = there().min_by(|a, b| a.1.total_cmp(b.1));
         let greatest = there().max_by(|a, b| a.1.total_cmp(b.1));
         let words = |found: Option<(usize, &f64)>| match found {
-            Some((row, value)) => [format!("{value:.4}"), at(plan, table, row)],
+            Some((row, value)) => [digits(*value), at(plan, table, row)],
             None => ["-".to_owned(), "-".to_owned()],
         };
         [vec![m.name.clone()], words(least).to_vec(), words(greatest).to_vec()].concat()
@@ -124,6 +135,12 @@ fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn five_digits_are_shown_of_any_number() {
+        let shown = [0.0038962976, -140.83847, 2750194.0, 8e-15, -0.0, f64::NAN].map(digits);
+        assert_eq!(shown, ["0.0038963", "-140.84", "2750194", "8.0000e-15", "0", "-"]);
+    }
 
     #[test]
     fn paths_are_shown_plain() {
