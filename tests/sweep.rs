@@ -212,3 +212,21 @@ fn a_scene_with_vary_and_measure_is_a_sweep_and_wrong_words_are_refused() {
         assert!(text(&refused.stderr).contains(word), "{}", text(&refused.stderr));
     }
 }
+
+/// Limits and objectives are looked at when all is run: another one needs no other run.
+#[test]
+fn limits_may_be_changed_afterwards() {
+    let few = SWEEP.replace("count = 60", "count = 6");
+    let (_folder, file, at) = sweep(&few);
+    let out = at("out");
+    whole(&file, &out);
+    let goal = "[[objective]]\nmeasure = \"loop_width_mm\"\ngoal = \"minimise\"\n";
+    let limit = "[[limit]]\nmeasure = \"elongation_max_mm\"\nmin = 1000.0\nlabel = \"too short\"\n";
+    for (added, words) in [(goal.to_owned(), "Point "), (goal.to_owned() + limit, "No point keeps the limits")] {
+        fs::write(&file, few.clone() + &added).expect("written");
+        let done = smam(&["plot", &file, &out]);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        let page = fs::read_to_string(Path::new(&out).join("sweep.html")).expect("a page");
+        assert!(page.contains("Best under these limits") && page.contains(words), "{page}");
+    }
+}

@@ -23,6 +23,7 @@ mod scenes;
 mod score;
 mod sweep;
 mod sweep_page;
+mod sweep_panels;
 mod trial;
 
 use std::process::ExitCode;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use smam::recording::{Recording, read_csv, survey, write_whole};
+use smam::recording::{Recording, read_recording, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
 
@@ -103,7 +103,7 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     let Some(path) = &arguments.input else {
         return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
     };
-    let recording = read_csv(path)?;
+    let recording = read_recording(path)?;
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     drive(simulation, &recording, path)?;
     let first = recording.time_s().first().copied().unwrap_or(0.0);

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
 
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use rayon::prelude::*;
-use smam::sweep::{Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepError, SweepFile, Table, VarySpec, evaluate};
+use smam::sweep::{
+    Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepFile, Table, VarySpec, Watch, sensitivity, write_best,
+};
 
 use super::CliError;
 use super::interrupt::stop_flag;
@@ -36,11 +36,11 @@ enum SweepCommand {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
-    /// Draw a sweep's page again from its journal
+    /// Draw a sweep's page again from its journal or its table
     Plot {
         /// Sweep file
         sweep: PathBuf,
-        /// Folder that the sweep wrote
+        /// Folder that the sweep wrote, or its table.parquet: the page goes beside it
         folder: PathBuf,
     },
 }
@@ -91,34 +91,29 @@ fn run(arguments: &RunSweep) -> Result<ExitCode, CliError> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep_{}", plan.file.name)));
     let journal = Journal::open(&out, &plan, arguments.resume)?;
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
-    let pending: Vec<u64> = shard.points(plan.count()).filter(|i| !journal.done.contains_key(i)).collect();
-    run_points(&plan, &journal, &pending)?;
+    run_points(&plan, &journal, shard)?;
     let table = Table::of_folders(&plan, &[&out])?;
     finish(&plan, &table, &out, shard)
 }
 
-/// Runs points on all threads; what was begun when Ctrl-C came is finished and kept.
-fn run_points(plan: &Plan, journal: &Journal, pending: &[u64]) -> Result<(), CliError> {
-    eprintln!("{}: {} points, {} of them to do", plan.file.name, plan.count(), pending.len());
-    let bar = ProgressBar::new(pending.len() as u64);
+fn run_points(plan: &Plan, journal: &Journal, shard: Shard) -> Result<(), CliError> {
+    let pending = shard.points(plan.count()).filter(|i| !journal.done.contains_key(i)).count();
+    eprintln!("{}: {} points, {pending} of them to do", plan.file.name, plan.count());
+    let bar = ProgressBar::new(pending as u64);
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} points, {eta} left");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let stop = stop_flag();
-    // Points in their order: with rayon's default halves, a kill would leave the far end of the range undone.
-    pending.par_iter().with_max_len(1).try_for_each(|&index| -> Result<(), SweepError> {
-        if stop.load(Ordering::Relaxed) {
-            return Ok(());
-        }
-        journal.add(&evaluate(plan, index))?;
-        bar.inc(1);
-        Ok(())
-    })?;
+    smam::sweep::run(plan, journal, shard, &Watch { stop, point_done: &|| bar.inc(1) })?;
     bar.finish_and_clear();
     Ok(())
 }
 
 fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCode, CliError> {
     table.write(out)?;
+    write_best(plan, table, out)?;
+    if let Some(found) = sensitivity(plan, table) {
+        found.write(out)?;
+    }
     write_page(plan, table, out)?;
     for (index, error) in table.failed().take(5) {
         eprintln!("point {index} failed: {}", error.lines().next().unwrap_or(""));
@@ -142,7 +137,11 @@ fn merge(sweep: &Path, folders: &[PathBuf], out: &Path) -> Result<ExitCode, CliE
 
 fn plot(sweep: &Path, folder: &Path) -> Result<ExitCode, CliError> {
     let plan = Plan::new(SweepFile::load(sweep)?)?;
-    write_page(&plan, &Table::of_folders(&plan, &[folder])?, folder)?;
+    let (table, out) = match folder.extension() {
+        Some(e) if e == "parquet" => (Table::of_parquet(&plan, folder)?, folder.parent().unwrap_or(Path::new("."))),
+        _ => (Table::of_folders(&plan, &[folder])?, folder),
+    };
+    write_page(&plan, &table, out)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -170,6 +169,8 @@ fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
         sampling: SamplingSpec::Grid,
         vary: arguments.vary.iter().map(|v| vary(v)).collect::<Result<_, _>>()?,
         measure: arguments.measure.iter().map(|m| measure(m)).collect(),
+        objective: Vec::new(),
+        limit: Vec::new(),
         output: Vec::new(),
         set: Vec::new(),
     })

@@ -1,20 +1,20 @@
-//! The page of a sweep: each measure over the first key, one line for each value of the second.
+//! The page of a sweep: each measure over the first key, what it depends on, and the best points.
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
-use smam::report::{BLUE, GREEN, HtmlPage, ORANGE, PURPLE, Panel, Series, VERMILION, figure_svg};
-use smam::sweep::{Mark, Plan, SamplingSpec, Table};
+use smam::report::{HtmlPage, bars_svg, figure_svg};
+use smam::sweep::{Goal, MeasureSpec, Plan, Sensitivity, Table, best, sensitivity};
 
 use super::CliError;
 use super::files::write;
+use super::sweep_panels::{bars, broken, front_panel, panels, short};
 
-const SIZE: (f64, f64) = (720.0, 260.0);
-/// Lines of one panel; more values of a second key are thinned to so many.
-const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, "#404040"];
+const SIZE: (f64, f64) = (860.0, 260.0);
+/// Rows of the table of the best; `best.csv` has them all.
+const BEST_SHOWN: usize = 20;
 
-/// Writes `sweep.html` and, for use elsewhere, `sweep.svg`.
+/// Writes `sweep.html` and, for use elsewhere, its figures.
 pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliError> {
-    let svg = figure_svg(&panels(plan, table), SIZE.0, SIZE.1);
     let file = &plan.file;
     let mut page = HtmlPage::new(if file.title.is_empty() { &file.name } else { &file.title });
     let keys: Vec<String> = file.vary.iter().map(|v| v.key.clone()).collect();
@@ -23,9 +23,24 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         "{} of {} points of the scene {}, {failed} of them failed. Varied: {}.",
         table.rows.len(),
         table.points,
-        file.scene,
+        plain(&file.scene),
         keys.join(", ")
     ));
+    let best = best(plan, table);
+    if !file.objective.is_empty() {
+        best_points(&mut page, plan, table, &best);
+    }
+    if let Some(panel) = front_panel(plan, table, &best) {
+        let svg = figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0);
+        page.figure(&svg, "The best points: within the limits, and beaten by no other in all objectives.");
+        write(&folder.join("front.svg"), &svg)?;
+    }
+    if let Some(found) = sensitivity(plan, table) {
+        let svg = bars_svg(&bars(plan, &found));
+        influences(&mut page, &found, &svg);
+        write(&folder.join("sensitivity.svg"), &svg)?;
+    }
+    let svg = figure_svg(&panels(plan, table, &best), SIZE.0, SIZE.1);
     page.figure(&svg, "Each measure over the first key. A gap is a point that failed.");
     page.heading("Extremes");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
@@ -33,90 +48,104 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     write(&folder.join("sweep.html"), &page.finish())
 }
 
-fn panels(plan: &Plan, table: &Table) -> Vec<Panel> {
-    let Some(first) = plan.file.vary.first() else { return Vec::new() };
-    let x = table.column(&first.key).unwrap_or_default();
-    let panel = |m: &smam::sweep::MeasureSpec| {
-        let y = table.column(&m.name).unwrap_or_default();
-        Panel {
-            title: vec![m.name.clone(), m.of.clone()],
-            x_label: first.key.clone(),
-            y_label: m.name.clone(),
-            behind: first.mark.iter().map(|mark| upright(mark, &y)).collect(),
-            series: lines(plan, table, &x, &y),
-            ..Panel::default()
+/// A number to five digits.
+fn digits(value: f64) -> String {
+    let power = value.abs().log10().floor();
+    match value {
+        0.0 => "0".to_owned(),
+        _ if !value.is_finite() => "-".to_owned(),
+        _ if !(-4.0..9.0).contains(&power) => format!("{value:.4e}"),
+        _ => format!("{value:.*}", (4.0 - power).max(0.0) as usize),
+    }
+}
+
+/// A path without `.` and the `..` that can be resolved in it.
+fn plain(path: &str) -> String {
+    let mut shown = PathBuf::new();
+    for part in Path::new(path).components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(shown.components().next_back(), Some(Component::Normal(_))) => {
+                shown.pop();
+            }
+            other => shown.push(other),
         }
-    };
-    plan.file.measure.iter().map(panel).collect()
-}
-
-/// Lines over the first key of a grid, one for each value of the second; crosses for samples.
-fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
-    if plan.file.sampling != SamplingSpec::Grid || plan.file.vary.len() > 2 {
-        return vec![crosses(x, y)];
     }
-    let Some(second) = plan.file.vary.get(1) else { return vec![line(String::new(), BLUE, x.to_vec(), y.to_vec())] };
-    let of_second = table.column(&second.key).unwrap_or_default();
-    let mut values = of_second.clone();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    let every = values.len().div_ceil(COLOURS.len()).max(1);
-    let shown = values.into_iter().step_by(every).zip(COLOURS);
-    shown
-        .map(|(value, colour)| {
-            let own: Vec<usize> = (0..x.len()).filter(|i| of_second[*i] == value).collect();
-            let pick = |from: &[f64]| own.iter().map(|&i| from[i]).collect();
-            line(format!("{} = {value:.4}", short(&second.key)), colour, pick(x), pick(y))
-        })
-        .collect()
+    shown.display().to_string()
 }
 
-/// A marked value as an upright line over what a measure reaches.
-fn upright(mark: &Mark, y: &[f64]) -> Series {
-    let finite = || y.iter().copied().filter(|v| v.is_finite());
-    let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
-    line(mark.label.clone(), "#bdbdbd", vec![mark.at; 2], vec![low, high])
-}
-
-/// Last words of a key.
-fn short(key: &str) -> &str {
-    key.rsplit('.').next().unwrap_or(key)
-}
-
-fn line(label: String, colour: &'static str, x: Vec<f64>, y: Vec<f64>) -> Series {
-    Series { label, colour, x, y }
-}
-
-/// A small cross at every point.
-fn crosses(x: &[f64], y: &[f64]) -> Series {
-    let reach = |v: &[f64]| {
-        let finite = || v.iter().copied().filter(|v| v.is_finite());
-        (finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
+fn best_points(page: &mut HtmlPage, plan: &Plan, table: &Table, best: &[usize]) {
+    let file = &plan.file;
+    page.heading("Best under these limits");
+    let goal = |goal: Goal| if goal == Goal::Maximise { "greatest" } else { "least" };
+    let goals: Vec<String> = file.objective.iter().map(|o| format!("{} {}", goal(o.goal), o.measure)).collect();
+    let limits: Vec<String> = file.limit.iter().map(broken).collect();
+    let refused = if limits.is_empty() { String::new() } else { format!("; refused: {}", limits.join(", ")) };
+    let found = match best {
+        [] => "No point keeps the limits.".to_owned(),
+        [one] => format!("Point {}: {}.", table.rows[*one].index, at(plan, table, *one)),
+        many => format!("{} points that no other beats in all of this.", many.len()),
     };
-    let (dx, dy) = (0.004 * reach(x), 0.012 * reach(y));
-    let (mut along, mut up) = (Vec::new(), Vec::new());
-    for (x, y) in x.iter().zip(y).filter(|(_, y)| y.is_finite()) {
-        along.extend([x - dx, x + dx, f64::NAN, *x, *x, f64::NAN]);
-        up.extend([*y, *y, f64::NAN, y - dy, y + dy, f64::NAN]);
-    }
-    line(String::new(), BLUE, along, up)
+    page.paragraph(&format!("Wanted: {}{refused}. {found}", goals.join(", ")));
+    let header: Vec<&str> = table.columns.iter().map(|c| short(c)).collect();
+    let every = best.len().div_ceil(BEST_SHOWN).max(1);
+    let row = |i: &usize| {
+        let row = &table.rows[*i];
+        let numbers = row.values.iter().chain(row.outcome.as_deref().unwrap_or(&[]));
+        std::iter::once(row.index.to_string()).chain(numbers.map(|v| digits(*v))).collect()
+    };
+    let rows: Vec<Vec<String>> = best.iter().step_by(every).map(row).collect();
+    page.table(&header, &rows);
+}
+
+fn influences(page: &mut HtmlPage, found: &Sensitivity, svg: &str) {
+    page.heading("What the measures depend on");
+    page.figure(svg, "Whiskers: 95 % of 500 bootstrap rounds.");
+    let names: Vec<&str> = found.names.iter().flat_map(|name| [*name, "95 %"]).collect();
+    let header = [&["measure", "key", "samples"][..], &names].concat();
+    let row = |i: &smam::sweep::Influence| {
+        let numbers =
+            i.numbers.iter().flat_map(|n| [format!("{:.4}", n.value), format!("{:.4} .. {:.4}", n.low, n.high)]);
+        [i.measure.clone(), i.key.clone(), i.samples.to_string()].into_iter().chain(numbers).collect()
+    };
+    page.table(&header, &found.influences.iter().map(row).collect::<Vec<_>>());
+}
+
+/// Values of the keys at a row, in words.
+fn at(plan: &Plan, table: &Table, row: usize) -> String {
+    let keys = plan.file.vary.iter().zip(&table.rows[row].values);
+    keys.map(|(v, value)| format!("{} {}", short(&v.key), digits(*value))).collect::<Vec<_>>().join(", ")
 }
 
 fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
-    let at = |row: usize| {
-        let keys = plan.file.vary.iter().zip(&table.rows[row].values);
-        keys.map(|(v, value)| format!("{} {value:.4}", short(&v.key))).collect::<Vec<_>>().join(", ")
-    };
-    let row = |m: &smam::sweep::MeasureSpec| {
+    let row = |m: &MeasureSpec| {
         let values = table.column(&m.name).unwrap_or_default();
         let there = || values.iter().enumerate().filter(|(_, v)| v.is_finite());
         let least = there().min_by(|a, b| a.1.total_cmp(b.1));
         let greatest = there().max_by(|a, b| a.1.total_cmp(b.1));
         let words = |found: Option<(usize, &f64)>| match found {
-            Some((row, value)) => [format!("{value:.4}"), at(row)],
+            Some((row, value)) => [digits(*value), at(plan, table, row)],
             None => ["-".to_owned(), "-".to_owned()],
         };
         [vec![m.name.clone()], words(least).to_vec(), words(greatest).to_vec()].concat()
     };
     plan.file.measure.iter().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn five_digits_are_shown_of_any_number() {
+        let shown = [0.0038962976, -140.83847, 2750194.0, 8e-15, -0.0, f64::NAN].map(digits);
+        assert_eq!(shown, ["0.0038963", "-140.84", "2750194", "8.0000e-15", "0", "-"]);
+    }
+
+    #[test]
+    fn paths_are_shown_plain() {
+        assert_eq!(plain("scenes/sweeps/../pulley.toml"), "scenes/pulley.toml");
+        assert_eq!(plain("../x/./a.toml"), "../x/a.toml");
+        assert_eq!(plain("../../a.toml"), "../../a.toml");
+    }
 }

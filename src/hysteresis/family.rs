@@ -110,7 +110,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::PrandtlIshlinskii(model) => {
                 with(&["gain", "curvature", "asymmetry", "rate_s"], "weight", model.elements.len())
             }
-            Self::MaxwellSlip(model) => with(&["gain", "curvature"], "stiffness", model.elements.len()),
+            Self::MaxwellSlip(model) => with(&["gain", "curvature", "growth"], "stiffness", model.elements.len()),
         }
     }
 
@@ -126,7 +126,7 @@ impl<D: Scalar> HysteresisModel<D> {
             }
             Self::MaxwellSlip(m) => {
                 let stiffnesses = m.elements.iter().map(|e| e.stiffness);
-                [m.gain, m.curvature].into_iter().chain(stiffnesses).collect()
+                [m.gain, m.curvature, m.growth].into_iter().chain(stiffnesses).collect()
             }
         }
     }
@@ -179,7 +179,9 @@ impl HysteresisModel<f64> {
                     elements,
                 }))
             }
-            (Self::MaxwellSlip(m), [gain, curvature, stiffnesses @ ..]) if stiffnesses.len() == m.elements.len() => {
+            (Self::MaxwellSlip(m), [gain, curvature, growth, stiffnesses @ ..])
+                if stiffnesses.len() == m.elements.len() =>
+            {
                 let own = m.elements.iter().zip(stiffnesses);
                 let element =
                     |(e, &stiffness): (&SlipElement<f64>, &E)| SlipElement { stiffness, reach: e.reach.into() };
@@ -187,11 +189,12 @@ impl HysteresisModel<f64> {
                 Ok(HysteresisModel::MaxwellSlip(MaxwellSlip {
                     gain: *gain,
                     curvature: *curvature,
+                    growth: *growth,
                     gate: m.gate,
                     elements,
                 }))
             }
-            (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 2 + m.elements.len())),
+            (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 3 + m.elements.len())),
             (m, _) => Err(wrong("Prandtl-Ishlinskii", m.parameters().len())),
         }
     }

@@ -151,6 +151,7 @@ fn a_spring_with_slider_is_the_rest_of_a_play() {
     let slip = MaxwellSlip {
         gain: 0.0,
         curvature: 0.0,
+        growth: 0.0,
         gate: Gate::None,
         elements: vec![SlipElement { stiffness: 2.0, reach: 0.3 }],
     };

@@ -15,10 +15,11 @@ pub struct SlipElement<D> {
     pub reach: D,
 }
 
-/// Maxwell-slip model: `y = g x + q x² + G(x) sum k_i e_i`, each stretch `e_i` following `x` within `+- reach_i`.
+/// Maxwell-slip model: `y = g x + q x² + G(x) (1 + c x) sum k_i e_i`, each stretch `e_i` following `x` within `+- reach_i`.
 ///
-/// `x`, `y`, `reach` in mm; `g`, `k_i` dimensionless, `q` in 1/mm. The state is the `e_i`. `G` is 1, or `tanh x` as in the
-/// paper's model, which closes the loop at `x = 0` and so makes it asymmetric. With `k_i > 0` unloading lies below
+/// `x`, `y`, `reach` in mm; `g`, `k_i` dimensionless, `q`, `c` in 1/mm. The state is the `e_i`. `G` is 1, or `tanh x` as in
+/// the paper's model, which closes the loop at `x = 0` and so makes it asymmetric; `c` makes friction grow with the input, as
+/// that of a muscle does with its pressure. With `k_i > 0` unloading lies below
 /// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
 /// generalized Maxwell-slip model); the gate is borrowed from Thai et al. 2021.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,9 @@ pub struct MaxwellSlip<D> {
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
     pub curvature: D,
+    /// `c`, 1/mm.
+    #[serde(default = "super::zero")]
+    pub growth: D,
     #[serde(default = "not_gated")]
     pub gate: Gate,
     pub elements: Vec<SlipElement<D>>,
@@ -60,7 +64,7 @@ impl<D: Scalar> MaxwellSlip<D> {
 
     pub fn output(&self, x: D, state: &[D]) -> D {
         let springs: D = self.elements.iter().zip(state).map(|(e, &stretch)| e.stiffness * stretch).sum();
-        (self.gain + self.curvature * x) * x + self.gate.factor(x) * springs
+        (self.gain + self.curvature * x) * x + self.gate.factor(x) * (self.growth * x + 1.0) * springs
     }
 
     /// Whether every slider has a reach.
@@ -68,7 +72,8 @@ impl<D: Scalar> MaxwellSlip<D> {
         self.elements.iter().try_for_each(|e| positive(MODEL, "reach", e.reach.value()))
     }
 
-    /// Whether every loop turns the same way: stiffnesses of one sign, each element then dissipates by itself.
+    /// Whether every loop turns the same way: stiffnesses of one sign, each element then dissipates by itself where
+    /// `1 + c x` stays above zero.
     pub fn check_loops(&self) -> Result<(), HysteresisError> {
         self.check()?;
         all_of_one_sign(MODEL, "stiffness", self.elements.iter().map(|e| e.stiffness.value()))

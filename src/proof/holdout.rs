@@ -6,7 +6,7 @@ use std::path::Path;
 use super::ProofError;
 use crate::conceal::Truth;
 use crate::identify::{RecordedRun, replay};
-use crate::recording::{Recording, Run, RunUse, read_csv};
+use crate::recording::{Recording, Run, RunUse, read_recording};
 
 /// Share of the gap between the calibrated scene and the noise that the corrected scene closes.
 ///
@@ -22,7 +22,7 @@ pub fn gap_on_holdout(truth: &Truth, answer: &Path, holdout: &Path) -> Result<f6
 
 /// Mean squared residual of each output over the noise's variance: baseline, corrected.
 fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Vec<[f64; 2]>, ProofError> {
-    let recording = read_csv(holdout)?;
+    let recording = read_recording(holdout)?;
     let run = RecordedRun {
         run: Run { file: holdout.display().to_string(), run_use: Some(RunUse::Holdout), conditions: BTreeMap::new() },
         recording,

@@ -54,6 +54,14 @@ pub enum RecordingError {
         /// Cause and remedy.
         problem: String,
     },
+    /// A Parquet file that is no recording.
+    #[error("{}: {problem}", file.display())]
+    Parquet {
+        /// The file.
+        file: PathBuf,
+        /// Cause and remedy.
+        problem: String,
+    },
     /// A CSV file without data.
     #[error("{file}: {what}; a recording needs a header line with \"time_s\" and at least one line of numbers")]
     NoData {

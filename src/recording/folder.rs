@@ -1,7 +1,7 @@
 //! A folder of recordings: `recordings.toml` and one CSV file per run.
 
 use super::folder_keys::Keys;
-use super::{Recording, RecordingError, TIME_COLUMN, parse_column, read_csv};
+use super::{Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use toml::Table;
@@ -119,10 +119,10 @@ impl RecordingSet {
     /// Columns that are not declared are kept and named in a note.
     ///
     /// # Errors
-    /// As [`read_csv`]; a declared column is missing.
+    /// As [`read_recording`]; a declared column is missing.
     pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
         let file = self.dir.join(&run.file);
-        let recording = read_csv(&file)?;
+        let recording = read_recording(&file)?;
         let mut declared = self.channels.iter().map(|spec| &spec.column);
         if let Some(column) = declared.find(|column| recording.find(column).is_none()) {
             return Err(RecordingError::MissingInRun {

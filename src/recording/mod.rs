@@ -1,6 +1,6 @@
 //! Recordings: time x named channels with units, measured or simulated.
 //!
-//! A leaf of the crate: it knows files and numbers, nothing of scenes. A channel keeps the unit its
+//! It knows files and numbers, nothing of scenes. A channel keeps the unit its
 //! column name ends in (`plunger_mm`), so a file is written back as it was read; [`Recording::si`]
 //! gives SI values.
 
@@ -9,9 +9,11 @@ mod compare;
 mod csv_read;
 mod csv_write;
 mod error;
+pub mod figures;
 mod folder;
 mod folder_keys;
 mod noise;
+mod parquet_read;
 mod piecewise;
 mod survey;
 mod unit;
@@ -25,6 +27,7 @@ pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use folder_keys::did_you_mean;
 pub use noise::noise_sd;
+pub use parquet_read::read_recording;
 pub use piecewise::PiecewiseLinear;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};

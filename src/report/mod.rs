@@ -1,6 +1,7 @@
 //! Figures and the HTML page: self-contained text, no fonts or scripts fetched.
 
 mod axis;
+mod bar_figure;
 mod compare_figure;
 mod decimate;
 mod diagnosis_map;
@@ -10,6 +11,7 @@ mod html;
 mod panel;
 mod svg;
 
+pub use bar_figure::{Bar, BarPanel, bars_svg};
 pub use compare_figure::{ComparedChannel, ComparedRun, compare_svg};
 pub use diagnosis_page::diagnosis_page;
 pub use effect_figure::{AffectedScene, effect_svg};

@@ -1,10 +1,13 @@
-//! Figures of a run: one number from one or two channels.
+//! Figures of a run: one number from channels, or from muscles, cables and joints by name.
 
-use crate::recording::Recording;
+use crate::recording::{Recording, figures};
+use crate::scene::{OutputSpec, Scene};
 
 use super::SweepError;
+use super::built_in::{self, hidden_outputs};
+use super::probe;
 
-/// What can be asked of channels; the names as they stand in a measure.
+/// What can be asked of a run; the names as they stand in a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     Min,
@@ -19,57 +22,101 @@ pub enum Figure {
     LoopArea,
     /// Time during which a channel is at or below a level.
     TimeBelow,
+    SlackTime,
+    ClosedTime,
+    YieldMargin,
+    CavitationMargin,
+    Loss,
+    StopForce,
+    Stiffness,
+    Bandwidth,
 }
 
-/// Name, figure, number of channels, number of numbers after them.
-pub const FIGURES: [(&str, Figure, usize, usize); 9] = [
-    ("min", Figure::Min, 1, 0),
-    ("max", Figure::Max, 1, 0),
-    ("range", Figure::Range, 1, 0),
-    ("mean", Figure::Mean, 1, 0),
-    ("final", Figure::Final, 1, 0),
-    ("rms", Figure::Rms, 1, 0),
-    ("loop_width", Figure::LoopWidth, 2, 0),
-    ("loop_area", Figure::LoopArea, 2, 0),
-    ("time_below", Figure::TimeBelow, 1, 1),
+/// What an argument of a figure names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    Channel,
+    Input,
+    Muscle,
+    Cable,
+    Joint,
+    Number,
+}
+
+use Argument::{Cable, Channel, Input, Joint, Muscle, Number};
+
+/// Name, figure and arguments; names come before numbers.
+pub const FIGURES: [(&str, Figure, &[Argument]); 17] = [
+    ("min", Figure::Min, &[Channel]),
+    ("max", Figure::Max, &[Channel]),
+    ("range", Figure::Range, &[Channel]),
+    ("mean", Figure::Mean, &[Channel]),
+    ("final", Figure::Final, &[Channel]),
+    ("rms", Figure::Rms, &[Channel]),
+    ("loop_width", Figure::LoopWidth, &[Channel, Channel]),
+    ("loop_area", Figure::LoopArea, &[Channel, Channel]),
+    ("time_below", Figure::TimeBelow, &[Channel, Number]),
+    ("slack_time", Figure::SlackTime, &[Cable]),
+    ("closed_time", Figure::ClosedTime, &[Muscle]),
+    ("yield_margin", Figure::YieldMargin, &[Muscle]),
+    ("cavitation_margin", Figure::CavitationMargin, &[Muscle]),
+    ("loss", Figure::Loss, &[Muscle]),
+    ("stop_force", Figure::StopForce, &[Joint, Number]),
+    ("stiffness", Figure::Stiffness, &[Channel, Number, Number]),
+    ("bandwidth", Figure::Bandwidth, &[Input, Channel, Number, Number]),
 ];
 
-/// One figure of named channels.
+/// One figure with its arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Call {
     pub figure: Figure,
-    pub channels: Vec<String>,
+    /// Channels, muscles, cables, joints.
+    pub names: Vec<String>,
     pub numbers: Vec<f64>,
 }
 
+/// A run that is over.
+#[derive(Clone, Copy, Debug)]
+pub struct Ran<'a> {
+    pub scene: &'a Scene,
+    pub recording: &'a Recording,
+}
+
 impl Call {
-    /// The figure of a run, in the channels' own units; NaN where there are no samples.
+    /// Outputs that the figure needs besides those of the scene.
+    pub fn outputs(&self) -> Vec<OutputSpec> {
+        self.names.first().map_or(Vec::new(), |name| hidden_outputs(self.figure, name))
+    }
+
+    /// The figure of a run: of channels in their own units, of anything else in SI; NaN where there is none.
     ///
     /// # Errors
-    /// Channels that the run does not have.
-    pub fn value(&self, run: &Recording) -> Result<f64, SweepError> {
-        let mut series = Vec::new();
-        for name in &self.channels {
-            series.push(run.channel(name)?.values.as_slice());
-        }
-        let y = series[series.len() - 1];
-        let count = y.len() as f64;
-        let least = || y.iter().copied().reduce(f64::min).unwrap_or(f64::NAN);
-        let greatest = || y.iter().copied().reduce(f64::max).unwrap_or(f64::NAN);
+    /// Channels that the run does not have; a probe that diverges.
+    pub fn value(&self, ran: Ran) -> Result<f64, SweepError> {
+        let name = |i: usize| self.names.get(i).map_or("", String::as_str);
+        let number = |i: usize| self.numbers.get(i).copied().unwrap_or(f64::NAN);
+        let series = |i: usize| -> Result<&[f64], SweepError> { Ok(&ran.recording.channel(name(i))?.values) };
         Ok(match self.figure {
-            Figure::Min => least(),
-            Figure::Max => greatest(),
-            Figure::Range => greatest() - least(),
-            Figure::Mean => y.iter().sum::<f64>() / count,
-            Figure::Final => y.last().copied().unwrap_or(f64::NAN),
-            Figure::Rms => (y.iter().map(|v| v * v).sum::<f64>() / count).sqrt(),
-            Figure::LoopArea => enclosed(series[0], y).abs(),
-            Figure::LoopWidth => {
-                let x = series[0];
-                let reach = x.iter().copied().fold(f64::MIN, f64::max) - x.iter().copied().fold(f64::MAX, f64::min);
-                enclosed(x, y).abs() / reach
+            Figure::Min => figures::least(series(0)?),
+            Figure::Max => figures::greatest(series(0)?),
+            Figure::Range => figures::range(series(0)?),
+            Figure::Mean => figures::mean(series(0)?),
+            Figure::Final => series(0)?.last().copied().unwrap_or(f64::NAN),
+            Figure::Rms => figures::rms(series(0)?),
+            Figure::LoopArea => enclosed(series(0)?, series(1)?).abs(),
+            Figure::LoopWidth => enclosed(series(0)?, series(1)?).abs() / figures::range(series(0)?),
+            Figure::TimeBelow => time_below(ran.recording.time_s(), series(0)?, number(0)),
+            Figure::SlackTime => built_in::slack_time_s(ran, name(0))?,
+            Figure::ClosedTime => built_in::closed_time_s(ran, name(0))?,
+            Figure::YieldMargin => built_in::yield_margin_ratio(ran, name(0))?,
+            Figure::CavitationMargin => built_in::cavitation_margin_pa(ran, name(0))?,
+            Figure::Loss => built_in::loss_j(ran, name(0))?,
+            Figure::StopForce => built_in::stop_force_n(ran, name(0), number(0))?,
+            Figure::Stiffness => probe::stiffness(ran.scene, name(0), number(0), number(1))?,
+            Figure::Bandwidth => {
+                let sine = probe::Sine { input: name(0), channel: name(1), amplitude: number(0), plunger_m: number(1) };
+                probe::bandwidth_hz(ran.scene, sine)?
             }
-            Figure::TimeBelow => time_below(run.time_s(), y, self.numbers[0]),
         })
     }
 }
@@ -81,9 +128,10 @@ fn enclosed(x: &[f64], y: &[f64]) -> f64 {
     pairs.iter().zip(next).map(|(a, b)| 0.5 * (b.0 - a.0) * (a.1 + b.1)).sum()
 }
 
-fn time_below(time_s: &[f64], y: &[f64], level: f64) -> f64 {
+/// Time that a series spends at or below a level, s: intervals of which both ends are.
+pub(super) fn time_below(time_s: &[f64], y: &[f64], level: f64) -> f64 {
     let spans = time_s.windows(2).zip(y.windows(2));
-    spans.filter(|(_, y)| y[0] <= level && y[1] <= level).map(|(t, _)| t[1] - t[0]).sum()
+    spans.filter(|(_, y)| y[0] <= level && y[1] <= level).map(|(t, _)| t[1] - t[0]).fold(0.0, |all, span| all + span)
 }
 
 #[cfg(test)]
@@ -100,8 +148,10 @@ mod tests {
     }
 
     fn call(figure: Figure, channels: &[&str], numbers: &[f64]) -> f64 {
-        let channels = channels.iter().map(|c| (*c).to_owned()).collect();
-        Call { figure, channels, numbers: numbers.to_vec() }.value(&run()).expect("there")
+        let names = channels.iter().map(|c| (*c).to_owned()).collect();
+        let scene = Scene::load("muscle_bench", &[]).expect("a stock scene");
+        let ran = Ran { scene: &scene, recording: &run() };
+        Call { figure, names, numbers: numbers.to_vec() }.value(ran).expect("there")
     }
 
     #[test]

@@ -4,20 +4,42 @@
 //! part of it can run anywhere ([`Shard`]), a kill loses the running points only ([`Journal`]), and the table that
 //! comes out ([`Table`]) is the same whoever computed it.
 
+mod best;
+mod bootstrap;
+mod built_in;
+mod design;
 mod error;
 mod expression;
 mod journal;
 mod measure;
+mod morris;
+mod nsga2;
+mod pareto;
 mod parquet_file;
 mod plan;
 mod point;
+mod probe;
+mod range;
+mod run;
 mod sampling;
+mod sensitivity;
+mod sobol_indices;
 mod spec;
 mod table;
+mod vocabulary;
 
+pub use best::{best, excess, write_best};
+pub use bootstrap::Estimate;
+pub use design::Design;
 pub use error::SweepError;
 pub use journal::{Journal, JournalLine};
+pub use morris::{MorrisEffects, Trajectories};
+pub use nsga2::Evolution;
+pub use pareto::{Score, front};
 pub use plan::{Plan, Shard};
 pub use point::{Row, evaluate};
-pub use spec::{Mark, MeasureSpec, SamplingSpec, SweepFile, VarySpec};
+pub use run::{Watch, run};
+pub use sensitivity::{Influence, Sensitivity, sensitivity};
+pub use sobol_indices::{SobolIndices, sobol_indices};
+pub use spec::{Goal, LimitSpec, Mark, MeasureSpec, ObjectiveSpec, SamplingSpec, SweepFile, VarySpec};
 pub use table::Table;

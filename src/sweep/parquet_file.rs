@@ -1,69 +1,69 @@
-//! A table as a Parquet file.
+//! A table as a Parquet file, and back.
 
+use std::fs::File;
 use std::path::Path;
-use std::sync::Arc;
-
-use parquet::basic::{Compression, Repetition, Type as PhysicalType};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
 
 use super::SweepError;
+use super::plan::Plan;
+use super::point::Row;
 use super::table::{Table, number};
+use crate::columns::{Column, NamedColumn, decode, encode};
 
 /// Writes index (int64), keys and measures (double, null where a point failed) and error (text, null where not).
 /// The file appears whole or not at all.
 pub fn write_parquet(table: &Table, path: &Path) -> Result<(), SweepError> {
     let failed = |source: std::io::Error| SweepError::Write { file: path.to_owned(), source };
-    let bytes = encode(table).map_err(|e| failed(std::io::Error::other(e)))?;
+    let bytes = encode(&columns(table)).map_err(|e| failed(std::io::Error::other(e)))?;
     crate::recording::write_whole_bytes(path, &bytes).map_err(failed)
 }
 
-fn encode(table: &Table) -> Result<Vec<u8>, ParquetError> {
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::UNCOMPRESSED)
-        // Nothing of the program's version in it: the same table is the same bytes.
-        .set_created_by("smam".to_owned())
-        .build();
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(table)?, Arc::new(properties))?;
-    let mut group = writer.next_row_group()?;
-    let mut column = 0;
-    while let Some(mut next) = group.next_column()? {
-        if column == 0 {
-            let index: Vec<i64> = table.rows.iter().map(|r| r.index as i64).collect();
-            next.typed::<Int64Type>().write_batch(&index, None, None)?;
-        } else if column < table.columns.len() {
-            let all: Vec<f64> = table.rows.iter().map(|r| number(r, column - 1)).collect();
-            let there: Vec<i16> = all.iter().map(|v| i16::from(v.is_finite())).collect();
-            let values: Vec<f64> = all.into_iter().filter(|v| v.is_finite()).collect();
-            next.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;
-        } else {
-            let errors = table.rows.iter().map(|r| r.outcome.as_ref().err());
-            let there: Vec<i16> = errors.clone().map(|e| i16::from(e.is_some())).collect();
-            let values: Vec<ByteArray> = errors.flatten().map(|e| ByteArray::from(e.as_str())).collect();
-            next.typed::<ByteArrayType>().write_batch(&values, Some(&there), None)?;
-        }
-        next.close()?;
-        column += 1;
-    }
-    group.close()?;
-    writer.into_inner()
+fn columns(table: &Table) -> Vec<NamedColumn> {
+    let index = Column::Whole(table.rows.iter().map(|r| r.index as i64).collect());
+    let numbers = |at: usize| Column::Numbers(table.rows.iter().map(|r| number(r, at)).collect());
+    let errors = Column::Texts(table.rows.iter().map(|r| r.outcome.as_ref().err().cloned()).collect());
+    let named = table.columns[1..].iter().enumerate().map(|(at, name)| (name.clone(), numbers(at)));
+    std::iter::once(("index".to_owned(), index)).chain(named).chain([("error".to_owned(), errors)]).collect()
 }
 
-fn schema(table: &Table) -> Result<Arc<Type>, ParquetError> {
-    let field = |name: &str, kind: PhysicalType, repetition: Repetition| -> Result<Arc<Type>, ParquetError> {
-        let mut builder = Type::primitive_type_builder(name, kind).with_repetition(repetition);
-        if kind == PhysicalType::BYTE_ARRAY {
-            builder = builder.with_logical_type(Some(parquet::basic::LogicalType::String));
-        }
-        Ok(Arc::new(builder.build()?))
+/// Reads the table of a sweep back.
+///
+/// # Errors
+/// No Parquet file, or columns that are not those of the sweep.
+pub fn read_parquet(plan: &Plan, path: &Path) -> Result<Table, SweepError> {
+    let refuse = |message: String| SweepError::Table {
+        file: path.to_owned(),
+        message,
+        remedy: "name the table.parquet that this sweep wrote".to_owned(),
     };
-    let mut fields = vec![field("index", PhysicalType::INT64, Repetition::REQUIRED)?];
-    for name in &table.columns[1..] {
-        fields.push(field(name, PhysicalType::DOUBLE, Repetition::OPTIONAL)?);
+    let file = File::open(path).map_err(|e| refuse(e.to_string()))?;
+    let columns = decode(file).map_err(refuse)?;
+    let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+    let expected: Vec<String> = plan.columns().into_iter().chain(["error".to_owned()]).collect();
+    if names != expected {
+        return Err(refuse(format!(
+            "its columns are {}, those of the sweep {}",
+            names.join(", "),
+            expected.join(", ")
+        )));
     }
-    fields.push(field("error", PhysicalType::BYTE_ARRAY, Repetition::OPTIONAL)?);
-    Ok(Arc::new(Type::group_type_builder("sweep").with_fields(fields).build()?))
+    let rows = rows(&columns, plan.design.keys()).ok_or_else(|| refuse("a column is of another kind".to_owned()))?;
+    Ok(Table::new(plan, rows.into_iter().map(|r| (r.index, r)).collect()))
+}
+
+/// None where a column does not hold what it should.
+fn rows(columns: &[NamedColumn], keys: usize) -> Option<Vec<Row>> {
+    let ((_, index), rest) = columns.split_first()?;
+    let ((_, errors), numbers) = rest.split_last()?;
+    let numbers: Vec<Vec<f64>> = numbers.iter().map(|(_, c)| c.numbers()).collect::<Option<_>>()?;
+    let row = |(at, index): (usize, f64)| {
+        let own = |columns: &[Vec<f64>]| columns.iter().map(|c| c[at]).collect::<Vec<f64>>();
+        let error = match errors {
+            Column::Texts(texts) => texts[at].clone(),
+            // Where no point failed the column is empty, and nothing tells its kind.
+            _ => None,
+        };
+        let outcome = error.map_or_else(|| Ok(own(&numbers[keys..])), Err);
+        Row { index: index as u64, values: own(&numbers[..keys]), outcome }
+    };
+    Some(index.numbers()?.into_iter().enumerate().map(row).collect())
 }

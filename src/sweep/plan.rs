@@ -6,11 +6,15 @@ use std::path::PathBuf;
 use sha2::{Digest, Sha256};
 
 use super::SweepError;
+use super::design::Design;
 use super::expression::Measure;
-use super::sampling::{Place, Shares};
+use super::nsga2::Evolution;
+use super::point::Row;
+use super::sampling::Place;
 use super::spec::{SamplingSpec, SweepFile, VarySpec};
+use super::vocabulary::Vocabulary;
 use crate::recording::did_you_mean;
-use crate::scene::{Override, Scene, SceneError, calibration_key};
+use crate::scene::{OutputSpec, Override, Scene, SceneError, calibration_key};
 use crate::system::Schedule;
 
 /// A sweep ready to run.
@@ -19,8 +23,11 @@ pub struct Plan {
     pub file: SweepFile,
     pub measures: Vec<Measure>,
     pub schedule: Schedule,
-    shares: Shares,
+    /// Values of the keys at every point.
+    pub design: Design,
     set: Vec<Override>,
+    /// What the scene puts out besides its own: what the sweep's file names, and what its measures need.
+    outputs: Vec<OutputSpec>,
     /// The scene's file as it was when the sweep began, and where it stands.
     text: String,
     path: PathBuf,
@@ -35,40 +42,56 @@ impl Plan {
     /// Whatever would fail at every point, with the key or measure and the nearest right name.
     pub fn new(file: SweepFile) -> Result<Self, SweepError> {
         let set: Vec<Override> = file.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
-        let base = with_outputs(Scene::load(&file.scene, &set)?, &file)?;
+        let base = with_outputs(Scene::load(&file.scene, &set)?, &file.output)?;
         check_keys(&file, &base)?;
-        file.vary.iter().try_for_each(|v| v.check(file.sampling))?;
-        let channels: Vec<&str> = base.file.input.iter().map(|i| i.channel.as_str()).collect();
-        let outputs = base.file.output.iter().map(|o| o.channel.as_str());
-        let channels: Vec<&str> = channels.into_iter().chain(outputs).collect();
+        let known = Vocabulary::of(&base);
         if file.measure.is_empty() {
             return Err(SweepError::Measure {
                 measure: file.name.clone(),
                 message: "nothing is measured".to_owned(),
-                remedy: format!("add [[measure]] with name and of; the channels are {}", channels.join(", ")),
+                remedy: format!("add [[measure]] with name and of; the channels are {}", known.channels()),
             });
         }
-        let measures = file.measure.iter().map(|m| Measure::new(m, &channels)).collect::<Result<_, _>>()?;
+        let measures: Vec<Measure> = file.measure.iter().map(|m| Measure::new(m, &known)).collect::<Result<_, _>>()?;
         let spec = base.file.simulation;
         let schedule = Schedule::even(file.duration_s.unwrap_or(spec.duration_s), spec.output_interval_s);
-        let shares = Shares::new(file.sampling, &file.vary)?;
+        let design = Design::new(file.sampling, &file.vary)?;
+        check_goals(&file)?;
         let fingerprint = fingerprint(&file, &base)?;
+        let outputs = outputs(&file, &measures);
         let path = base.path;
         let text =
             std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
-        let plan = Self { file, measures, schedule, shares, set, text, path, fingerprint };
+        let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
+        plan.evolution()?;
         plan.check_ends()?;
         Ok(plan)
     }
 
     /// Number of points.
     pub fn count(&self) -> u64 {
-        self.shares.count().unwrap_or(0)
+        self.design.count()
     }
 
-    /// Values of the keys at a point, in the order of `[[vary]]`.
+    /// Values of the keys at a point, in the order of `[[vary]]`; of an optimisation those of its first generation.
     pub fn point(&self, index: u64) -> Vec<f64> {
-        self.shares.at(index).into_iter().zip(&self.file.vary).map(|(place, vary)| vary.value(place)).collect()
+        self.design.point(index)
+    }
+
+    /// The optimisation that the sweep is, if it is one.
+    ///
+    /// # Errors
+    /// As [`Evolution::new`].
+    pub fn evolution(&self) -> Result<Option<Evolution>, SweepError> {
+        let is_one = matches!(self.file.sampling, SamplingSpec::Nsga2 { .. });
+        if is_one { Evolution::new(self.file.sampling, &self.file.vary).map(Some) } else { Ok(None) }
+    }
+
+    /// A measure of a row by name; NaN where it failed.
+    pub fn measured(&self, row: &Row, measure: &str) -> f64 {
+        let at = self.measures.iter().position(|m| m.name == measure);
+        let measures = row.outcome.as_deref().unwrap_or(&[]);
+        at.and_then(|i| measures.get(i)).copied().unwrap_or(f64::NAN)
     }
 
     /// The scene at a point.
@@ -79,7 +102,7 @@ impl Plan {
         let keys = self.file.vary.iter().zip(values).flat_map(|(v, value)| v.keys().map(move |k| (k, *value)));
         let numbers = keys.map(|(key, value)| Override::number(key, value));
         let all: Vec<Override> = self.set.iter().cloned().chain(numbers).collect();
-        with_outputs(Scene::parse(&self.text, &self.path, &all)?, &self.file)
+        with_outputs(Scene::parse(&self.text, &self.path, &all)?, &self.outputs)
     }
 
     /// Names of the columns: index, keys, measures.
@@ -115,12 +138,46 @@ fn ends(vary: &VarySpec, sampling: SamplingSpec) -> Vec<f64> {
     }
 }
 
-fn with_outputs(mut scene: Scene, file: &SweepFile) -> Result<Scene, SweepError> {
-    if file.output.is_empty() {
+fn with_outputs(mut scene: Scene, outputs: &[OutputSpec]) -> Result<Scene, SweepError> {
+    if outputs.is_empty() {
         return Ok(scene);
     }
-    scene.file.output.extend(file.output.iter().cloned());
+    scene.file.output.extend(outputs.iter().cloned());
     Ok(Scene::from_file(scene.file, &scene.path)?)
+}
+
+/// Each once, though several measures need it.
+fn outputs(file: &SweepFile, measures: &[Measure]) -> Vec<OutputSpec> {
+    let mut all = file.output.clone();
+    for output in measures.iter().flat_map(Measure::outputs) {
+        if !all.contains(&output) {
+            all.push(output);
+        }
+    }
+    all
+}
+
+/// Whether objectives and limits name measures, and an optimisation has somewhere to go.
+fn check_goals(file: &SweepFile) -> Result<(), SweepError> {
+    let names: Vec<&str> = file.measure.iter().map(|m| m.name.as_str()).collect();
+    let refuse = |table: &str, measure: &str, message: String, remedy: String| {
+        Err(SweepError::Goal { table: table.to_owned(), measure: measure.to_owned(), message, remedy })
+    };
+    let objectives = file.objective.iter().map(|o| ("objective", &o.measure));
+    for (table, measure) in objectives.chain(file.limit.iter().map(|l| ("limit", &l.measure))) {
+        if !names.contains(&measure.as_str()) {
+            let message = format!("the sweep has no such measure{}", did_you_mean(measure, &names));
+            return refuse(table, measure, message, format!("its measures are {}", names.join(", ")));
+        }
+    }
+    if let Some(limit) = file.limit.iter().find(|l| l.min.is_none() && l.max.is_none()) {
+        return refuse("limit", &limit.measure, "it has no bound".to_owned(), "give min, max or both".to_owned());
+    }
+    if matches!(file.sampling, SamplingSpec::Nsga2 { .. }) && file.objective.is_empty() {
+        let remedy = "add [[objective]] with measure and goal = \"maximise\" or \"minimise\"".to_owned();
+        return refuse("objective", "", "nsga2 has nothing to optimise".to_owned(), remedy);
+    }
+    Ok(())
 }
 
 fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
@@ -141,10 +198,15 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// Of what sweep and scene hold; not of where they stand, so that shards may be begun from any folder.
+/// Of what sweep and scene hold; not of where they stand, so that shards may be begun from any folder, nor of what is wanted
+/// of points that do not depend on it.
 fn fingerprint(file: &SweepFile, base: &Scene) -> Result<String, SweepError> {
     let syntax = |e: toml::ser::Error| SweepError::Syntax { file: base.path.clone(), message: e.to_string() };
-    let anywhere = SweepFile { scene: base.file.name.clone(), ..file.clone() };
+    let mut anywhere = SweepFile { scene: base.file.name.clone(), ..file.clone() };
+    if !matches!(file.sampling, SamplingSpec::Nsga2 { .. }) {
+        anywhere.objective.clear();
+        anywhere.limit.clear();
+    }
     let mut hasher = Sha256::new();
     hasher.update(toml::to_string(&anywhere).map_err(syntax)?);
     hasher.update(toml::to_string(&base.file).map_err(syntax)?);

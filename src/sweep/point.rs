@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::SweepError;
+use super::measure::Ran;
 use super::plan::Plan;
 use crate::system::{Simulation, record};
 
@@ -15,9 +16,8 @@ pub struct Row {
     pub outcome: Result<Vec<f64>, String>,
 }
 
-/// Runs a point. What fails there is its outcome; nothing of it depends on other points.
-pub fn evaluate(plan: &Plan, index: u64) -> Row {
-    let values = plan.point(index);
+/// Runs a point at values of the keys. What fails there is its outcome; nothing of it depends on other points.
+pub fn evaluate(plan: &Plan, index: u64, values: Vec<f64>) -> Row {
     // A point that breaks the engine must not end the sweep.
     let outcome = catch_unwind(AssertUnwindSafe(|| measured(plan, &values)))
         .map_err(|_| "the engine broke off".to_owned())
@@ -27,6 +27,7 @@ pub fn evaluate(plan: &Plan, index: u64) -> Row {
 
 fn measured(plan: &Plan, values: &[f64]) -> Result<Vec<f64>, SweepError> {
     let mut simulation = Simulation::new(plan.scene(values)?)?;
-    let run = record(&mut simulation, &plan.schedule)?;
-    plan.measures.iter().map(|m| m.of(&run)).collect()
+    let recording = record(&mut simulation, &plan.schedule)?;
+    let ran = Ran { scene: simulation.scene(), recording: &recording };
+    plan.measures.iter().map(|m| m.of(ran)).collect()
 }

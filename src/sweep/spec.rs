@@ -24,6 +24,12 @@ pub struct SweepFile {
     pub sampling: SamplingSpec,
     pub vary: Vec<VarySpec>,
     pub measure: Vec<MeasureSpec>,
+    /// What is to be greatest or least: the best points are those that no other one beats in all of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objective: Vec<ObjectiveSpec>,
+    /// What a point must keep to be among the best.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limit: Vec<LimitSpec>,
     /// Outputs that the scene gets besides its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub output: Vec<OutputSpec>,
@@ -45,18 +51,23 @@ pub enum SamplingSpec {
     Sobol { count: u64, seed: u32 },
     /// Independent draws, each from its own stream of the seed.
     MonteCarlo { count: u64, seed: u32 },
+    /// Samples for Sobol indices: `count` times two independent points of all keys and their mixtures, `count (keys + 2)`
+    /// points.
+    Saltelli { count: u64, seed: u32 },
+    /// Morris' trajectories: one key changed at a time, `trajectories (keys + 1)` points.
+    Morris {
+        trajectories: u64,
+        #[serde(default = "four")]
+        levels: u64,
+        seed: u32,
+    },
+    /// Optimisation by NSGA-II towards the `[[objective]]`s: `population generations` points, each generation chosen by
+    /// what those before it have shown.
+    Nsga2 { population: u64, generations: u64, seed: u32 },
 }
 
-impl SamplingSpec {
-    /// Number of samples; none of a grid.
-    pub fn count(self) -> Option<u64> {
-        match self {
-            Self::Grid => None,
-            Self::LatinHypercube { count, .. } | Self::Sobol { count, .. } | Self::MonteCarlo { count, .. } => {
-                Some(count)
-            }
-        }
-    }
+fn four() -> u64 {
+    4
 }
 
 /// A key with its range, values or distribution.
@@ -106,6 +117,35 @@ pub struct MeasureSpec {
     pub of: String,
 }
 
+/// A measure to be as great or as small as can be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectiveSpec {
+    pub measure: String,
+    pub goal: Goal,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Goal {
+    Maximise,
+    Minimise,
+}
+
+/// Bounds of a measure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitSpec {
+    pub measure: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// What it means to be beyond them, in pictures: `coil closes`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub label: String,
+}
+
 impl SweepFile {
     /// Reads a sweep; unknown keys are refused.
     ///
@@ -114,7 +154,10 @@ impl SweepFile {
     pub fn load(path: &Path) -> Result<Self, SweepError> {
         let syntax = |message: String| SweepError::Syntax { file: path.to_owned(), message };
         let text = std::fs::read_to_string(path).map_err(|e| syntax(e.to_string()))?;
-        let mut file: Self = toml::from_str(&text).map_err(|e| syntax(e.to_string().trim_end().to_owned()))?;
+        let mut file: Self = toml::from_str(&text).map_err(|e| match is_scene(&text) {
+            true => SweepError::IsScene { file: path.to_owned() },
+            false => syntax(e.to_string().trim_end().to_owned()),
+        })?;
         if file.format != 1 {
             return Err(syntax(format!("format = {}: this program reads format 1", file.format)));
         }
@@ -125,4 +168,9 @@ impl SweepFile {
         }
         Ok(file)
     }
+}
+
+/// Whether a text is a scene's: every scene has these tables, no sweep does.
+fn is_scene(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("simulation") && table.contains_key("input"))
 }

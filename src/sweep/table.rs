@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::SweepError;
 use super::journal::read;
-use super::parquet_file::write_parquet;
+use super::parquet_file::{read_parquet, write_parquet};
 use super::plan::Plan;
 use super::point::Row;
 use crate::recording::write_whole;
@@ -37,6 +37,14 @@ impl Table {
         Ok(Self::new(plan, rows))
     }
 
+    /// Reads `table.parquet` back.
+    ///
+    /// # Errors
+    /// No Parquet file, or columns that are not those of the sweep.
+    pub fn of_parquet(plan: &Plan, path: &Path) -> Result<Self, SweepError> {
+        read_parquet(plan, path)
+    }
+
     /// Whether a point has a row.
     pub fn has(&self, index: u64) -> bool {
         self.rows.binary_search_by_key(&index, |r| r.index).is_ok()
@@ -53,6 +61,17 @@ impl Table {
         Some(self.rows.iter().map(|r| number(r, at)).collect())
     }
 
+    /// The numbers of a column at every point of the sweep; NaN where it failed or is not done.
+    pub fn by_index(&self, name: &str) -> Vec<f64> {
+        let mut all = vec![f64::NAN; self.points as usize];
+        for (row, value) in self.rows.iter().zip(self.column(name).unwrap_or_default()) {
+            if let Some(slot) = all.get_mut(row.index as usize) {
+                *slot = value;
+            }
+        }
+        all
+    }
+
     /// Writes `table.csv` and `table.parquet`.
     ///
     /// # Errors
@@ -63,7 +82,7 @@ impl Table {
         write_parquet(self, &folder.join("table.parquet"))
     }
 
-    fn csv(&self) -> String {
+    pub(super) fn csv(&self) -> String {
         let mut text = self.columns.join(",") + ",error\n";
         for row in &self.rows {
             let _ = write!(text, "{}", row.index);

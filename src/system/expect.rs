@@ -1,6 +1,6 @@
 //! Scenes as checks: the figure of each `[[expect]]` and whether it passes.
 
-use crate::recording::{Recording, parse_column, read_csv};
+use crate::recording::{Recording, figures, parse_column, read_recording};
 use crate::scene::{ExpectSpec, Measure, Scene};
 
 use super::SystemError;
@@ -43,9 +43,9 @@ fn figure(scene: &Scene, expect: &ExpectSpec, recording: &Recording) -> Result<f
     let y = windowed(recording, &expect.channel, expect)?;
     let other = || windowed(recording, expect.against.as_deref().unwrap_or_default(), expect);
     Ok(match expect.measure {
-        Measure::Min => least(&y),
-        Measure::Max => greatest(&y),
-        Measure::Range => greatest(&y) - least(&y),
+        Measure::Min => figures::least(&y),
+        Measure::Max => figures::greatest(&y),
+        Measure::Range => figures::range(&y),
         Measure::Final => y.last().copied().unwrap_or(f64::NAN),
         Measure::ValueAt => value_at(recording, &expect.channel, expect.at_s.unwrap_or(0.0))?,
         Measure::LoopWidth => loop_width(&other()?, &y, expect.at.unwrap_or(0.0)),
@@ -58,14 +58,6 @@ fn windowed(recording: &Recording, channel: &str, expect: &ExpectSpec) -> Result
     let inside = |t: f64| expect.from_s.is_none_or(|f| t >= f - 1e-9) && expect.to_s.is_none_or(|e| t <= e + 1e-9);
     let values = &recording.channel(channel)?.values;
     Ok(recording.time_s().iter().zip(values).filter(|(t, _)| inside(**t)).map(|(_, v)| *v).collect())
-}
-
-fn least(values: &[f64]) -> f64 {
-    values.iter().copied().reduce(f64::min).unwrap_or(f64::NAN)
-}
-
-fn greatest(values: &[f64]) -> f64 {
-    values.iter().copied().reduce(f64::max).unwrap_or(f64::NAN)
 }
 
 fn value_at(recording: &Recording, channel: &str, at_s: f64) -> Result<f64, SystemError> {
@@ -89,9 +81,8 @@ fn loop_width(x: &[f64], y: &[f64], at: f64) -> f64 {
 
 /// Coefficient of determination of the least-squares line of `y` over `x`.
 fn r_squared(x: &[f64], y: &[f64]) -> f64 {
-    let n = x.len().min(y.len()) as f64;
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
-    let (mx, my) = (mean(x), mean(y));
+    let n = x.len().min(y.len());
+    let (mx, my) = (figures::mean(&x[..n]), figures::mean(&y[..n]));
     let product =
         |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
     let xy = product(x, mx, y, my);
@@ -100,7 +91,7 @@ fn r_squared(x: &[f64], y: &[f64]) -> f64 {
 
 fn rmse_to_file(scene: &Scene, expect: &ExpectSpec, recording: &Recording) -> Result<f64, SystemError> {
     let Some(file) = &expect.file else { return Ok(f64::NAN) };
-    let reference = read_csv(&scene.folder().join(file))?;
+    let reference = read_recording(&scene.folder().join(file))?;
     let simulated = recording.channel(&expect.channel)?;
     let Some(line) = crate::recording::PiecewiseLinear::new(recording.time_s(), &simulated.values) else {
         return Ok(f64::NAN);
@@ -113,7 +104,7 @@ fn rmse_to_file(scene: &Scene, expect: &ExpectSpec, recording: &Recording) -> Re
         .filter(|(t, m)| m.is_finite() && **t <= recording.time_s().last().copied().unwrap_or(0.0))
         .map(|(t, m)| (line.value(*t) - m).powi(2))
         .collect();
-    Ok((errors.iter().sum::<f64>() / errors.len() as f64).sqrt())
+    Ok(figures::mean(&errors).sqrt())
 }
 
 #[cfg(test)]

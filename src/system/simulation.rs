@@ -82,19 +82,28 @@ impl Simulation {
     }
 
     fn resolve_loads(&mut self) -> Result<(), SystemError> {
-        let coordinates = self.mechanism.as_ref().map_or(&[][..], Mechanism::coordinates);
-        for load in &self.scene.file.load {
-            let Some(i) = coordinates.iter().position(|c| c.name == load.joint) else {
-                let known: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
-                return Err(SystemError::Name {
-                    file: self.scene.path.clone(),
-                    table: "[[load]]".to_owned(),
-                    message: format!("joint = \"{}\" is no free joint of the mechanism", load.joint),
-                    remedy: format!("use one of: {}", known.join(", ")),
-                });
-            };
-            self.loads[i] += load.force_n.or(load.torque_n_m).unwrap_or(0.0);
+        for load in self.scene.file.load.clone() {
+            self.add_load(&load.joint, load.force_n.or(load.torque_n_m).unwrap_or(0.0))?;
         }
+        Ok(())
+    }
+
+    /// Loads a joint with so much more, N of a slider or N m of a hinge, from the next step on.
+    ///
+    /// # Errors
+    /// A joint that is none, or not free.
+    pub fn add_load(&mut self, joint: &str, load: f64) -> Result<(), SystemError> {
+        let coordinates = self.mechanism.as_ref().map_or(&[][..], Mechanism::coordinates);
+        let Some(i) = coordinates.iter().position(|c| c.name == joint) else {
+            let known: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
+            return Err(SystemError::Name {
+                file: self.scene.path.clone(),
+                table: "[[load]]".to_owned(),
+                message: format!("joint = \"{joint}\" is no free joint of the mechanism"),
+                remedy: format!("use one of: {}", known.join(", ")),
+            });
+        };
+        self.loads[i] += load;
         Ok(())
     }
 

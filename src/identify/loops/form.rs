@@ -20,6 +20,8 @@ pub enum Form {
     /// With half widths that grow with speed.
     PrandtlIshlinskiiRate,
     MaxwellSlip,
+    /// With friction that grows, or falls, along the input.
+    MaxwellSlipGrowing,
 }
 
 /// A parameter in a search.
@@ -42,23 +44,28 @@ pub struct ParameterSpec {
 /// a tenth of the stroke bends, none beyond a third, where a play hardly moves.
 const GRID: [f64; 4] = [0.02, 0.06, 0.12, 0.25];
 
+/// The same for friction that grows: up to half of the stroke, as its sliders share out one exponential.
+const WIDE_GRID: [f64; 5] = [0.03, 0.08, 0.17, 0.32, 0.55];
+
 const GAIN: &str = "three times the mean slope of the data: beyond that two gains only cancel each other";
 const CURVE: &str = "over the whole stroke no more than the line gives";
 const FADING: &str = "the state forgets over a 200th of the stroke (a kink) to three strokes (a line)";
 const LEAN: &str = "as far as the fading itself: beyond that the state is unbounded or the loop gains energy";
+const GROWING: &str = "from friction that fades over the stroke to eleven times as much at its end";
 const POWER: &str = "0.5 is a kink at reversal, 4 nearly a slope with a stop";
 const SCALE: &str =
     "the data hold only products with the gain of z: z twice as large with half the gain is the same output";
 const ONE_SIDED: &str = "the input stays at x >= 0, where this term cannot be told from another one";
 
 impl Form {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Symmetric,
         Self::Asymmetric,
         Self::Paper,
         Self::PrandtlIshlinskii,
         Self::PrandtlIshlinskiiRate,
         Self::MaxwellSlip,
+        Self::MaxwellSlipGrowing,
     ];
 
     /// As on the command line.
@@ -70,6 +77,7 @@ impl Form {
             Self::PrandtlIshlinskii => "prandtl-ishlinskii",
             Self::PrandtlIshlinskiiRate => "prandtl-ishlinskii-rate",
             Self::MaxwellSlip => "maxwell-slip",
+            Self::MaxwellSlipGrowing => "maxwell-slip-growing",
         }
     }
 
@@ -84,10 +92,8 @@ impl Form {
                 let plays = grid.map(|half_width| PlayElement { weight: 0.0, half_width });
                 HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii::classical(0.0, plays.to_vec()))
             }
-            Self::MaxwellSlip => {
-                let elements = grid.map(|reach| SlipElement { stiffness: 0.0, reach }).to_vec();
-                HysteresisModel::MaxwellSlip(MaxwellSlip { gain: 0.0, curvature: 0.0, gate: Gate::Tanh, elements })
-            }
+            Self::MaxwellSlip => slipping(Gate::Tanh, &grid),
+            Self::MaxwellSlipGrowing => slipping(Gate::None, &WIDE_GRID.map(|share| share * scale.stroke_mm())),
         }
     }
 
@@ -125,10 +131,19 @@ impl Form {
             }
             "rate_s" if self == Self::PrandtlIshlinskii => fixed(0.0, "the form without dependence on speed"),
             "rate_s" => plain(0.0, 1.0, "half a stroke of widening at a stroke in half a second"),
+            "growth" if self == Self::MaxwellSlip => fixed(0.0, "the form whose friction only the gate changes"),
+            // Friction stays above zero within the data; at the other end it may be far greater.
+            "growth" => plain(-0.9 / scale.input_mm[1].abs().max(0.1 * stroke), 10.0 / stroke, GROWING),
             _ if self == Self::MaxwellSlip => gain(3.0 * slope.abs(), GAIN),
             _ => gain(3.0 * slope.abs(), GAIN),
         }
     }
+}
+
+/// Sliders of given reaches, without numbers.
+fn slipping(gate: Gate, reaches_mm: &[f64]) -> HysteresisModel<f64> {
+    let elements = reaches_mm.iter().map(|&reach| SlipElement { stiffness: 0.0, reach }).collect();
+    HysteresisModel::MaxwellSlip(MaxwellSlip { gain: 0.0, curvature: 0.0, growth: 0.0, gate, elements })
 }
 
 impl std::str::FromStr for Form {

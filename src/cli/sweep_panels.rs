@@ -1,0 +1,183 @@
+//! The pictures of a sweep's page.
+
+use smam::report::{BLUE, Bar, BarPanel, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
+use smam::sweep::{LimitSpec, Mark, MeasureSpec, ObjectiveSpec, Plan, SamplingSpec, Sensitivity, Table, excess};
+
+/// Lines of one panel; more values of a second key are thinned to so many.
+const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, "#404040"];
+/// Strips where a limit is broken.
+const BEYOND: [&str; 4] = [VERMILION, ORANGE, PURPLE, BLUE];
+const TRIED: &str = "#bdbdbd";
+
+/// Each measure over the first key.
+pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
+    let Some(first) = plan.file.vary.first() else { return Vec::new() };
+    let x = table.column(&first.key).unwrap_or_default();
+    let panel = |m: &MeasureSpec| {
+        let y = table.column(&m.name).unwrap_or_default();
+        let mut behind = if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() };
+        behind.extend(first.mark.iter().map(|mark| upright(mark, "#9e9e9e", &y)));
+        if let ([best], true) = (best, is_line(plan)) {
+            let mark = Mark { at: x[*best], label: format!("best: {}", x[*best]) };
+            behind.push(upright(&mark, GREEN, &y));
+        }
+        Panel {
+            title: vec![m.name.clone(), m.of.clone()],
+            x_label: first.key.clone(),
+            y_label: m.name.clone(),
+            behind,
+            series: lines(plan, table, &x, &y),
+            ..Panel::default()
+        }
+    };
+    plan.file.measure.iter().map(panel).collect()
+}
+
+/// The first two objectives against each other: what was tried, and the best of it.
+pub fn front_panel(plan: &Plan, table: &Table, best: &[usize]) -> Option<Panel> {
+    let [one, other, ..] = plan.file.objective.as_slice() else { return None };
+    let column = |o: &ObjectiveSpec| table.column(&o.measure).unwrap_or_default();
+    let (x, y) = (column(one), column(other));
+    let mut order = best.to_vec();
+    order.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
+    let pick = |from: &[f64]| order.iter().map(|&i| from[i]).collect::<Vec<f64>>();
+    let reaches = (reach(&x), reach(&y));
+    let mut front = crosses(&pick(&x), &pick(&y), reaches);
+    (front.label, front.colour) = ("best".to_owned(), VERMILION);
+    let mut tried = crosses(&x, &y, reaches);
+    (tried.label, tried.colour) = ("all points".to_owned(), TRIED);
+    Some(Panel {
+        title: vec![format!("{} and {}", one.measure, other.measure)],
+        x_label: one.measure.clone(),
+        y_label: other.measure.clone(),
+        series: vec![tried, front],
+        ..Panel::default()
+    })
+}
+
+/// Sensitivities: one plot for each measure.
+pub fn bars(plan: &Plan, found: &Sensitivity) -> Vec<BarPanel> {
+    let (legend, label): (Vec<(&str, &'static str)>, &str) = match plan.file.sampling {
+        SamplingSpec::Morris { .. } => {
+            (vec![("mu*: mean size of the effect", BLUE), ("sigma: its spread", ORANGE)], "change over the key's range")
+        }
+        _ => (vec![("first order: alone", BLUE), ("total: with all others", ORANGE)], "share of the variance"),
+    };
+    let of_measure = |m: &MeasureSpec| {
+        let own = found.influences.iter().filter(|i| i.measure == m.name);
+        let bars = |i: &smam::sweep::Influence| {
+            let shown = i.numbers.iter().take(legend.len());
+            shown.map(|n| Bar { value: n.value, low: n.low, high: n.high }).collect()
+        };
+        BarPanel {
+            title: m.name.clone(),
+            label: label.to_owned(),
+            legend: legend.iter().map(|(name, colour)| ((*name).to_owned(), *colour)).collect(),
+            groups: own.map(|i| (i.key.clone(), bars(i))).collect(),
+        }
+    };
+    plan.file.measure.iter().map(of_measure).collect()
+}
+
+/// What it means to break a limit, in words.
+pub fn broken(limit: &LimitSpec) -> String {
+    let bounds =
+        [limit.min.map(|m| format!("{} < {m}", limit.measure)), limit.max.map(|m| format!("{} > {m}", limit.measure))];
+    let words = bounds.into_iter().flatten().collect::<Vec<_>>().join(" or ");
+    if limit.label.is_empty() { words } else { limit.label.clone() }
+}
+
+/// Whether the sweep is one line over one key.
+fn is_line(plan: &Plan) -> bool {
+    plan.file.sampling == SamplingSpec::Grid && plan.file.vary.len() == 1
+}
+
+/// Strips below a measure along the values of the key at which limits are broken, one for each.
+fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
+    let least = y.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
+    // A measure that never changes has an axis of its own.
+    let step = if reach(y) > 1e-9 * least.abs().max(1e-9) { 0.06 * reach(y) } else { 0.1 };
+    let is_broken = |limit: &LimitSpec| -> Vec<bool> {
+        let of = table.column(&limit.measure).unwrap_or_default();
+        of.iter().map(|v| excess(limit, *v) > 0.0).collect()
+    };
+    let all = plan.file.limit.iter().map(|limit| (limit, is_broken(limit))).filter(|(_, at)| at.contains(&true));
+    let strip = |(i, ((limit, at), colour)): (usize, ((&LimitSpec, Vec<bool>), &'static str))| {
+        let (along, level) = (stretches(x, &at), least - (i + 1) as f64 * step);
+        let y = along.iter().map(|x| if x.is_finite() { level } else { f64::NAN }).collect();
+        line(broken(limit), colour, along, y)
+    };
+    all.zip(BEYOND.into_iter().cycle()).enumerate().map(strip).collect()
+}
+
+/// Ends of the stretches of a grid that belong to chosen values, half-way to those beside them, cut by NaN.
+fn stretches(x: &[f64], chosen: &[bool]) -> Vec<f64> {
+    let middle = |i: usize, j: usize| 0.5 * (x[i] + x[j.min(x.len() - 1)]);
+    let own = (0..x.len()).filter(|&i| chosen[i]);
+    own.flat_map(|i| [middle(i, i.saturating_sub(1)), middle(i, i + 1), f64::NAN]).collect()
+}
+
+/// Lines over the first key of a grid, one for each value of the second; crosses for samples.
+fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
+    if plan.file.sampling != SamplingSpec::Grid || plan.file.vary.len() > 2 {
+        return vec![crosses(x, y, (reach(x), reach(y)))];
+    }
+    let Some(second) = plan.file.vary.get(1) else { return vec![line(String::new(), BLUE, x.to_vec(), y.to_vec())] };
+    let of_second = table.column(&second.key).unwrap_or_default();
+    let mut values = of_second.clone();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let every = values.len().div_ceil(COLOURS.len()).max(1);
+    let shown = values.into_iter().step_by(every).zip(COLOURS);
+    shown
+        .map(|(value, colour)| {
+            let own: Vec<usize> = (0..x.len()).filter(|i| of_second[*i] == value).collect();
+            let pick = |from: &[f64]| own.iter().map(|&i| from[i]).collect();
+            line(format!("{} = {value:.4}", short(&second.key)), colour, pick(x), pick(y))
+        })
+        .collect()
+}
+
+/// A marked value as an upright line over what a measure reaches.
+fn upright(mark: &Mark, colour: &'static str, y: &[f64]) -> Series {
+    let finite = || y.iter().copied().filter(|v| v.is_finite());
+    let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
+    line(mark.label.clone(), colour, vec![mark.at; 2], vec![low, high])
+}
+
+/// Last words of a key.
+pub fn short(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+fn line(label: String, colour: &'static str, x: Vec<f64>, y: Vec<f64>) -> Series {
+    Series { label, colour, x, y }
+}
+
+fn reach(values: &[f64]) -> f64 {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    (finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
+}
+
+/// A small cross at every point, of a size with what the axes reach.
+fn crosses(x: &[f64], y: &[f64], reach: (f64, f64)) -> Series {
+    let (dx, dy) = (0.004 * reach.0, 0.012 * reach.1);
+    let (mut along, mut up) = (Vec::new(), Vec::new());
+    for (x, y) in x.iter().zip(y).filter(|(_, y)| y.is_finite()) {
+        along.extend([x - dx, x + dx, f64::NAN, *x, *x, f64::NAN]);
+        up.extend([*y, *y, f64::NAN, y - dy, y + dy, f64::NAN]);
+    }
+    line(String::new(), BLUE, along, up)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_value_has_a_stretch_of_its_own() {
+        let found = stretches(&[1.0, 2.0, 4.0], &[true, false, true]);
+        assert_eq!([found[0], found[1], found[3], found[4]], [1.0, 1.5, 3.0, 4.0]);
+        assert!(found[2].is_nan() && found.len() == 6);
+    }
+}

@@ -1,0 +1,72 @@
+//! Tables of named columns as Parquet files. A leaf of the crate, and the only user of the crate `parquet`.
+
+mod read;
+mod write;
+
+pub use read::decode;
+pub use write::encode;
+
+/// One column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// Whole numbers, one in every row.
+    Whole(Vec<i64>),
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Texts, where there is one.
+    Texts(Vec<Option<String>>),
+}
+
+impl Column {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Whole(v) => v.len(),
+            Self::Numbers(v) => v.len(),
+            Self::Texts(v) => v.len(),
+        }
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The column as numbers, if it is no text.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Whole(v) => Some(v.iter().map(|v| *v as f64).collect()),
+            Self::Numbers(v) => Some(v.clone()),
+            Self::Texts(_) => None,
+        }
+    }
+}
+
+/// A name and its column.
+pub type NamedColumn = (String, Column);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Seek, Write};
+
+    fn written(bytes: &[u8]) -> Result<Vec<NamedColumn>, String> {
+        let mut file = tempfile::tempfile().expect("a file");
+        file.write_all(bytes).and_then(|()| file.rewind()).expect("written");
+        decode(file)
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let table = vec![
+            ("index".to_owned(), Column::Whole(vec![3, 5])),
+            ("force_n".to_owned(), Column::Numbers(vec![1.0 / 3.0, f64::NAN])),
+            ("error".to_owned(), Column::Texts(vec![None, Some("it \"broke\"".to_owned())])),
+        ];
+        let back = written(&encode(&table).expect("encoded")).expect("read");
+        assert_eq!((&back[0], &back[2]), (&table[0], &table[2]));
+        let Column::Numbers(numbers) = &back[1].1 else { panic!("{back:?}") };
+        assert!(numbers[0] == 1.0 / 3.0 && numbers[1].is_nan());
+        assert!(written(b"PAR1 and then nothing").is_err());
+    }
+}

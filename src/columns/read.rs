@@ -1,0 +1,71 @@
+//! Parquet to columns.
+
+use std::fs::File;
+
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+
+use super::{Column, NamedColumn};
+
+/// The columns of a Parquet file: numbers of any width, and texts. Uncompressed, or compressed by Snappy.
+///
+/// # Errors
+/// No Parquet file, another compression, columns that are neither numbers nor texts.
+pub fn decode(file: File) -> Result<Vec<NamedColumn>, String> {
+    let reader = SerializedFileReader::new(file).map_err(|e| said(&e))?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let names: Vec<String> = schema.root_schema().get_fields().iter().map(|f| f.name().to_owned()).collect();
+    let mut cells: Vec<Vec<Field>> = vec![Vec::new(); names.len()];
+    for row in reader.get_row_iter(None).map_err(|e| said(&e))? {
+        let row = row.map_err(|e| said(&e))?;
+        for (column, (_, field)) in cells.iter_mut().zip(row.get_column_iter()) {
+            column.push(field.clone());
+        }
+    }
+    names.into_iter().zip(cells).map(|(name, cells)| Ok((name.clone(), column(&name, cells)?))).collect()
+}
+
+fn said(error: &ParquetError) -> String {
+    let text = error.to_string();
+    // Codecs that are not built in are named in the message: "Disabled feature at compile time: zstd".
+    match text.contains("eature") || text.contains("codec") {
+        true => format!("{text}; write it uncompressed or with Snappy"),
+        false => text,
+    }
+}
+
+fn column(name: &str, cells: Vec<Field>) -> Result<Column, String> {
+    let is_whole = cells.iter().all(|c| matches!(c, Field::Long(_)));
+    if is_whole && !cells.is_empty() {
+        let whole = |c| if let Field::Long(v) = c { v } else { 0 };
+        return Ok(Column::Whole(cells.into_iter().map(whole).collect()));
+    }
+    if cells.iter().any(|c| matches!(c, Field::Str(_))) {
+        let text = |c| match c {
+            Field::Str(text) => Ok(Some(text)),
+            Field::Null => Ok(None),
+            other => Err(format!("column \"{name}\": {other} among texts")),
+        };
+        return Ok(Column::Texts(cells.into_iter().map(text).collect::<Result<_, _>>()?));
+    }
+    let number = |c| number(&c).ok_or_else(|| format!("column \"{name}\": {c} is no number; leave the column out"));
+    Ok(Column::Numbers(cells.into_iter().map(number).collect::<Result<_, _>>()?))
+}
+
+fn number(cell: &Field) -> Option<f64> {
+    Some(match *cell {
+        Field::Null => f64::NAN,
+        Field::Double(v) => v,
+        Field::Float(v) => f64::from(v),
+        Field::Byte(v) => f64::from(v),
+        Field::Short(v) => f64::from(v),
+        Field::Int(v) => f64::from(v),
+        Field::Long(v) => v as f64,
+        Field::UByte(v) => f64::from(v),
+        Field::UShort(v) => f64::from(v),
+        Field::UInt(v) => f64::from(v),
+        Field::ULong(v) => v as f64,
+        _ => return None,
+    })
+}
