@@ -159,11 +159,15 @@ fn reach(values: &[f64]) -> f64 {
     (finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
 }
 
-/// A small cross at every point, of a size with what the axes reach.
+/// Crosses of one panel at most: more are a blot, and a page of a million is beyond a browser.
+const CROSSES: usize = 5000;
+
+/// A small cross at every point (evenly thinned beyond [`CROSSES`]), of a size with what the axes reach.
 fn crosses(x: &[f64], y: &[f64], reach: (f64, f64)) -> Series {
     let (dx, dy) = (0.004 * reach.0, 0.012 * reach.1);
     let (mut along, mut up) = (Vec::new(), Vec::new());
-    for (x, y) in x.iter().zip(y).filter(|(_, y)| y.is_finite()) {
+    let every = x.len().div_ceil(CROSSES).max(1);
+    for (x, y) in x.iter().zip(y).filter(|(_, y)| y.is_finite()).step_by(every) {
         along.extend([x - dx, x + dx, f64::NAN, *x, *x, f64::NAN]);
         up.extend([*y, *y, f64::NAN, y - dy, y + dy, f64::NAN]);
     }
