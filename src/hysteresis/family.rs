@@ -110,7 +110,9 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::PrandtlIshlinskii(model) => {
                 with(&["gain", "curvature", "asymmetry", "rate_s"], "weight", model.elements.len())
             }
-            Self::MaxwellSlip(model) => with(&["gain", "curvature", "growth"], "stiffness", model.elements.len()),
+            Self::MaxwellSlip(model) => {
+                with(&["offset", "gain", "curvature", "cubic", "growth"], "stiffness", model.elements.len())
+            }
         }
     }
 
@@ -126,7 +128,7 @@ impl<D: Scalar> HysteresisModel<D> {
             }
             Self::MaxwellSlip(m) => {
                 let stiffnesses = m.elements.iter().map(|e| e.stiffness);
-                [m.gain, m.curvature, m.growth].into_iter().chain(stiffnesses).collect()
+                [m.offset, m.gain, m.curvature, m.cubic, m.growth].into_iter().chain(stiffnesses).collect()
             }
         }
     }
@@ -179,7 +181,7 @@ impl HysteresisModel<f64> {
                     elements,
                 }))
             }
-            (Self::MaxwellSlip(m), [gain, curvature, growth, stiffnesses @ ..])
+            (Self::MaxwellSlip(m), [offset, gain, curvature, cubic, growth, stiffnesses @ ..])
                 if stiffnesses.len() == m.elements.len() =>
             {
                 let own = m.elements.iter().zip(stiffnesses);
@@ -187,14 +189,16 @@ impl HysteresisModel<f64> {
                     |(e, &stiffness): (&SlipElement<f64>, &E)| SlipElement { stiffness, reach: e.reach.into() };
                 let elements = own.map(element).collect();
                 Ok(HysteresisModel::MaxwellSlip(MaxwellSlip {
+                    offset: *offset,
                     gain: *gain,
                     curvature: *curvature,
+                    cubic: *cubic,
                     growth: *growth,
                     gate: m.gate,
                     elements,
                 }))
             }
-            (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 3 + m.elements.len())),
+            (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 5 + m.elements.len())),
             (m, _) => Err(wrong("Prandtl-Ishlinskii", m.parameters().len())),
         }
     }

@@ -149,8 +149,10 @@ fn val_play_loop_area() {
 fn a_spring_with_slider_is_the_rest_of_a_play() {
     let play = Play { half_width: 0.3 };
     let slip = MaxwellSlip {
+        offset: 0.0,
         gain: 0.0,
         curvature: 0.0,
+        cubic: 0.0,
         growth: 0.0,
         gate: Gate::None,
         elements: vec![SlipElement { stiffness: 2.0, reach: 0.3 }],

@@ -81,7 +81,7 @@ proptest! {
     fn slip_loops(stiffness in prop::array::uniform3(0.0f64..3.0), gated: bool, path in turns(0.0)) {
         let elements = stiffness.iter().zip([0.05, 0.2, 0.6]).map(|(&stiffness, reach)| SlipElement { stiffness, reach });
         let gate = if gated { Gate::Tanh } else { Gate::None };
-        let model = MaxwellSlip { gain: 0.0, curvature: 0.0, growth: 0.0, gate, elements: elements.collect() };
+        let model = MaxwellSlip { offset: 0.0, gain: 0.0, curvature: 0.0, cubic: 0.0, growth: 0.0, gate, elements: elements.collect() };
         prop_assume!(model.check_loops().is_ok());
         prop_assert!(round_work(&HysteresisModel::MaxwellSlip(model), &path) > -ROUNDING);
     }

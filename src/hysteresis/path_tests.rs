@@ -51,7 +51,15 @@ fn sampling_does_not_matter_to_sums_of_plays_and_sliders() {
     let plays = [(1.0, 0.05), (2.0, 0.2)].map(|(weight, half_width)| PlayElement { weight, half_width });
     let sliders = [(-2.0, 0.1), (-1.0, 0.4)].map(|(stiffness, reach)| SlipElement { stiffness, reach });
     let sum = PrandtlIshlinskii { curvature: 0.1, asymmetry: 0.1, ..PrandtlIshlinskii::classical(7.0, plays.to_vec()) };
-    let slip = MaxwellSlip { gain: 7.0, curvature: 0.1, growth: 0.0, gate: Gate::Tanh, elements: sliders.to_vec() };
+    let slip = MaxwellSlip {
+        offset: 0.2,
+        gain: 7.0,
+        curvature: 0.1,
+        cubic: 0.01,
+        growth: 0.3,
+        gate: Gate::Tanh,
+        elements: sliders.to_vec(),
+    };
     for model in [
         HysteresisModel::PrandtlIshlinskii(sum.clone()),
         HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii { rate_s: 0.02, ..sum }),

@@ -15,9 +15,10 @@ pub struct SlipElement<D> {
     pub reach: D,
 }
 
-/// Maxwell-slip model: `y = g x + q x² + G(x) (1 + c x) sum k_i e_i`, each stretch `e_i` following `x` within `+- reach_i`.
+/// Maxwell-slip model: `y = y0 + g x + q x² + s x³ + G(x) (1 + c x) sum k_i e_i`, each stretch `e_i` following `x` within
+/// `+- reach_i`.
 ///
-/// `x`, `y`, `reach` in mm; `g`, `k_i` dimensionless, `q`, `c` in 1/mm. The state is the `e_i`. `G` is 1, or `tanh x` as in
+/// `x`, `y`, `y0`, `reach` in mm; `g`, `k_i` dimensionless, `q`, `c` in 1/mm, `s` in 1/mm². The state is the `e_i`. `G` is 1, or `tanh x` as in
 /// the paper's model, which closes the loop at `x = 0` and so makes it asymmetric; `c` makes friction grow with the input, as
 /// that of a muscle does with its pressure. With `k_i > 0` unloading lies below
 /// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
@@ -25,11 +26,17 @@ pub struct SlipElement<D> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct MaxwellSlip<D> {
+    /// `y0`, mm: where the output counts from.
+    #[serde(default = "super::zero")]
+    pub offset: D,
     /// Output per input beside the sliders.
     pub gain: D,
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
     pub curvature: D,
+    /// `s`, 1/mm².
+    #[serde(default = "super::zero")]
+    pub cubic: D,
     /// `c`, 1/mm.
     #[serde(default = "super::zero")]
     pub growth: D,
@@ -64,7 +71,8 @@ impl<D: Scalar> MaxwellSlip<D> {
 
     pub fn output(&self, x: D, state: &[D]) -> D {
         let springs: D = self.elements.iter().zip(state).map(|(e, &stretch)| e.stiffness * stretch).sum();
-        (self.gain + self.curvature * x) * x + self.gate.factor(x) * (self.growth * x + 1.0) * springs
+        let curve = self.offset + (self.gain + (self.curvature + self.cubic * x) * x) * x;
+        curve + self.gate.factor(x) * (self.growth * x + 1.0) * springs
     }
 
     /// Whether every slider has a reach.

@@ -61,7 +61,7 @@ impl BarPanel {
         let at = |value: f64| plot.x + axis.share(value) * plot.width;
         svg.text((EDGE, top + 18.0), Anchor::Start, 12.0, &cut_to(&self.title, 12.0, WIDTH - 2.0 * EDGE));
         let entries: Vec<_> = self.legend.iter().map(|(name, colour)| (name.as_str(), *colour, 1.0)).collect();
-        draw_legend(svg, (plot.x, top + 38.0), &entries);
+        draw_legend(svg, (plot.x, top + 38.0), f64::INFINITY, &entries);
         for (value, text) in axis.ticks() {
             svg.line((at(value), plot.y), (at(value), plot.bottom()), "#e4e4e4", 1.0);
             svg.text((at(value), plot.bottom() + 14.0), Anchor::Middle, TEXT_SIZE, &text);

@@ -76,7 +76,7 @@ fn draw_header(svg: &mut Svg, width: f64, title: &str, remark: &str) {
         ("measured - simulated", GREY, 1.0),
         ("± 2 noise sd", BLUE, 0.25),
     ];
-    draw_legend(svg, (EDGE + 12.0, 64.0), &entries);
+    draw_legend(svg, (EDGE + 12.0, 64.0), f64::INFINITY, &entries);
 }
 
 fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &ComparedChannel) {

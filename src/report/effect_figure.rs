@@ -67,7 +67,7 @@ fn draw_header(svg: &mut Svg, width: f64, title: &str, law: [&str; 2], sizes: &[
     }
     let coloured = sizes.iter().map(String::as_str).zip(COLOURS).map(|(size, colour)| (size, colour, 1.0));
     let entries: Vec<_> = std::iter::once(("stock scene, without it", STOCK, 1.0)).chain(coloured).collect();
-    draw_legend(svg, (left, 92.0), &entries);
+    draw_legend(svg, (left, 92.0), f64::INFINITY, &entries);
 }
 
 fn over_time(scene: &AffectedScene) -> Panel {

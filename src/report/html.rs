@@ -3,7 +3,7 @@
 use super::svg::escaped;
 
 const STYLE: &str = "body{font-family:system-ui,sans-serif;max-width:110rem;margin:2rem auto;padding:0 1rem;\
-color:#222;line-height:1.5}table{border-collapse:collapse;margin:1rem 0}th,td{border-bottom:1px solid #ccc;\
+color:#222;line-height:1.5}table{display:block;overflow-x:auto;border-collapse:collapse;margin:1rem 0}th,td{border-bottom:1px solid #ccc;\
 padding:.25rem .8rem;text-align:right}th:first-child,td:first-child{text-align:left}\
 .remarks td{white-space:nowrap;vertical-align:top}.remarks td:nth-child(2),.remarks td:last-child,\
 .remarks th:nth-child(2),.remarks th:last-child{text-align:left;white-space:normal}\

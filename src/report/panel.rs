@@ -149,17 +149,23 @@ fn draw_y_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
     }
 }
 
-/// Draws a legend in one row, from a point (px) to the right.
-pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), entries: &[(&str, &'static str, f64)]) {
-    let (mut x, y) = at;
+/// Draws a legend from a point (px) to the right, in a new row where the next entry would pass `right`; returns the
+/// height of all rows after the first.
+pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), right: f64, entries: &[(&str, &'static str, f64)]) -> f64 {
+    let (mut x, mut y) = at;
     for (label, colour, opacity) in entries {
+        let width = 28.0 + text_width(label, TEXT_SIZE);
+        if x > at.0 && x + width > right {
+            (x, y) = (at.0, y + LINE_HEIGHT);
+        }
         let is_line = *opacity >= 1.0;
         let height = if is_line { 3.0 } else { 12.0 };
         let swatch = Rect { x, y: y - 4.0 - height / 2.0, width: 22.0, height };
         svg.fill(swatch, colour, *opacity);
         svg.text((x + 28.0, y), Anchor::Start, TEXT_SIZE, label);
-        x += 28.0 + text_width(label, TEXT_SIZE) + 20.0;
+        x += width + 20.0;
     }
+    y - at.1
 }
 
 /// A figure of panels below each other, each with its legend under its title.
@@ -168,14 +174,15 @@ pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), entries: &[(&str, &'sta
 pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
     const GAP: f64 = 10.0;
     const LEGEND_HEIGHT: f64 = 20.0;
-    let row_height = panel_height + LEGEND_HEIGHT + GAP;
-    let mut svg = Svg::new(width, row_height * panels.len() as f64 + GAP);
-    for (index, panel) in panels.iter().enumerate() {
-        let y = GAP + row_height * index as f64;
+    let mut svg = Svg::new(width, GAP);
+    let mut y = GAP;
+    for panel in panels {
         let legend_at = (LEFT_MARGIN, y + panel_height + 12.0);
-        draw_legend(&mut svg, legend_at, &panel.legend());
+        let more_rows = draw_legend(&mut svg, legend_at, width - RIGHT_MARGIN, &panel.legend());
         panel.draw(&mut svg, Rect { x: 0.0, y, width, height: panel_height });
+        y += panel_height + LEGEND_HEIGHT + more_rows + GAP;
     }
+    svg.resize(width, y);
     svg.finish()
 }
 
@@ -183,6 +190,14 @@ pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
 mod tests {
     use super::*;
     use crate::report::BLUE;
+
+    #[test]
+    fn a_long_legend_takes_another_row() {
+        let mut svg = Svg::new(200.0, 100.0);
+        let entries = [("first line", BLUE, 1.0), ("second line", BLUE, 1.0), ("third line", BLUE, 1.0)];
+        assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 1000.0, &entries), 0.0);
+        assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 150.0, &entries), 2.0 * LINE_HEIGHT);
+    }
 
     #[test]
     fn figure_names_axes_and_lines_and_cuts_at_missing_points() {

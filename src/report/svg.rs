@@ -73,6 +73,11 @@ impl Svg {
         Self { width, height, body: String::new() }
     }
 
+    /// Another size of the whole, once it is known.
+    pub(super) fn resize(&mut self, width: f64, height: f64) {
+        (self.width, self.height) = (width, height);
+    }
+
     fn push(&mut self, element: &str) {
         self.body.push_str(element);
         self.body.push('\n');

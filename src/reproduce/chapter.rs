@@ -89,7 +89,7 @@ impl Row {
         }
     }
 
-    /// A printed number about data that are not published, with ours on the rig's own loop.
+    /// A printed number about data that are not published, with ours on the rig's own loop; or an attempt at it.
     pub fn about_other_data(
         quantity: impl Into<String>,
         unit: &'static str,

@@ -151,8 +151,8 @@ fn suspected(s: &Suspect, endurance: &Endurance) -> Result<(Row, Vec<f64>), Repr
         None => {
             let most = figure(s.most)?;
             let way = if most > 0.0 { "the wrong way" } else { "too little" };
-            let remark = format!("{} = {:.3e} {}: {way}", s.number, s.most, s.unit);
-            let row = Row::judged(name, "%", Some(PAPER_PERCENT), most, false, remark);
+            let remark = format!("an attempt: {} = {:.3e} {}: {way}", s.number, s.most, s.unit);
+            let row = Row::about_other_data(name, "%", PAPER_PERCENT, Some(most), remark);
             Ok((row, endurance.peaks(&[(s.make)(s.most)])?))
         }
     }

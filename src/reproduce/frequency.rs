@@ -155,8 +155,8 @@ fn suspected(s: &Suspect, ends: &Ends) -> Result<(Row, Option<EffectTable>), Rep
     let size = size_for(PAPER_DB, s.bracket, |size| ends.drop_db(&[(s.make)(size)]))?;
     let Some(size) = size else {
         let most = ends.drop_db(&[(s.make)(s.bracket.1)])?;
-        let remark = format!("{} up to {} {} does not bring it", s.number, s.bracket.1, s.unit);
-        return Ok((Row::judged(format!("with {}", s.name), "dB", Some(PAPER_DB), most, false, remark), None));
+        let remark = format!("an attempt: {} up to {} {} does not bring it", s.number, s.bracket.1, s.unit);
+        return Ok((Row::about_other_data(format!("with {}", s.name), "dB", PAPER_DB, Some(most), remark), None));
     };
     let with = (s.make)(size);
     let remark = format!("{} = {size:.4} {}, tolerance 0.02 dB", s.number, s.unit);

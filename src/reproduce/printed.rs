@@ -203,8 +203,13 @@ impl Found {
             close("stock rig".to_owned(), &self.as_delivered, 0.45),
             close("C1, C_s, m0, m1, x_pre calibrated".to_owned(), &self.calibrated, 0.25),
         ]);
-        let further = self.single.iter().chain(&self.double);
-        rows.extend(further.map(|c| close(format!("calibrated, {}", added(c)), c, PAPERS_OWN_MM)));
+        // A second piece of physics that the fit left at nothing is no attempt of its own.
+        let is_used = |c: &&Candidate| c.settings.last().is_some_and(|(_, size)| *size != 0.0);
+        let further = self.single.iter().chain(self.double.iter().filter(is_used));
+        rows.extend(further.map(|c| {
+            Row::shown(format!("calibrated, {}", added(c)), "mm", c.rms_mm, "RMS from the printed model, one attempt")
+        }));
+        rows.push(close(format!("closest: {}", added(self.best())), self.best(), PAPERS_OWN_MM));
         rows
     }
 }

@@ -14,14 +14,11 @@ use super::rig::{Play, program, stock};
 use super::{Chapter, ReproduceError, Row};
 
 const FIGURE: &str = "feedforward";
-/// From home to the middle of the range, s; then still until [`START_S`].
-const LEAD_IN_S: f64 = 3.0;
-const START_S: f64 = 5.0;
-/// Of the whole run: what counts begins at [`START_S`].
-const DURATION_S: f64 = START_S + 30.0;
+const DURATION_S: f64 = 30.0;
 const INTERVAL_S: f64 = 0.01;
-/// The paper's form is not among them: it ends at x = 0, and inputs are counted from the middle of their range.
-const FORMS: [Form; 3] = [Form::Asymmetric, Form::PrandtlIshlinskiiRate, Form::MaxwellSlipGrowing];
+const FORMS: [Form; 4] = [Form::Paper, Form::Asymmetric, Form::PrandtlIshlinskiiRate, Form::MaxwellSlip];
+/// From rest into the wanted motion, s.
+const LEAD_IN_S: f64 = 3.0;
 /// The training run: three sines, Hz, with their shares of the range; none of them is a motion's.
 const TRAINING: [(f64, f64); 3] = [(0.13, 0.5), (0.053, 0.3), (0.21, 0.2)];
 const TRAINING_S: f64 = 70.0;
@@ -43,9 +40,9 @@ struct Rig {
     travel_mm: f64,
     /// Range of the input while training, mm.
     training_mm: [f64; 2],
-    /// Reach of the wanted output to either side of the middle, in its unit. It stays clear of where the rig itself
-    /// cannot follow: what friction leaves of an elongation or a bend takes suction to go.
-    reach: f64,
+    /// Least and greatest wanted output, in its unit. The least stays clear of where the rig itself cannot follow: what
+    /// friction leaves of an elongation or a bend takes suction to go.
+    wanted: [f64; 2],
     /// How many times the error must shrink.
     goal: f64,
 }
@@ -59,8 +56,8 @@ const RIGS: [Rig; 3] = [
         plungers: &[("plunger_mm", 1.0)],
         output: "elongation_mm",
         travel_mm: 1.0,
-        training_mm: [0.25, 2.6],
-        reach: 9.0,
+        training_mm: [0.0, 2.8],
+        wanted: [3.0, 22.0],
         goal: 10.0,
     },
     Rig {
@@ -70,7 +67,7 @@ const RIGS: [Rig; 3] = [
         output: "angle_deg",
         travel_mm: 8.0 * DEGREE,
         training_mm: [-1.1, 1.1],
-        reach: 50.0,
+        wanted: [-50.0, 50.0],
         goal: 5.0,
     },
     Rig {
@@ -79,8 +76,8 @@ const RIGS: [Rig; 3] = [
         plungers: &[("plunger_1_mm", -1.0)],
         output: "bend_deg",
         travel_mm: 2.62 * DEGREE,
-        training_mm: [0.25, 1.35],
-        reach: 40.0,
+        training_mm: [0.0, 1.35],
+        wanted: [25.0, 115.0],
         goal: 5.0,
     },
 ];
@@ -93,21 +90,14 @@ const MOTIONS: [(&str, &[f64]); 3] = [
 ];
 
 impl Rig {
-    /// The middle of the input's range, mm.
-    fn middle_mm(&self) -> f64 {
-        0.5 * (self.training_mm[0] + self.training_mm[1])
-    }
-
-    /// The input on the way to the middle, mm.
-    fn lead_in_mm(&self, time_s: f64) -> f64 {
-        self.middle_mm() * 0.5 * (1.0 - (std::f64::consts::PI * (time_s / LEAD_IN_S).min(1.0)).cos())
-    }
-
-    /// The wanted output about the middle, in its unit, from [`START_S`] on.
-    fn wanted(&self, middle: f64, frequencies_hz: &[f64]) -> Vec<f64> {
-        let share = self.reach / frequencies_hz.len() as f64;
-        let motion = |t: f64| frequencies_hz.iter().map(|f| share * (std::f64::consts::TAU * f * t).sin()).sum::<f64>();
-        times().iter().map(|t| middle + motion((t - START_S).max(0.0))).collect()
+    /// The wanted output, in its unit: from rest into the motion within [`LEAD_IN_S`].
+    fn wanted(&self, frequencies_hz: &[f64]) -> Vec<f64> {
+        let [low, high] = self.wanted;
+        let part = |f: f64, t: f64| 0.5 * (1.0 - (std::f64::consts::TAU * f * t).cos());
+        let share = (high - low) / frequencies_hz.len() as f64;
+        let motion = |t: f64| low + frequencies_hz.iter().map(|f| share * part(*f, t)).sum::<f64>();
+        let lead = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * (t / LEAD_IN_S).min(1.0)).cos());
+        times().iter().map(|t| lead(*t) * motion(*t)).collect()
     }
 
     fn play(&self) -> Play {
@@ -119,18 +109,19 @@ impl Rig {
         }
     }
 
-    /// The training input, mm: to the middle of its range, then strokes of changing size about it.
+    /// The training input, mm: from home to the middle of its range, then strokes of changing size about it.
     fn training_input_mm(&self) -> (Vec<f64>, Vec<f64>) {
-        let half = 0.5 * (self.training_mm[1] - self.training_mm[0]);
+        let [low, high] = self.training_mm;
         let times = Schedule::even(TRAINING_S, TRAINING_INTERVAL_S).0;
-        let wave = |f: f64, t: f64| (std::f64::consts::TAU * f * (t - START_S).max(0.0)).sin();
+        let wave = |f: f64, t: f64| (std::f64::consts::TAU * f * t).sin();
         let shape = |t: f64| TRAINING.iter().map(|(f, share)| share * wave(*f, t)).sum::<f64>();
-        let input = times.iter().map(|t| self.lead_in_mm(*t) + half * shape(*t)).collect();
+        let lead = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * (t / LEAD_IN_S).min(1.0)).cos());
+        let input = times.iter().map(|t| lead(*t) * (0.5 * (low + high) + 0.5 * (high - low) * shape(*t))).collect();
         (times, input)
     }
 
-    /// The training run about the middle, the output as mm of travel; and where the middle is, mm of travel.
-    fn training(&self) -> Result<(LoopRun, f64), ReproduceError> {
+    /// The training run, the output as mm of travel.
+    fn training(&self) -> Result<LoopRun, ReproduceError> {
         let (times, input) = self.training_input_mm();
         let mut play = self.play().with("simulation.output_interval_s", TRAINING_INTERVAL_S).lasting(TRAINING_S);
         for (channel, sign) in self.plungers {
@@ -139,12 +130,10 @@ impl Rig {
             play = play.driven(channel, program(FIGURE, &points)?);
         }
         let run = play.run()?;
+        let (channel, sign) = self.plungers[0];
+        let input: Vec<f64> = run.channel(channel)?.values.iter().map(|x| x * sign).collect();
         let travel: Vec<f64> = run.channel(self.output)?.values.iter().map(|y| y * self.travel_mm).collect();
-        let from = run.time_s().partition_point(|t| *t < START_S - 1e-9);
-        let middle = travel[from];
-        let about = |values: &[f64], zero: f64| values[from..].iter().map(|v| v - zero).collect::<Vec<_>>();
-        let (input, travel) = (about(&input, self.middle_mm()), about(&travel, middle));
-        Ok((recorded(self.name, &run.time_s()[from..], &input, &travel, 7), middle))
+        Ok(recorded(self.name, run.time_s(), &input, &travel, 7))
     }
 
     /// A run with a controller; the output in its unit.
@@ -171,8 +160,6 @@ fn times() -> Vec<f64> {
 struct Control<'a> {
     base: Base<'a>,
     trim: Option<Trim>,
-    /// Travel at the middle, mm.
-    middle_travel_mm: f64,
 }
 
 enum Base<'a> {
@@ -201,25 +188,19 @@ impl Driver for Tracking<'_> {
         self.rig.output
     }
 
-    fn choose(&mut self, next_s: f64, measured: f64) -> Vec<f64> {
-        let error = (self.wanted[self.at] - measured) * self.rig.travel_mm;
+    fn choose(&mut self, _next_s: f64, measured: f64) -> Vec<f64> {
+        let travel = self.rig.travel_mm;
+        let error = (self.wanted[self.at] - measured) * travel;
         self.at += 1;
-        let wanted_mm = self.wanted[self.at] * self.rig.travel_mm - self.control.middle_travel_mm;
-        let moves = next_s > START_S + 1e-9;
-        let about_mm = if moves { self.control.about_middle(wanted_mm, error) } else { 0.0 };
-        let input_mm = self.rig.lead_in_mm(next_s) + about_mm;
-        self.rig.plungers.iter().map(|(_, sign)| input_mm * sign * 1e-3).collect()
-    }
-}
-
-impl Control<'_> {
-    /// The input about the middle that is to bring a travel about the middle, after an error just measured, mm.
-    fn about_middle(&mut self, wanted_mm: f64, error_mm: f64) -> f64 {
-        let base = match &mut self.base {
+        let wanted_mm = self.wanted[self.at] * travel;
+        let base = match &mut self.control.base {
             Base::Line { slope, offset_mm } => (wanted_mm - *offset_mm) / *slope,
             Base::Inverse(inverse) => inverse.step(wanted_mm, INTERVAL_S),
         };
-        base + self.trim.as_mut().map_or(0.0, |t| t.step(error_mm, INTERVAL_S))
+        let trim = self.control.trim.as_mut().map_or(0.0, |t| t.step(error, INTERVAL_S));
+        let [low, high] = self.rig.training_mm;
+        let input_mm = (base + trim).clamp(low - 0.2, high + 0.2);
+        self.rig.plungers.iter().map(|(_, sign)| input_mm * sign * 1e-3).collect()
     }
 }
 
@@ -227,32 +208,30 @@ impl Control<'_> {
 struct Taught {
     slope: f64,
     offset_mm: f64,
-    middle_travel_mm: f64,
     model: Identification,
     limits: Limits,
 }
 
 impl Taught {
     fn from(rig: &Rig) -> Result<Self, ReproduceError> {
-        let (run, middle_travel_mm) = rig.training()?;
+        let run = rig.training()?;
         let models: Result<Vec<Identification>, ReproduceError> =
             FORMS.par_iter().map(|form| fitted(FIGURE, std::slice::from_ref(&run), *form)).collect();
         let best = models?.into_iter().min_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
         let (slope, offset_mm, _) = straight_line(&run.input_mm, &run.output_mm);
-        let half = 0.5 * (rig.training_mm[1] - rig.training_mm[0]);
-        let limits = Limits { input_mm: [-1.1 * half, 1.1 * half], speed_mm_s: 8.0 * half, least_slope: 0.15 };
+        let [low, high] = rig.training_mm;
+        let limits =
+            Limits { input_mm: [low, high + 0.1 * (high - low)], speed_mm_s: 4.0 * (high - low), least_slope: 0.15 };
         let model = best.ok_or_else(|| super::error::lacking(FIGURE, "no form could be identified"))?;
-        Ok(Self { slope, offset_mm, middle_travel_mm, model, limits })
+        Ok(Self { slope, offset_mm, model, limits })
     }
 
     fn line(&self) -> Control<'_> {
-        let base = Base::Line { slope: self.slope, offset_mm: self.offset_mm };
-        Control { base, trim: None, middle_travel_mm: self.middle_travel_mm }
+        Control { base: Base::Line { slope: self.slope, offset_mm: self.offset_mm }, trim: None }
     }
 
     fn feedforward(&self) -> Control<'_> {
-        let base = Base::Inverse(Inverse::new(&self.model.model, self.limits, 0.0));
-        Control { base, trim: None, middle_travel_mm: self.middle_travel_mm }
+        Control { base: Base::Inverse(Inverse::new(&self.model.model, self.limits, 0.0)), trim: None }
     }
 
     fn with_feedback(&self) -> Control<'_> {
@@ -279,12 +258,11 @@ fn of_rig(rig: &Rig) -> Result<(Vec<Row>, Panel), ReproduceError> {
     let mut rows = Vec::new();
     let mut panel = None;
     for (name, frequencies) in MOTIONS {
-        let wanted = rig.wanted(taught.middle_travel_mm / rig.travel_mm, frequencies);
+        let wanted = rig.wanted(frequencies);
         let run = |other, control| rig.tracked(other, control, &wanted);
         let without = run(false, taught.line())?;
         let with = run(false, taught.feedforward())?;
-        let from = times().partition_point(|t| *t < START_S);
-        let error = |run: &[f64]| rms_apart(&run[from..], &wanted[from..]);
+        let error = |run: &[f64]| rms_apart(run, &wanted);
         let ratio = error(&without) / error(&with);
         let remark = format!(
             "{:.3} to {:.3} {unit} RMS by the form {}; goal: {} times",
@@ -302,12 +280,8 @@ fn of_rig(rig: &Rig) -> Result<(Vec<Row>, Panel), ReproduceError> {
             remark,
         ));
         let trimmed = error(&run(false, taught.with_feedback())?);
-        rows.push(Row::shown(
-            format!("{}, {name}: error with feedback on top", rig.name),
-            unit,
-            trimmed,
-            "integral trim, 0.15 s",
-        ));
+        let remark = format!("integral trim, 0.15 s; {:.0} times less than without", error(&without) / trimmed);
+        rows.push(Row::shown(format!("{}, {name}: error with feedback on top", rig.name), unit, trimmed, remark));
         let (alone, both) = (error(&run(true, taught.feedforward())?), error(&run(true, taught.with_feedback())?));
         rows.push(Row::shown(
             format!("{}, {name}: another muscle, with feedback", rig.name),
@@ -321,18 +295,17 @@ fn of_rig(rig: &Rig) -> Result<(Vec<Row>, Panel), ReproduceError> {
 }
 
 fn errors(rig: &Rig, motion: &str, unit: &str, wanted: &[f64], without: &[f64], with: &[f64]) -> Panel {
-    let from = times().partition_point(|t| *t < START_S);
     let line = |label: &str, colour, run: &[f64]| Series {
         label: label.to_owned(),
         colour,
-        x: times()[from..].to_vec(),
-        y: run.iter().zip(wanted).skip(from).map(|(a, b)| a - b).collect(),
+        x: times(),
+        y: run.iter().zip(wanted).map(|(a, b)| a - b).collect(),
     };
     Panel {
         title: vec![format!("{}: error on the wanted motion, {motion}", rig.name)],
         x_label: "time (s)".to_owned(),
         y_label: format!("is - wanted ({unit})"),
-        behind: vec![Series { label: String::new(), colour: GREY, x: vec![START_S, DURATION_S], y: vec![0.0, 0.0] }],
+        behind: vec![Series { label: String::new(), colour: GREY, x: vec![0.0, DURATION_S], y: vec![0.0, 0.0] }],
         series: vec![line("line turned round", VERMILION, without), line("feedforward", BLUE, with)],
         ..Panel::default()
     }

@@ -131,6 +131,9 @@ impl Form {
             }
             "rate_s" if self == Self::PrandtlIshlinskii => fixed(0.0, "the form without dependence on speed"),
             "rate_s" => plain(0.0, 1.0, "half a stroke of widening at a stroke in half a second"),
+            "offset" | "cubic" if self == Self::MaxwellSlip => fixed(0.0, "the form without it"),
+            "offset" => gain(3.0 * slope.abs() * stroke, "three times the range of the data"),
+            "cubic" => gain(slope.abs() / (stroke * stroke), CURVE),
             "growth" if self == Self::MaxwellSlip => fixed(0.0, "the form whose friction only the gate changes"),
             // Friction stays above zero within the data; at the other end it may be far greater.
             "growth" => plain(-0.9 / scale.input_mm[1].abs().max(0.1 * stroke), 10.0 / stroke, GROWING),
@@ -143,7 +146,15 @@ impl Form {
 /// Sliders of given reaches, without numbers.
 fn slipping(gate: Gate, reaches_mm: &[f64]) -> HysteresisModel<f64> {
     let elements = reaches_mm.iter().map(|&reach| SlipElement { stiffness: 0.0, reach }).collect();
-    HysteresisModel::MaxwellSlip(MaxwellSlip { gain: 0.0, curvature: 0.0, growth: 0.0, gate, elements })
+    HysteresisModel::MaxwellSlip(MaxwellSlip {
+        offset: 0.0,
+        gain: 0.0,
+        curvature: 0.0,
+        cubic: 0.0,
+        growth: 0.0,
+        gate,
+        elements,
+    })
 }
 
 impl std::str::FromStr for Form {
