@@ -38,6 +38,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "conceal",
             "diagnose",
             "effects",
+            "feedforward",
+            "hysteresis",
             "identify",
             "mechanism",
             "proof",

@@ -107,3 +107,26 @@ fn what_cannot_be_identified_is_refused_with_a_remedy() {
     says(&["identify", "force.csv", "--output", "force_n"], "is no length");
     says(&["identify", "still.csv", "--model", "preisach"], "known: symmetric, asymmetric, paper");
 }
+
+/// The printed model turned round: played on the model itself, the programme gives what was wanted.
+#[test]
+fn a_model_is_turned_round() {
+    let folder = tempfile::tempdir().expect("a folder");
+    loop_file(folder.path());
+    let output = smam(&["identify", "loop.csv", "--model", "paper", "--out", "o"], folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let wanted = |t: f64| 2.0 + 8.0 * (1.0 - (TAU * 0.07 * t).cos());
+    let rows: String = (0..2_000).map(|i| f64::from(i) * 0.01).map(|t| format!("{t},{}\n", wanted(t))).collect();
+    fs::write(folder.path().join("wanted.csv"), format!("time_s,elongation_mm\n{rows}")).expect("a file");
+    let output = smam(&["feedforward", "o/paper.toml", "wanted.csv", "--out", "p.csv"], folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let programme = read_csv(&folder.path().join("p.csv")).expect("a programme");
+    let plunger = &programme.channel("plunger_mm").expect("a column").values;
+    assert!(plunger.iter().all(|x| (0.0..=3.0).contains(x)));
+    let played = HysteresisModel::Paper(PaperModel::printed()).follow(programme.time_s(), plunger);
+    let apart = played.iter().zip(programme.time_s()).skip(200).map(|(y, t)| (y - wanted(*t)).powi(2)).sum::<f64>();
+    assert!((apart / 1_800.0).sqrt() < 0.1, "{}", (apart / 1_800.0).sqrt());
+    let output = smam(&["feedforward", "loop.csv", "wanted.csv"], folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("smam identify"));
+}

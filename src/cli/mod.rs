@@ -8,6 +8,7 @@ mod diagnose;
 mod diagnose_view;
 mod effects;
 mod error;
+mod feedforward;
 mod files;
 mod identify;
 mod identify_page;
@@ -73,6 +74,8 @@ enum Command {
     Score(score::ScoreArguments),
     /// Conceal, diagnose and score many cases: the proof, repeated on your own seed
     Proof(proof::ProofArguments),
+    /// The plunger's programme for a wanted output, from an identified hysteresis model
+    Feedforward(feedforward::FeedforwardArguments),
     /// Make the paper's figures again, each printed number beside ours
     Reproduce(reproduce::ReproduceArguments),
     /// Generate a model file
@@ -98,6 +101,7 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
         Some(Command::Score(arguments)) => score::score(&arguments),
         Some(Command::Proof(arguments)) => proof::proof(&arguments),
+        Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
         Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
     }

@@ -111,9 +111,14 @@ fn added(c: &Candidate) -> String {
 }
 
 impl Found {
+    /// Every attempt; a second piece of physics that the fit left at nothing is none of its own.
+    fn attempts(&self) -> impl Iterator<Item = &Candidate> {
+        let is_used = |c: &&Candidate| c.settings.last().is_some_and(|(_, size)| *size != 0.0);
+        self.single.iter().chain(self.double.iter().filter(is_used))
+    }
+
     fn best(&self) -> &Candidate {
-        let all = self.single.iter().chain(&self.double);
-        all.min_by(|a, b| a.rms_mm.total_cmp(&b.rms_mm)).unwrap_or(&self.calibrated)
+        self.attempts().min_by(|a, b| a.rms_mm.total_cmp(&b.rms_mm)).unwrap_or(&self.calibrated)
     }
 
     fn text(&self) -> Vec<String> {
@@ -203,10 +208,7 @@ impl Found {
             close("stock rig".to_owned(), &self.as_delivered, 0.45),
             close("C1, C_s, m0, m1, x_pre calibrated".to_owned(), &self.calibrated, 0.25),
         ]);
-        // A second piece of physics that the fit left at nothing is no attempt of its own.
-        let is_used = |c: &&Candidate| c.settings.last().is_some_and(|(_, size)| *size != 0.0);
-        let further = self.single.iter().chain(self.double.iter().filter(is_used));
-        rows.extend(further.map(|c| {
+        rows.extend(self.attempts().map(|c| {
             Row::shown(format!("calibrated, {}", added(c)), "mm", c.rms_mm, "RMS from the printed model, one attempt")
         }));
         rows.push(close(format!("closest: {}", added(self.best())), self.best(), PAPERS_OWN_MM));
