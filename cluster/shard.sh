@@ -43,7 +43,8 @@ while [ -z "$stopped" ]; do
     attempt "$@"
     if [ "$status" -eq 0 ]; then
         touch "$folder/done"
-        rm -f "$folder"/table.{csv,parquet} "$folder"/sweep.{html,svg}
+        rm -f "$folder"/{table,best,sensitivity}.csv "$folder"/table.parquet "$folder"/sensitivity.{json,svg} \
+            "$folder"/sweep.{html,svg} "$folder"/front.svg
         exit 0
     fi
     # Another attempt must have gained a point, or one that always dies, or outlasts the time limit, would be tried for ever.

@@ -84,14 +84,15 @@ fn rig() -> Result<(), Box<dyn Error>> {
 }
 
 /// A truth of each model at the size of the paper's muscle, its redundant scale at 1; that of the paper as printed.
-fn truths() -> [(Form, Vec<f64>); 6] {
+fn truths() -> [(Form, Vec<f64>); 7] {
     [
         (Form::Symmetric, vec![9.0, -4.0, 1.0, 1.6, 0.5, 1.2]),
         (Form::Asymmetric, vec![9.0, -4.0, 1.0, 1.2, 1.8, 0.3, -0.2, 0.0, 0.0, 0.4]),
         (Form::Paper, vec![-0.082, 9.886, -5.393, 1.0, 1.035, 2.263, -0.1436]),
         (Form::PrandtlIshlinskii, vec![5.0, -0.1, 0.04, 0.0, 1.0, 1.2, 0.8, 1.0]),
         (Form::PrandtlIshlinskiiRate, vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0]),
-        (Form::MaxwellSlip, vec![9.0, -0.1, -1.0, -1.5, -1.0, -0.8]),
+        (Form::MaxwellSlip, vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8]),
+        (Form::MaxwellSlipGrowing, vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5]),
     ]
 }
 

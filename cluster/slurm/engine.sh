@@ -60,6 +60,8 @@ descendants() { # PROCESS
 }
 
 engine_down() {
+    # Before the engine is up, scancel would speak to the machine's own Slurm.
+    [ "${SLURM_CONF:-}" = "$scratch/slurm.conf" ] || return 0
     scancel --quiet --user="$(id -u)" 2>/dev/null
     sleep 1
     for id in "${daemons[@]}"; do kill -TERM "$id" 2>/dev/null; done

@@ -9,7 +9,7 @@ use smam::identify::load_runs;
 use smam::identify::loops::{
     Form, Identification, LoopError, LoopRun, Method, SearchOptions, identify as identify_loops, mean_square_on,
 };
-use smam::recording::{RecordingSet, Role, RunUse, read_csv};
+use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 
 use super::CliError;
 use super::files::write;
@@ -18,9 +18,9 @@ use super::identify_page::page;
 /// Arguments of `smam identify`.
 #[derive(Args)]
 pub struct IdentifyArguments {
-    /// Folder with a recordings.toml, or a CSV file
+    /// Folder with a recordings.toml, or a CSV or Parquet file
     recordings: PathBuf,
-    /// symmetric, asymmetric, paper, prandtl-ishlinskii, prandtl-ishlinskii-rate or maxwell-slip; may be given several times
+    /// symmetric, asymmetric, paper, prandtl-ishlinskii, prandtl-ishlinskii-rate, maxwell-slip or maxwell-slip-growing; may be given several times
     #[arg(long, value_name = "NAME", default_value = "paper")]
     model: Vec<Form>,
     /// pso (as in the paper), cma, lm or hybrid
@@ -82,9 +82,9 @@ fn load(arguments: &IdentifyArguments) -> Result<Loops, CliError> {
     let path = &arguments.recordings;
     let name = path.file_stem().map_or_else(|| "loops".to_owned(), |n| n.to_string_lossy().into_owned());
     let column = |given: &Option<String>, else_: &str| given.clone().unwrap_or_else(|| else_.to_owned());
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+    if path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known))) {
         let columns = [column(&arguments.input, "plunger_mm"), column(&arguments.output, "elongation_mm")];
-        let run = LoopRun::of(&name, &read_csv(path)?, [&columns[0], &columns[1]], arguments.skip)?;
+        let run = LoopRun::of(&name, &read_recording(path)?, [&columns[0], &columns[1]], arguments.skip)?;
         return Ok(Loops { name, fit: vec![run], holdout: Vec::new() });
     }
     let set = RecordingSet::load(path)?;

@@ -95,6 +95,7 @@ fn is_line(plan: &Plan) -> bool {
 /// Strips below a measure along the values of the key at which limits are broken, one for each.
 fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
     let least = y.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
+    let least = if least.is_finite() { least } else { 0.0 };
     // A measure that never changes has an axis of its own.
     let step = if reach(y) > 1e-9 * least.abs().max(1e-9) { 0.06 * reach(y) } else { 0.1 };
     let is_broken = |limit: &LimitSpec| -> Vec<bool> {
@@ -141,6 +142,9 @@ fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
 /// A marked value as an upright line over what a measure reaches.
 fn upright(mark: &Mark, colour: &'static str, y: &[f64]) -> Series {
     let finite = || y.iter().copied().filter(|v| v.is_finite());
+    if finite().next().is_none() {
+        return line(mark.label.clone(), colour, Vec::new(), Vec::new());
+    }
     let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
     line(mark.label.clone(), colour, vec![mark.at; 2], vec![low, high])
 }

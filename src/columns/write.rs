@@ -41,8 +41,8 @@ fn fill(column: &Column, writer: &mut SerializedColumnWriter) -> Result<usize, P
     match column {
         Column::Whole(values) => writer.typed::<Int64Type>().write_batch(values, None, None),
         Column::Numbers(all) => {
-            let there: Vec<i16> = all.iter().map(|v| i16::from(v.is_finite())).collect();
-            let values: Vec<f64> = all.iter().copied().filter(|v| v.is_finite()).collect();
+            let there: Vec<i16> = all.iter().map(|v| i16::from(!v.is_nan())).collect();
+            let values: Vec<f64> = all.iter().copied().filter(|v| !v.is_nan()).collect();
             writer.typed::<DoubleType>().write_batch(&values, Some(&there), None)
         }
         Column::Texts(all) => {

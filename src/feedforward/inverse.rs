@@ -90,7 +90,7 @@ impl<'a> Inverse<'a> {
         let (distance, is_clipped) = self.distance(gap.abs(), reach, gained);
         let [low, high] = self.limits.input_mm;
         let aim = self.input_mm + way * distance;
-        let input = aim.clamp(low, high);
+        let input = aim.max(low).min(high);
         if is_clipped || input != aim {
             self.clipped_s += duration_s;
         }

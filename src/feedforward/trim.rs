@@ -22,7 +22,7 @@ impl Trim {
     pub fn step(&mut self, error_mm: f64, duration_s: f64) -> f64 {
         if error_mm.is_finite() {
             let grown = self.sum_mm + error_mm * duration_s / (self.slope * self.time_s);
-            self.sum_mm = grown.clamp(-self.most_mm, self.most_mm);
+            self.sum_mm = grown.max(-self.most_mm).min(self.most_mm);
         }
         self.sum_mm
     }

@@ -152,7 +152,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Asymmetric(model) => model.check_loops(range_mm),
             Self::Paper(model) => model.check_loops(),
             Self::PrandtlIshlinskii(model) => model.check_loops(range_mm[0].abs().max(range_mm[1].abs())),
-            Self::MaxwellSlip(model) => model.check_loops(),
+            Self::MaxwellSlip(model) => model.check_loops(range_mm),
         }
     }
 }

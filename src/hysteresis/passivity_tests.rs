@@ -78,13 +78,25 @@ proptest! {
     }
 
     #[test]
-    fn slip_loops(stiffness in prop::array::uniform3(0.0f64..3.0), gated: bool, path in turns(0.0)) {
-        let elements = stiffness.iter().zip([0.05, 0.2, 0.6]).map(|(&stiffness, reach)| SlipElement { stiffness, reach });
-        let gate = if gated { Gate::Tanh } else { Gate::None };
-        let model = MaxwellSlip { offset: 0.0, gain: 0.0, curvature: 0.0, cubic: 0.0, growth: 0.0, gate, elements: elements.collect() };
-        prop_assume!(model.check_loops().is_ok());
+    fn slip_loops(stiffness in prop::array::uniform3(0.0f64..3.0), gated: bool, growth in -0.3f64..3.0, path in turns(0.0)) {
+        let model = slip(stiffness, if gated { Gate::Tanh } else { Gate::None }, growth);
+        prop_assume!(model.check_loops([0.0, 3.0]).is_ok());
         prop_assert!(round_work(&HysteresisModel::MaxwellSlip(model), &path) > -ROUNDING);
     }
+}
+
+fn slip(stiffness: [f64; 3], gate: Gate, growth: f64) -> MaxwellSlip<f64> {
+    let elements = stiffness.iter().zip([0.05, 0.2, 0.6]).map(|(&stiffness, reach)| SlipElement { stiffness, reach });
+    MaxwellSlip { offset: 0.0, gain: 0.0, curvature: 0.0, cubic: 0.0, growth, gate, elements: elements.collect() }
+}
+
+/// Where `1 + c x` is negative a loop turns the other way.
+#[test]
+fn sliders_that_grow_past_zero_are_refused_and_gain() {
+    let model = slip([1.0, 1.0, 1.0], Gate::None, 1.0);
+    assert!(model.check_loops([0.0, 3.0]).is_ok() && model.check_loops([-3.0, 3.0]).is_err());
+    assert!(slip([1.0; 3], Gate::Tanh, 0.0).check_loops([-3.0, 3.0]).is_err());
+    assert!(round_work(&HysteresisModel::MaxwellSlip(model), &[-3.0, -1.2]) < -0.1);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The Maxwell-slip model: springs whose far ends slide.
 
 use super::Gate;
-use super::error::{HysteresisError, all_of_one_sign, positive};
+use super::error::{HysteresisError, all_of_one_sign, not_negative, positive};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
@@ -80,10 +80,20 @@ impl<D: Scalar> MaxwellSlip<D> {
         self.elements.iter().try_for_each(|e| positive(MODEL, "reach", e.reach.value()))
     }
 
-    /// Whether every loop turns the same way: stiffnesses of one sign, each element then dissipates by itself where
-    /// `1 + c x` stays above zero.
-    pub fn check_loops(&self) -> Result<(), HysteresisError> {
+    /// Whether every loop within a range of inputs turns the same way: stiffnesses of one sign, and a factor
+    /// `F = G(x) (1 + c x)` that is nowhere negative there.
+    ///
+    /// A slider whose far end stands at `x0` goes up at `x0 + r` and down at `x0 - r`, so that a closed path takes
+    /// `k` times the sum of `Phi(x0 + r) - Phi(x0 - r)`, `Phi' = F`: never negative where `F` is not. Noise of a hundredth of the
+    /// range around a gated form's zero is let pass.
+    pub fn check_loops(&self, range_mm: [f64; 2]) -> Result<(), HysteresisError> {
         self.check()?;
+        for x_mm in range_mm {
+            not_negative(MODEL, "1 + growth x", 1.0 + self.growth.value() * x_mm)?;
+        }
+        if self.gate == Gate::Tanh {
+            not_negative(MODEL, "least input of a gated form", range_mm[0] + 0.01 * (range_mm[1] - range_mm[0]))?;
+        }
         all_of_one_sign(MODEL, "stiffness", self.elements.iter().map(|e| e.stiffness.value()))
     }
 }

@@ -113,6 +113,19 @@ impl Row {
         }
     }
 
+    /// A printed number that a scene takes over, as the scene has it: not met where it has another.
+    pub fn taken(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        paper: f64,
+        ours: f64,
+        remark: impl Into<String>,
+    ) -> Self {
+        let row = Self::given(quantity, unit, paper, remark);
+        let standing = if (ours - paper).abs() <= 1e-9 * paper.abs() { Standing::Given } else { Standing::NotMet };
+        Self { ours: Some(ours), standing, ..row }
+    }
+
     /// Ours less the paper's.
     pub fn deviation(&self) -> Option<f64> {
         Some(self.ours? - self.paper?)

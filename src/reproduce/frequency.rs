@@ -20,7 +20,7 @@ const WITHOUT: [(&str, &str, f64); 2] = [
     ("resistance of the line", "hydraulics.line.bore_m", 3.0e-3),
 ];
 
-/// A sine long enough for its loop to settle, at least five cycles, sampled 400 times a cycle.
+/// Five cycles of a sine, of at least 400 samples each.
 fn play(figure: &'static str, frequency_hz: f64) -> Result<Play, ReproduceError> {
     let interval_s = (1.0 / (400.0 * frequency_hz)).min(0.01);
     Ok(stock("muscle_bench")
@@ -39,9 +39,7 @@ fn last_range(figure: &'static str, frequency_hz: f64) -> Result<f64, ReproduceE
 }
 
 fn last_loop(play: &Play, frequency_hz: f64) -> Result<Loop, ReproduceError> {
-    let run = play.run()?;
-    let values = |column: &str| run.channel(column).map(|c| c.values.clone());
-    Ok(Loop::last(run.time_s(), &values("plunger_mm")?, &values("elongation_mm")?, 1.0 / frequency_hz))
+    play.last_loop("plunger_mm", "elongation_mm", 1.0 / frequency_hz)
 }
 
 /// Gains of the fast model at the least and the greatest frequency, with an effect.

@@ -75,11 +75,11 @@ fn large() -> Result<Play, ReproduceError> {
         .with("muscles.friction.presliding_length_m", 5.2e-3 * longer)
         .with("muscles.initial_load_n", LARGE_LOAD_KG * GRAVITY_M_S2)
         .with("mechanism.link_mass.0.mass_kg", LARGE_LOAD_KG)
-        // A syringe and a line in proportion: as large a share of the muscle's volume in each.
+        // A syringe and compliances in proportion to the muscle's volume; the line stays 1 m long.
         .with("hydraulics.syringe.bore_m", 4.5e-3 * (area * longer).sqrt())
         .with("hydraulics.line.bore_m", 0.8e-3 * s)
-        .with("hydraulics.upstream_compliance_m3_pa", 8.0e-15 * area)
-        .with("hydraulics.downstream_compliance_m3_pa", 2.6e-15 * area);
+        .with("hydraulics.upstream_compliance_m3_pa", 8.0e-15 * area * longer)
+        .with("hydraulics.downstream_compliance_m3_pa", 2.6e-15 * area * longer);
     Ok(play.driven("plunger_mm", sine(FIGURE, -1.0e-3, 0.1)?))
 }
 

@@ -88,9 +88,14 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     let from: Vec<Knob> = calibrated.settings.iter().map(|(k, x)| Knob { start: *x, ..*k }).collect();
     let with = |further: &[Knob]| bench.calibrated(&[from.clone(), further.to_vec()].concat());
     let single: Result<Vec<Candidate>, ReproduceError> = FURTHER.par_iter().map(|f| with(&[*f])).collect();
-    let pairs: Vec<[Knob; 2]> = FURTHER[1..].iter().map(|f| [FURTHER[0], *f]).collect();
-    let double: Result<Vec<Candidate>, ReproduceError> = pairs.par_iter().map(|p| with(p)).collect();
-    let found = Found { bench, as_delivered, calibrated, single: single?, double: double? };
+    let single = single?;
+    // From where the growing bore alone ended, so that a pair is never worse than that.
+    let grown: Vec<Knob> = single[0].settings.iter().map(|(k, x)| Knob { start: *x, ..*k }).collect();
+    let double: Result<Vec<Candidate>, ReproduceError> = FURTHER[1..]
+        .par_iter()
+        .map(|f| bench.calibrated(&[grown.clone(), vec![Knob { start: 0.0, ..*f }]].concat()))
+        .collect();
+    let found = Found { bench, as_delivered, calibrated, single, double: double? };
     Ok(Chapter { text: found.text(), panels: found.panels(), rows: found.rows() })
 }
 

@@ -3,7 +3,7 @@
 use crate::report::{BLUE, ORANGE, Panel, Series};
 
 use super::loops::bounds;
-use super::rig::stock;
+use super::rig::{pre_elongation_percent, stock};
 use super::{Chapter, ReproduceError, Row};
 
 /// Positions of the pulley as its two plungers move against each other.
@@ -18,7 +18,13 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         |label: &str, colour, y: Vec<f64>| Series { label: label.to_owned(), colour, x: run.time_s().to_vec(), y };
     let reversed = first[at_least] > 0.0 && second[at_least] < 0.0;
     let rows = vec![
-        Row::given("pre-elongation of both muscles", "%", 50.0, "scene antagonistic_pulley"),
+        Row::taken(
+            "pre-elongation of both muscles",
+            "%",
+            50.0,
+            pre_elongation_percent("antagonistic_pulley")?,
+            "scene antagonistic_pulley",
+        ),
         Row::judged(
             "turns one way",
             "deg",

@@ -7,6 +7,7 @@ use crate::system::{InputSource, Schedule, Simulation, Twin, TwinRun, TwinSettin
 
 use super::ReproduceError;
 use super::error::lacking;
+use super::loops::Loop;
 
 /// One run of a stock scene, with what differs from it.
 #[derive(Clone, Default)]
@@ -44,6 +45,12 @@ pub fn effect(name: &str, element: &str, parameters: &[(&str, f64)]) -> EffectTa
         channel: None,
         parameters: parameters.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
     }
+}
+
+/// Elongation of a scene's muscles at the start, %.
+pub fn pre_elongation_percent(scene: &'static str) -> Result<f64, ReproduceError> {
+    let muscles = stock(scene).scene()?.file.muscles;
+    Ok(muscles.map_or(0.0, |m| m.pre_elongation_ratio * 100.0))
 }
 
 impl Play {
@@ -92,6 +99,12 @@ impl Play {
             simulation.set_input(channel, InputSource::Program(program.clone()));
         }
         Ok(record(&mut simulation, &schedule)?)
+    }
+
+    /// The last period of a full run, one channel over another.
+    pub fn last_loop(&self, input: &str, output: &str, period_s: f64) -> Result<Loop, ReproduceError> {
+        let run = self.run()?;
+        Ok(Loop::last(run.time_s(), &run.channel(input)?.values, &run.channel(output)?.values, period_s))
     }
 
     /// The scene's fast model with the inputs of this run.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series, VERMILION};
 
 use super::loops::{Loop, reach};
-use super::rig::{Play, effect, sine, stock};
+use super::rig::{effect, sine, stock};
 use super::{Chapter, ReproduceError, Row};
 
 const FIGURE: &str = "4cd";
@@ -126,7 +126,7 @@ fn line_loop(added_resistance: f64, length_m: f64) -> Result<Loop, ReproduceErro
         true => play.and(effect("line_restriction", "line", &[("resistance_ratio", added_resistance)])),
         false => play,
     };
-    last_loop(&play, "plunger_mm", "elongation_mm", 1.0 / FREQUENCY_HZ)
+    play.last_loop("plunger_mm", "elongation_mm", 1.0 / FREQUENCY_HZ)
 }
 
 fn sheath_loops() -> Result<Vec<(f64, Loop)>, ReproduceError> {
@@ -136,15 +136,9 @@ fn sheath_loops() -> Result<Vec<(f64, Loop)>, ReproduceError> {
             play = play.with(&format!("cable.{cable}.sheath_angle_rad"), wrap_deg.to_radians());
         }
         let play = play.and(effect("tendon_friction", "cable", &[("friction_coefficient", SHEATH_FRICTION)]));
-        Ok((wrap_deg, last_loop(&play, "drive_deg", "tip_deg", 1.0 / 0.15)?))
+        Ok((wrap_deg, play.last_loop("drive_deg", "tip_deg", 1.0 / 0.15)?))
     };
     [30.0, 90.0, 180.0, 360.0].into_par_iter().map(of).collect()
-}
-
-fn last_loop(play: &Play, input: &str, output: &str, period_s: f64) -> Result<Loop, ReproduceError> {
-    let run = play.run()?;
-    let values = |column: &str| run.channel(column).map(|c| c.values.clone());
-    Ok(Loop::last(run.time_s(), &values(input)?, &values(output)?, period_s))
 }
 
 fn panels(loops: &[Loop], sheaths: &[(f64, Loop)]) -> Vec<Panel> {

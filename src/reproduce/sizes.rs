@@ -20,7 +20,7 @@ const TIMES_S: (f64, f64, f64) = (20.0, 2.0, 20.0);
 pub fn chapter() -> Result<Chapter, ReproduceError> {
     let safe = stretched_to(SAFE_STRETCH)?;
     let beyond = stretched_to(YIELD_STRETCH + 0.2)?;
-    let rows = [given(), derived()?, stretches(&safe, &beyond)?].concat();
+    let rows = [given()?, derived(), stretches(&safe, &beyond)?].concat();
     let panel = Panel {
         title: vec!["To 245 % and back, and past 350 % with a coil that yields".to_owned()],
         x_label: "time (s)".to_owned(),
@@ -36,25 +36,27 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     Ok(Chapter { text: vec![text.to_owned()], panels: vec![panel], rows })
 }
 
-fn given() -> Vec<Row> {
-    vec![
-        Row::given("outer diameter of the muscle", "mm", 1.45, "scenes: coil.outer_diameter_m"),
-        Row::given("rest length", "mm", 50.0, "scenes: rest_length_m"),
-        Row::given("bore of the syringe", "mm", 4.5, "scenes: syringe.bore_m"),
-        Row::given("load of the string", "N", 0.05, "scene muscle_bench"),
-        Row::given(
-            "outer diameters the muscle scales down to",
-            "mm",
-            0.84,
-            "a key of the scene; fabrication is not simulated",
-        ),
+fn given() -> Result<Vec<Row>, ReproduceError> {
+    let file = stock("muscle_bench").scene()?.file;
+    let missing = || super::error::lacking(FIGURE, "the scene muscle_bench has no tube, hydraulics or load");
+    let muscles = file.muscles.as_ref().ok_or_else(missing)?;
+    let coil = muscles.tube.as_ref().ok_or_else(missing)?.coil;
+    let bore_m = file.hydraulics.ok_or_else(missing)?.syringe.bore_m;
+    let string_n = file.load.first().and_then(|l| l.force_n).ok_or_else(missing)?.abs();
+    let scene = "scene muscle_bench";
+    Ok(vec![
+        Row::taken("outer diameter of the muscle", "mm", 1.45, coil.outer_diameter_m * 1e3, scene),
+        Row::taken("rest length", "mm", 50.0, muscles.rest_length_m * 1e3, scene),
+        Row::taken("bore of the syringe", "mm", 4.5, bore_m * 1e3, scene),
+        Row::taken("load of the string", "N", 0.05, string_n, scene),
+        Row::given("outer diameter it scales down to", "mm", 0.84, "a key of the scene; fabrication is not simulated"),
         Row::given("outer diameter it scales up to", "mm", 6.35, "simulated as the lift of 4.72 kg"),
-    ]
+    ])
 }
 
-fn derived() -> Result<Vec<Row>, ReproduceError> {
+fn derived() -> Vec<Row> {
     let line_ml = std::f64::consts::PI / 4.0 * 0.8f64.powi(2) * 1.0e3 * 1e-3;
-    Ok(vec![
+    vec![
         Row::compared(
             "mass of the muscle",
             "g",
@@ -72,7 +74,7 @@ fn derived() -> Result<Vec<Row>, ReproduceError> {
             line_ml < 0.5,
             "paper: normally less than 0.5 mL; the stock line, 1 m of 0.8 mm bore, is our estimate and holds 0.6 % more",
         ),
-    ])
+    ]
 }
 
 /// Steel of the coil and silicone of the tube, g.

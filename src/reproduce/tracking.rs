@@ -248,7 +248,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
                 wanted motion, which keeps clear of the closed coil and of the straight tube: what friction leaves there \
                 takes suction to go. Without: the line of best fit turned round. The error is the root mean square over 30 s. \
                 Feedback adds an integral trim; it is also tried on a muscle that is not the one identified (C1 a fifth \
-                stiffer, a quarter more friction), where feedforward alone must fall short.";
+                stiffer, a quarter more pressure-borne friction), where feedforward alone must fall short.";
     Ok(Chapter { text: vec![text.to_owned()], panels, rows: rows.concat() })
 }
 

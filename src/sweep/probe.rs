@@ -75,13 +75,17 @@ pub struct Sine<'a> {
     pub plunger_m: f64,
 }
 
-/// Frequency at which an output follows an input with 1/sqrt(2) of its slow amplitude, Hz; NaN above 50 Hz.
+/// Frequency at which an output follows an input with 1/sqrt(2) of its slow amplitude, Hz; NaN above 50 Hz, and where it
+/// does not follow at all.
 ///
 /// Slow is 0.1 Hz. Friction and slack make it depend on the amplitude.
 pub fn bandwidth_hz(scene: &Scene, sine: Sine) -> Result<f64, SweepError> {
     const SLOW_HZ: f64 = 0.1;
     const FASTEST_HZ: f64 = 50.0;
     let limit = response(scene, sine, SLOW_HZ)? / SQRT_2;
+    if limit.is_nan() || limit <= 0.0 {
+        return Ok(f64::NAN);
+    }
     let (mut low, mut high) = (SLOW_HZ, 2.0 * SLOW_HZ);
     while response(scene, sine, high)? > limit {
         (low, high) = (high, 2.0 * high);

@@ -12,7 +12,7 @@ use super::morris::Trajectories;
 use super::plan::Plan;
 use super::sobol_indices::sobol_indices;
 use super::spec::SamplingSpec;
-use super::table::Table;
+use super::table::{Table, quoted};
 use crate::recording::write_whole;
 
 /// What a key does to a measure.
@@ -101,7 +101,7 @@ impl Sensitivity {
             let _ = write!(text, ",{name},{name}_low,{name}_high");
         }
         for influence in &self.influences {
-            let _ = write!(text, "\n{},{},{}", influence.measure, influence.key, influence.samples);
+            let _ = write!(text, "\n{},{},{}", quoted(&influence.measure), quoted(&influence.key), influence.samples);
             for value in influence.numbers.iter().flat_map(|n| [n.value, n.low, n.high]) {
                 let _ = if value.is_finite() { write!(text, ",{value}") } else { write!(text, ",") };
             }

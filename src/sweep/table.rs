@@ -83,7 +83,8 @@ impl Table {
     }
 
     pub(super) fn csv(&self) -> String {
-        let mut text = self.columns.join(",") + ",error\n";
+        let names: Vec<String> = self.columns.iter().map(|name| quoted(name)).collect();
+        let mut text = names.join(",") + ",error\n";
         for row in &self.rows {
             let _ = write!(text, "{}", row.index);
             for at in 0..self.columns.len() - 1 {
@@ -91,13 +92,18 @@ impl Table {
                 let _ = if value.is_finite() { write!(text, ",{value}") } else { write!(text, ",") };
             }
             let error = row.outcome.as_ref().err().map_or("", String::as_str);
-            let _ = if error.is_empty() {
-                writeln!(text, ",")
-            } else {
-                writeln!(text, ",\"{}\"", error.replace('"', "\"\"").replace('\n', " "))
-            };
+            let _ = if error.is_empty() { writeln!(text, ",") } else { writeln!(text, ",{}", quoted(error)) };
         }
         text
+    }
+}
+
+/// A cell as CSV takes it: quoted where it must be, on one line.
+pub(super) fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n']) {
+        format!("\"{}\"", cell.replace('"', "\"\"").replace('\n', " "))
+    } else {
+        cell.to_owned()
     }
 }
 

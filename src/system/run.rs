@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::recording::{Channel, PiecewiseLinear, Recording};
 
+use crate::scene::Program;
+
 use super::channels::Channels;
 use super::observe::Observer;
 use super::{InputSource, Simulation, SystemError, Warnings};
@@ -73,7 +75,7 @@ pub trait Driver {
     fn watched(&self) -> &str;
 
     /// The driven inputs at `next_s`, SI, after the watched output read `measured` (in its column's unit) now; the
-    /// inputs go straight there.
+    /// inputs go straight there. As many values as inputs: an input without one stays where it is.
     fn choose(&mut self, next_s: f64, measured: f64) -> Vec<f64>;
 }
 
@@ -88,6 +90,9 @@ pub fn record_driven(
 ) -> Result<Recording, SystemError> {
     let mut now = driver.start();
     check_names(simulation, now.iter().map(|(name, _)| name.as_str()), driver.watched())?;
+    for (channel, value) in &now {
+        simulation.set_input(channel, InputSource::Program(Program::constant(*value)));
+    }
     let (mut at, mut chosen) = (schedule.0.first().copied().unwrap_or(0.0), Vec::new());
     record_steps(simulation, schedule, |simulation, next_s, channels, values| {
         let measured = channels.names.iter().position(|n| n == driver.watched()).map_or(f64::NAN, |i| values[i]);
@@ -151,4 +156,65 @@ fn record_steps(
     }
     let named = channels.names.iter().zip(columns).map(|(name, values)| Channel::new(name.clone(), values));
     Ok(Recording::new(schedule.0.clone(), named.collect())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// Plays a scene's own programme back to it, step by step.
+    struct Same(Program);
+
+    impl Driver for Same {
+        fn start(&self) -> Vec<(String, f64)> {
+            vec![("plunger_mm".to_owned(), self.0.value(0.0))]
+        }
+
+        fn watched(&self) -> &str {
+            "elongation_mm"
+        }
+
+        fn choose(&mut self, next_s: f64, _measured: f64) -> Vec<f64> {
+            vec![self.0.value(next_s)]
+        }
+    }
+
+    /// A hysteresis model keeps its branch while a driver changes its input at every instant.
+    #[test]
+    fn a_driven_run_is_the_run_of_the_same_inputs() {
+        let scene = Scene::load("muscle_printed_model", &[]).expect("stock");
+        let (schedule, program) = (Schedule::even(8.0, 0.02), scene.programs[0].clone());
+        let alone = record(&mut Simulation::new(scene.clone()).expect("builds"), &schedule).expect("runs");
+        let mut simulation = Simulation::new(scene).expect("builds");
+        let driven = record_driven(&mut simulation, &schedule, &mut Same(program)).expect("runs");
+        let column = |r: &Recording| r.channel("elongation_mm").expect("there").values.clone();
+        let worst = column(&alone).iter().zip(column(&driven)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Straight between instants instead of along the sine.
+        assert!(worst < 0.01, "{worst} mm");
+    }
+
+    #[test]
+    fn a_driver_of_an_unknown_channel_is_refused() {
+        let scene = Scene::load("muscle_bench", &[]).expect("stock");
+        let watched = Same(Program::constant(0.0));
+        struct Wrong(Same);
+        impl Driver for Wrong {
+            fn start(&self) -> Vec<(String, f64)> {
+                vec![("piston_mm".to_owned(), 0.0)]
+            }
+            fn watched(&self) -> &str {
+                self.0.watched()
+            }
+            fn choose(&mut self, next_s: f64, measured: f64) -> Vec<f64> {
+                self.0.choose(next_s, measured)
+            }
+        }
+        let refused = record_driven(
+            &mut Simulation::new(scene).expect("builds"),
+            &Schedule::even(0.1, 0.05),
+            &mut Wrong(watched),
+        );
+        assert!(refused.unwrap_err().to_string().contains("piston_mm"));
+    }
 }

@@ -40,6 +40,7 @@ pub struct Simulation {
     target: Vec<f64>,
     /// States of the displacement models, in the order of `built.displacements`.
     hysteresis: Vec<Vec<f64>>,
+    has_stepped: bool,
     pub(super) energy: Option<EnergyBook>,
 }
 
@@ -71,6 +72,7 @@ impl Simulation {
             positions: vec![0.0; joints],
             target: vec![0.0; joints],
             hysteresis: vec![Vec::new(); built.displacements.len()],
+            has_stepped: false,
             energy: None,
             scene,
             mechanism,
@@ -164,6 +166,10 @@ impl Simulation {
         for (span, input) in self.spans.iter_mut().zip(&self.inputs) {
             *span = InputSpan { value: input.value(self.time_s), slope: 0.0 };
         }
+        // A run under way keeps the branch it is on; before the first step there is none.
+        if self.has_stepped {
+            return;
+        }
         if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) {
             for (d, state) in self.built.displacements.iter().zip(&mut self.hysteresis) {
                 *state = model.rest(self.spans[d.plunger].value * 1e3);
@@ -201,6 +207,7 @@ impl Simulation {
         }
         self.spans.iter_mut().zip(&self.inputs).for_each(|(span, input)| span.value = input.value(end_s));
         self.carry_engine(h);
+        self.has_stepped = true;
         self.time_s = end_s;
     }
 

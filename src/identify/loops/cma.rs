@@ -34,6 +34,8 @@ pub fn cma(
     seed: u64,
 ) -> (Vec<f64>, f64, usize) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
+    // Of fewer than two none is better.
+    let options = CmaOptions { population: options.population.max(2), ..options };
     let mut spread = Spread::new(start, options.population);
     let mut best = (start.to_vec(), f64::INFINITY);
     let mut evaluations = 0;

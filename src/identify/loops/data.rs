@@ -33,16 +33,26 @@ impl LoopRun {
         let from_s = time_s.first().copied().unwrap_or(0.0) + skip_s;
         let counted = time_s.iter().zip(recording.si(output)?);
         let output_mm = counted.map(|(&t, y)| if t < from_s { f64::NAN } else { y * 1e3 }).collect();
-        Self { name: name.to_owned(), time_s, input_mm, output_mm }.checked()
+        let run = Self { name: name.to_owned(), time_s, input_mm, output_mm };
+        run.check()?;
+        Ok(run)
     }
 
-    fn checked(self) -> Result<Self, LoopError> {
+    /// Whether a model can be identified from it.
+    ///
+    /// # Errors
+    /// Columns of different length, too few samples, an input that does not move or is not all there.
+    pub fn check(&self) -> Result<(), LoopError> {
+        let length = self.time_s.len();
+        if [self.input_mm.len(), self.output_mm.len()] != [length; 2] || self.input_mm.iter().any(|x| !x.is_finite()) {
+            return Err(LoopError::Ragged { file: self.name.clone() });
+        }
         let [least, most] = range(self.input_mm.iter().copied());
         let counted = self.output_mm.iter().filter(|y| y.is_finite()).count();
         if counted < FEWEST_SAMPLES || most <= least {
-            return Err(LoopError::TooLittle { file: self.name, counted, travel_mm: most - least });
+            return Err(LoopError::TooLittle { file: self.name.clone(), counted, travel_mm: most - least });
         }
-        Ok(self)
+        Ok(())
     }
 }
 

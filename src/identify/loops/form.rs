@@ -136,8 +136,11 @@ impl Form {
             "cubic" => gain(slope.abs() / (stroke * stroke), CURVE),
             "growth" if self == Self::MaxwellSlip => fixed(0.0, "the form whose friction only the gate changes"),
             // Friction stays above zero within the data; at the other end it may be far greater.
-            "growth" => plain(-0.9 / scale.input_mm[1].abs().max(0.1 * stroke), 10.0 / stroke, GROWING),
-            _ if self == Self::MaxwellSlip => gain(3.0 * slope.abs(), GAIN),
+            "growth" => {
+                let [low, high] = scale.input_mm;
+                let most = if low < 0.0 { (0.9 / -low).min(10.0 / stroke) } else { 10.0 / stroke };
+                plain(-0.9 / high.abs().max(0.1 * stroke), most, GROWING)
+            }
             _ => gain(3.0 * slope.abs(), GAIN),
         }
     }

@@ -41,7 +41,8 @@ pub fn certainty(r: &DVector<f64>, jacobian: &DMatrix<f64>) -> Certainty {
         &inverse * middle * &inverse * (n as f64 / degrees)
     });
     let covariance = covariance.unwrap_or_else(|| DMatrix::from_diagonal_element(p, p, f64::INFINITY));
-    let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
+    // A negative variance is none that the data told.
+    let deviation = |j: usize| if covariance[(j, j)] >= 0.0 { covariance[(j, j)].sqrt() } else { f64::INFINITY };
     let student = StudentsT::new(0.0, 1.0, degrees).map_or(1.96, |t| t.inverse_cdf(0.975));
     let correlation =
         DMatrix::from_fn(p, p, |i, j| if i == j { 1.0 } else { covariance[(i, j)] / (deviation(i) * deviation(j)) });
@@ -63,11 +64,12 @@ fn autocovariances(r: &DVector<f64>) -> Vec<f64> {
     (0..=n / 10).map(at).collect()
 }
 
-/// Twice the first lag whose covariance lies within two of its deviations of zero; 0 if that is the first.
+/// Twice the last lag before the covariance lies within two of its deviations of zero; 0 if the first one does. Never more
+/// than there are lags, or the taper would be cut off.
 fn memory(covariances: &[f64], n: usize) -> usize {
     let threshold = 2.0 / (n as f64).sqrt() * covariances[0];
     let vanished = covariances.iter().skip(1).position(|c| c.abs() < threshold);
-    2 * vanished.unwrap_or(covariances.len() / 2)
+    (2 * vanished.unwrap_or(covariances.len() / 2)).min(covariances.len() - 1)
 }
 
 /// `Jᵀ Γ J` with the tapered autocovariances.

@@ -40,6 +40,8 @@ pub enum LoopError {
          remedy: record whole strokes, at least 50 samples"
     )]
     TooLittle { file: String, counted: usize, travel_mm: f64 },
+    #[error("{file}: time, input and output must be of one length, the input without gaps; cut or fill them")]
+    Ragged { file: String },
     #[error("no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml")]
     NoRun,
     #[error(
@@ -85,6 +87,7 @@ pub fn identify(runs: &[LoopRun], form: Form, options: &SearchOptions) -> Result
     if runs.is_empty() {
         return Err(LoopError::NoRun);
     }
+    runs.iter().try_for_each(LoopRun::check)?;
     let scale = LoopScale::of(runs);
     let problem = Problem::new(runs, form, &scale);
     let no_start = || LoopError::NoStart { form: form.name() };

@@ -14,7 +14,8 @@ fn truths() -> Vec<(Form, Vec<f64>)> {
         (Form::Paper, vec![-0.082, 9.886, -5.393, 1.0, 1.035, 2.263, -0.1436]),
         (Form::PrandtlIshlinskii, vec![5.0, -0.1, 0.04, 0.0, 1.0, 1.2, 0.8, 1.0]),
         (Form::PrandtlIshlinskiiRate, vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0]),
-        (Form::MaxwellSlip, vec![9.0, -0.1, -1.0, -1.5, -1.0, -0.8]),
+        (Form::MaxwellSlip, vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8]),
+        (Form::MaxwellSlipGrowing, vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5]),
     ]
 }
 

@@ -65,6 +65,8 @@ pub struct Found {
 
 /// Places of the hybrid's look around, at least; a power of two, as the sequence likes it.
 const LOOKS: usize = 32;
+/// As far as the sequence goes.
+const MOST_LOOKS: usize = 1 << 16;
 /// Far below what noise decides; each further step costs a Jacobian.
 const DESCENT: LmOptions = LmOptions { max_iterations: 60, relative_decrease: 1e-7, difference: 1e-6 };
 
@@ -76,7 +78,7 @@ pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
         Method::Cma => best(runs.map(|seed| by_cma(problem, options.cma, seed))),
         Method::Lm => {
             let middle = from_unit(problem, &vec![0.5; problem.free().len()]);
-            let drawn = (1..options.starts.max(1)).map(|i| look(problem, i, options.seed));
+            let drawn = (1..options.starts.clamp(1, MOST_LOOKS)).map(|i| look(problem, i, options.seed));
             best(std::iter::once(middle).chain(drawn).map(|place| descend(problem, &problem.with_best_gains(&place)?)))
         }
         Method::Hybrid => hybrid(problem, options),
@@ -93,8 +95,9 @@ fn best(found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
 
 /// Looks around with the gains solved for, then descends from the best places.
 fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
-    let places = (0..LOOKS).filter_map(|i| problem.with_best_gains(&look(problem, i, options.seed)));
-    let mut looks: Vec<(f64, Vec<f64>)> = Vec::with_capacity(LOOKS);
+    let count = LOOKS.max(options.starts.next_power_of_two()).min(MOST_LOOKS);
+    let places = (0..count).filter_map(|i| problem.with_best_gains(&look(problem, i, options.seed)));
+    let mut looks: Vec<(f64, Vec<f64>)> = Vec::with_capacity(count);
     let places: Vec<Vec<f64>> = places.collect();
     looks.extend(problem.mean_squares(&places).into_iter().zip(places));
     looks.retain(|(f, _)| f.is_finite());
@@ -103,7 +106,7 @@ fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
     let middle = problem.with_best_gains(&from_unit(problem, &vec![0.5; problem.free().len()]));
     let starts = looks.into_iter().map(|(_, place)| place).take(options.starts.max(1)).chain(middle);
     let found = best(starts.map(|place| descend(problem, &place)))?;
-    Some(Found { evaluations: found.evaluations + LOOKS + 1, ..found })
+    Some(Found { evaluations: found.evaluations + 2 * count + 1, ..found })
 }
 
 /// A place of the scrambled Sobol sequence over the box.

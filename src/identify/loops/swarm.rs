@@ -33,9 +33,9 @@ pub fn swarm(
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = |low: f64, high: f64| random.random_range(low..high);
     let mut places: Vec<Vec<f64>> =
-        (0..options.particles).map(|_| (0..dimension).map(|_| uniform(0.0, 1.0)).collect()).collect();
+        (0..options.particles.max(1)).map(|_| (0..dimension).map(|_| uniform(0.0, 1.0)).collect()).collect();
     let mut speeds: Vec<Vec<f64>> =
-        (0..options.particles).map(|_| (0..dimension).map(|_| uniform(-0.25, 0.25)).collect()).collect();
+        (0..options.particles.max(1)).map(|_| (0..dimension).map(|_| uniform(-0.25, 0.25)).collect()).collect();
     let mut own = places.clone();
     let mut own_values = values(&places);
     let mut best = least(&own_values);
