@@ -356,3 +356,30 @@ fn an_interrupted_run_leaves_what_it_computed() {
     assert!(csv.ends_with('\n') && csv.lines().count() > 10, "{} lines", csv.lines().count());
     assert!(csv.lines().all(|l| l.split(',').count() == 5), "a row was cut");
 }
+
+/// Numbers that are none are refused in a displacement form too.
+#[test]
+fn a_displacement_form_without_a_number_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new(env!("CARGO_BIN_EXE_smam"))
+        .args(["run", "muscle_printed_model", "--set", "muscles.displacement.alpha_x1=nan"])
+        .current_dir(folder.path())
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("finite"), "{output:?}");
+}
+
+/// What is asked for is written even if nobody reads what is printed; a full output is an error, not a panic.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_reader_that_goes_and_a_full_output_do_not_panic() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
+    let output = Command::new(env!("CARGO_BIN_EXE_smam")).arg("scenes").stdout(full).output().expect("starts");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("standard output: cannot be written"), "{output:?}");
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let output = Command::new(env!("CARGO_BIN_EXE_smam")).arg("scenes").stdout(writer).output().expect("starts");
+    assert!(output.status.success(), "{output:?}");
+}

@@ -92,6 +92,18 @@ fn what_it_writes_goes_into_a_scene() {
     assert!((mean / f - 1.0).abs() < 0.02, "{mean} for {f}");
 }
 
+/// Noise for an output: a fit is a fit, but the report says what it is worth.
+#[test]
+fn a_hopeless_fit_is_called_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let draw = |i: usize, k: usize| ((i * k) % 1_009) as f64 / 1_009.0;
+    let rows: String =
+        (0..400).map(|i| format!("{},{},{}\n", i as f64 * 0.05, draw(i, 7_919), draw(i, 104_729))).collect();
+    fs::write(folder.path().join("noise.csv"), format!("time_s,plunger_mm,elongation_mm\n{rows}")).expect("a file");
+    let output = smam(&["identify", "noise.csv", "--model", "symmetric"], folder.path());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("explains next to nothing"), "{output:?}");
+}
+
 #[test]
 fn what_cannot_be_identified_is_refused_with_a_remedy() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -34,7 +34,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
     let simulation = Simulation::new(scene)?;
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
     let file = &simulation.scene().file;
-    println!(
+    say!(
         "{path}: right; {} muscles, {} cables, {} inputs, {} outputs, {} checks",
         file.muscle.len(),
         file.cable.len(),

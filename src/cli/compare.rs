@@ -114,7 +114,7 @@ fn remark(report: &FitReport) -> String {
 fn say_fit(report: &FitReport) {
     for p in &report.parameters {
         let bound = if p.on_bound { "   (on a bound of its range)" } else { "" };
-        println!("fitted {} = {:.6e}{bound}", calibration_key(&p.key), p.value);
+        say!("fitted {} = {:.6e}{bound}", calibration_key(&p.key), p.value);
     }
 }
 
@@ -212,12 +212,9 @@ fn print_table(runs: &[RecordedRun], fits: &[Vec<ChannelFit>]) {
     let row = |name: &str, f: &ChannelFit| {
         let noise = f.noise_sd.map_or_else(|| format!("{:>12}", "?"), |n| format!("{n:>12.4}"));
         let ratio = f.rmse_over_noise().map_or_else(|| format!("{:>10}", "?"), |r| format!("{r:>10.2}"));
-        println!("{name:<width$} {:<18} {:>12.4} {noise} {ratio} {:>12.4}", f.column, f.rmse, f.range);
+        say!("{name:<width$} {:<18} {:>12.4} {noise} {ratio} {:>12.4}", f.column, f.rmse, f.range);
     };
-    println!(
-        "{:<width$} {:<18} {:>12} {:>12} {:>10} {:>12}",
-        "run", "channel", "rmse", "noise sd", "rmse/noise", "range"
-    );
+    say!("{:<width$} {:<18} {:>12} {:>12} {:>10} {:>12}", "run", "channel", "rmse", "noise sd", "rmse/noise", "range");
     for (name, fits) in names.iter().zip(fits) {
         fits.iter().for_each(|f| row(name, f));
     }

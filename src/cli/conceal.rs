@@ -65,7 +65,7 @@ pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
     for seed in arguments.seed..arguments.seed.saturating_add(arguments.count) {
         let drawn = draw(&format!("case_{seed}"), rig, hiding(arguments.hiding, seed), seed)?;
         let seal = write_case(&drawn, &arguments.out)?;
-        println!("{} {seal}", drawn.truth.name);
+        say!("{} {seal}", drawn.truth.name);
         seals.retain(|(name, _)| *name != drawn.truth.name);
         seals.push((drawn.truth.name, seal));
         write_seals(&path, &seals)?;

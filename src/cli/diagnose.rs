@@ -100,20 +100,21 @@ fn default_out(folder: &Path) -> PathBuf {
 }
 
 fn print_diagnosis(d: &Diagnosis) {
-    println!("{}", d.summary);
+    say!("{}", d.summary);
     for e in &d.effects {
         let on = e.channel.as_ref().map_or(String::new(), |c| format!(" ({c})"));
-        println!("  {:.3}  {} in {}{on}: {}", e.probability, e.name, e.element, e.law);
+        say!("  {:.3}  {} in {}{on}: {}", e.probability, e.name, e.element, e.law);
         for (key, p) in &e.parameters {
-            println!("           {key} = {:.4e}  [{:.4e}, {:.4e}]", p.value, p.ci95[0], p.ci95[1]);
+            say!("           {key} = {:.4e}  [{:.4e}, {:.4e}]", p.value, p.ci95[0], p.ci95[1]);
         }
     }
-    println!(
+    say!(
         "  misfit per sample {:.4} -> {:.4} of the noise's variance",
-        d.detection.excess_chi2_per_sample, d.detection.excess_chi2_per_sample_corrected
+        d.detection.excess_chi2_per_sample,
+        d.detection.excess_chi2_per_sample_corrected
     );
     for (channel, p) in &d.fit.channels {
-        println!(
+        say!(
             "  sealed {}: {channel} rmse {:.4} -> {:.4} (noise {:.4})",
             d.fit.holdout.join(", "),
             p.rmse_baseline,
@@ -122,8 +123,8 @@ fn print_diagnosis(d: &Diagnosis) {
         );
     }
     for (channel, difference) in &d.fit.full_scene.rms_difference_over_noise {
-        println!("  fast model against the full scene: {channel} {difference:.3} of the noise");
+        say!("  fast model against the full scene: {channel} {difference:.3} of the noise");
     }
-    println!("  next: {}", d.next_experiment.why);
+    say!("  next: {}", d.next_experiment.why);
     d.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
 }

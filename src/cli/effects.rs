@@ -30,9 +30,9 @@ const RIGS: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_cathete
 pub fn effects(arguments: &EffectsArguments) -> Result<ExitCode, CliError> {
     let Some(name) = &arguments.name else {
         for spec in CATALOGUE {
-            println!("{:<20} {:<10} {}", spec.name, spec.element.name(), spec.title);
+            say!("{:<20} {:<10} {}", spec.name, spec.element.name(), spec.title);
         }
-        println!("\nOne of them: smam effects {}", CATALOGUE[0].name);
+        say!("\nOne of them: smam effects {}", CATALOGUE[0].name);
         return Ok(ExitCode::SUCCESS);
     };
     let found: Vec<&'static EffectSpec> = CATALOGUE.iter().filter(|s| s.name == name).collect();
@@ -54,14 +54,14 @@ pub fn effects(arguments: &EffectsArguments) -> Result<ExitCode, CliError> {
 }
 
 fn show(spec: &EffectSpec) {
-    println!("{}: {}\n  law     {}\n  source  {}\n  numbers", spec.name, spec.title, spec.law, spec.source);
+    say!("{}: {}\n  law     {}\n  source  {}\n  numbers", spec.name, spec.title, spec.law, spec.source);
     for p in spec.parameters {
         let default = p.default.map_or("must be given".to_owned(), |d| format!("default {d:e}"));
-        println!("    {:<30} {:<10} {:e} to {:e}, {default}", p.key, p.symbol, p.range.min, p.range.max);
+        say!("    {:<30} {:<10} {:e} to {:e}, {default}", p.key, p.symbol, p.range.min, p.range.max);
     }
     let channel = if spec.element.name() == "sensor" { "\n  channel = \"angle_deg\"" } else { "" };
     let size = spec.parameters[0];
-    println!(
+    say!(
         "  in a scene\n\n  [[effect]]\n  name = \"{}\"\n  element = \"{}\"{channel}\n  {} = {:e}\n",
         spec.name,
         spec.element.name(),

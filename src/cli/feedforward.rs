@@ -71,9 +71,9 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let worst = expected.iter().zip(&wanted_mm).map(|(y, w)| (y - w).abs()).fold(0.0, f64::max);
     let columns = vec![Channel::new(a.input.clone(), found.input_mm), Channel::new("expected_mm", expected)];
     Recording::new(recording.time_s().to_vec(), columns)?.write_csv(&a.out)?;
-    println!("{}: at most {worst:.3} mm from what is wanted, by the model", a.out.display());
+    say!("{}: at most {worst:.3} mm from what is wanted, by the model", a.out.display());
     if found.clipped_s > 0.0 {
-        println!("  note: held back for {:.2} s by a limit, or where the model turns", found.clipped_s);
+        say!("  note: held back for {:.2} s by a limit, or where the model turns", found.clipped_s);
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -74,7 +74,7 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
         let file = out.join(format!("{}.toml", identification.form.name()));
         write(&file, &scene_table(identification)?)?;
     }
-    println!("page: {}    figures: {}", out.join("identify.html").display(), out.join("identify.json").display());
+    say!("page: {}    figures: {}", out.join("identify.html").display(), out.join("identify.json").display());
     Ok(ExitCode::SUCCESS)
 }
 
@@ -111,7 +111,7 @@ pub fn unseen(found: &Identification, loops: &Loops) -> Option<f64> {
 }
 
 fn say(found: &Identification, loops: &Loops) {
-    println!(
+    say!(
         "{}: F = {:.6} mm² over {} samples, {} evaluations ({:?})",
         found.form.name(),
         found.mean_square_mm2,
@@ -120,13 +120,13 @@ fn say(found: &Identification, loops: &Loops) {
         found.method
     );
     if let Some(f) = unseen(found, loops) {
-        println!("  F of the runs held out: {f:.6} mm²");
+        say!("  F of the runs held out: {f:.6} mm²");
     }
     for p in &found.parameters {
         let interval = p.half_width.map_or_else(|| "fixed".to_owned(), |h| format!("± {h:.2e}"));
-        println!("  {:<12} {:>12.6}  {interval}", p.spec.name, p.value);
+        say!("  {:<12} {:>12.6}  {interval}", p.spec.name, p.value);
     }
-    found.warnings.iter().for_each(|w| println!("  note: {w}"));
+    found.warnings.iter().for_each(|w| say!("  note: {w}"));
 }
 
 fn answer(found: &Identification, loops: &Loops) -> Value {

@@ -1,5 +1,11 @@
 //! Commands of `smam`. Everything they do is library code; here are only words, files and progress.
 
+/// Prints a line on the standard output. What was asked for is done even if nobody reads (`| head`); a line that cannot be
+/// written for another reason makes the command fail at its end. `println!` would panic.
+macro_rules! say {
+    ($($words:tt)*) => { $crate::cli::print_line(format_args!($($words)*)) };
+}
+
 mod ceiling;
 mod check;
 mod compare;
@@ -28,6 +34,7 @@ mod sweep_panels;
 mod trial;
 
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 
@@ -84,9 +91,17 @@ enum Command {
 
 /// Parses the arguments and runs the command.
 pub fn run() -> Result<ExitCode, CliError> {
+    let code = run_command()?;
+    if UNPRINTED.load(Ordering::Relaxed) {
+        return Err(CliError::Failed("standard output: cannot be written".to_owned()));
+    }
+    Ok(code)
+}
+
+fn run_command() -> Result<ExitCode, CliError> {
     match Arguments::parse().command {
         None => {
-            println!("{}", first_words());
+            say!("{}", first_words());
             Ok(ExitCode::SUCCESS)
         }
         Some(Command::Run(arguments)) => run::run(&arguments),
@@ -104,6 +119,17 @@ pub fn run() -> Result<ExitCode, CliError> {
         Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
         Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
+    }
+}
+
+/// Whether a line could not be printed, for another reason than a reader that has seen enough.
+static UNPRINTED: AtomicBool = AtomicBool::new(false);
+
+/// See `say!`.
+fn print_line(words: std::fmt::Arguments<'_>) {
+    use std::io::Write;
+    if writeln!(std::io::stdout(), "{words}").is_err_and(|e| e.kind() != std::io::ErrorKind::BrokenPipe) {
+        UNPRINTED.store(true, Ordering::Relaxed);
     }
 }
 

@@ -46,7 +46,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, CliError> {
         .map_err(|source| CliError::Write { file: arguments.out.join("reproduce.json"), source: source.into() })?;
     write(&arguments.out.join("reproduce.json"), &text)?;
     write(&arguments.out.join("reproduce.html"), &page(&made))?;
-    println!("{}", arguments.out.join("reproduce.html").display());
+    say!("{}", arguments.out.join("reproduce.html").display());
     Ok(ExitCode::SUCCESS)
 }
 
@@ -66,13 +66,13 @@ fn wanted(names: &[String]) -> Result<Vec<&'static Figure>, CliError> {
 fn print(made: &[Made]) {
     let count = |standing| made.iter().flat_map(|(_, c)| &c.rows).filter(|r| r.standing == standing).count();
     for (figure, chapter) in made {
-        println!("{}: {}", figure.name, figure.title);
+        say!("{}: {}", figure.name, figure.title);
         for row in &chapter.rows {
             let cells = cells(figure, row);
-            println!("  {:<8} {:<62} paper {:>14}  ours {:>14}  {}", cells[5], cells[1], cells[2], cells[3], cells[6]);
+            say!("  {:<8} {:<62} paper {:>14}  ours {:>14}  {}", cells[5], cells[1], cells[2], cells[3], cells[6]);
         }
     }
-    println!(
+    say!(
         "{} met, {} not met, {} given, {} shown",
         count(Standing::Met),
         count(Standing::NotMet),

@@ -228,12 +228,12 @@ fn say_what_to_open(arguments: &RunArguments, name: &str) {
 }
 
 fn print_energy(book: &smam::system::EnergyBook) {
-    println!("energy book, mJ:");
+    say!("energy book, mJ:");
     for (name, joule) in book.lines() {
-        println!("  {name:<28} {:>14.6}", joule * 1e3);
+        say!("  {name:<28} {:>14.6}", joule * 1e3);
     }
     let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
-    println!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
+    say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
 }
 
 /// A server goes on until it is interrupted.
@@ -250,17 +250,17 @@ fn check(arguments: &RunArguments, simulation: &Simulation, recording: &Recordin
     let scene = simulation.scene();
     let verdicts = judge(scene, recording)?;
     if verdicts.is_empty() {
-        println!("{}: no [[expect]] in this scene", scene.file.name);
+        say!("{}: no [[expect]] in this scene", scene.file.name);
     }
     for verdict in &verdicts {
-        println!("{}", line(verdict));
+        say!("{}", line(verdict));
     }
     if let Some(path) = &arguments.junit {
         let text = junit::report(&scene.file.name, &verdicts);
         write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?;
     }
     let failed = verdicts.iter().filter(|v| !v.passed).count();
-    println!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);
+    say!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 

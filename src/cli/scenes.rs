@@ -10,8 +10,8 @@ use super::CliError;
 pub fn scenes() -> Result<ExitCode, CliError> {
     for name in STOCK_SCENES {
         let scene = Scene::load(name, &[])?;
-        println!("{name:<24} {}", scene.file.title);
+        say!("{name:<24} {}", scene.file.title);
     }
-    println!("\nRun one: smam run {}", STOCK_SCENES[0]);
+    say!("\nRun one: smam run {}", STOCK_SCENES[0]);
     Ok(ExitCode::SUCCESS)
 }

@@ -64,7 +64,7 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     write(&arguments.out.join("trial.md"), &table(&rows))?;
     let wrong = rows.iter().filter(|r| r.judgement == Judgement::Wrong).count();
     let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
-    println!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());
+    say!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());
     Ok(ExitCode::SUCCESS)
 }
 

@@ -11,6 +11,11 @@ pub enum HysteresisError {
     Count { model: &'static str, given: usize, expected: usize },
 }
 
+/// Refuses a quantity that is not finite.
+pub(super) fn finite(model: &'static str, quantity: &'static str, value: f64) -> Result<(), HysteresisError> {
+    held(value.is_finite(), model, quantity, value, "finite")
+}
+
 /// Refuses a quantity that is not finite and above zero.
 pub(super) fn positive(model: &'static str, quantity: &'static str, value: f64) -> Result<(), HysteresisError> {
     held(value.is_finite() && value > 0.0, model, quantity, value, "> 0")

@@ -1,6 +1,6 @@
 //! Every displacement-form model behind one door, as scenes and identifications name them.
 
-use super::error::HysteresisError;
+use super::error::{HysteresisError, finite};
 use super::{
     AsymmetricBoucWen, DisplacementModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii, SlipElement,
     SymmetricBoucWen,
@@ -135,6 +135,7 @@ impl<D: Scalar> HysteresisModel<D> {
 
     /// Whether the parameters keep the state bounded.
     pub fn check(&self) -> Result<(), HysteresisError> {
+        self.parameters().iter().try_for_each(|p| finite("displacement model", "each parameter", p.value()))?;
         match self {
             Self::Symmetric(model) => model.check(),
             Self::Asymmetric(model) => model.check(),

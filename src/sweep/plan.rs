@@ -11,7 +11,7 @@ use super::expression::Measure;
 use super::nsga2::Evolution;
 use super::point::Row;
 use super::sampling::Place;
-use super::spec::{SamplingSpec, SweepFile, VarySpec};
+use super::spec::{LimitSpec, SamplingSpec, SweepFile, VarySpec};
 use super::vocabulary::Vocabulary;
 use crate::recording::did_you_mean;
 use crate::scene::{OutputSpec, Override, Scene, SceneError, calibration_key};
@@ -43,6 +43,8 @@ impl Plan {
     pub fn new(file: SweepFile) -> Result<Self, SweepError> {
         let set: Vec<Override> = file.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
         let base = with_outputs(Scene::load(&file.scene, &set)?, &file.output)?;
+        check_duration(&file, &set)?;
+        check_names(&file)?;
         check_keys(&file, &base)?;
         let known = Vocabulary::of(&base);
         if file.measure.is_empty() {
@@ -158,6 +160,47 @@ fn outputs(file: &SweepFile, measures: &[Measure]) -> Vec<OutputSpec> {
 }
 
 /// Whether objectives and limits name measures, and an optimisation has somewhere to go.
+/// The scene's own check of its duration, on that of the sweep.
+fn check_duration(file: &SweepFile, set: &[Override]) -> Result<(), SweepError> {
+    let Some(duration_s) = file.duration_s else { return Ok(()) };
+    let longer = Override::number("simulation.duration_s", duration_s);
+    Scene::load(&file.scene, &[set, &[longer]].concat())?;
+    Ok(())
+}
+
+/// The sweep's name becomes a folder's; keys and measures become columns, each of its own.
+fn check_names(file: &SweepFile) -> Result<(), SweepError> {
+    let is_plain = |c: char| c.is_alphanumeric() || ['-', '_', '.'].contains(&c);
+    if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(is_plain) {
+        return Err(SweepError::Syntax {
+            file: PathBuf::from(&file.scene),
+            message: format!(
+                "name = \"{}\" of the sweep must be letters, digits, - _ . and not begin with a dot",
+                file.name
+            ),
+        });
+    }
+    for (i, vary) in file.vary.iter().enumerate() {
+        if file.vary[..i].iter().any(|v| v.key == vary.key) {
+            let remedy = "vary each key once".to_owned();
+            return Err(SweepError::Vary { key: vary.key.clone(), message: "it stands twice".to_owned(), remedy });
+        }
+    }
+    for (i, measure) in file.measure.iter().enumerate() {
+        let is_taken = ["index", "error"].contains(&measure.name.as_str())
+            || file.measure[..i].iter().any(|m| m.name == measure.name)
+            || file.vary.iter().any(|v| v.key == measure.name);
+        if is_taken {
+            return Err(SweepError::Measure {
+                measure: measure.name.clone(),
+                message: "another column has this name".to_owned(),
+                remedy: "give it a name of its own".to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
 fn check_goals(file: &SweepFile) -> Result<(), SweepError> {
     let names: Vec<&str> = file.measure.iter().map(|m| m.name.as_str()).collect();
     let refuse = |table: &str, measure: &str, message: String, remedy: String| {
@@ -172,6 +215,14 @@ fn check_goals(file: &SweepFile) -> Result<(), SweepError> {
     }
     if let Some(limit) = file.limit.iter().find(|l| l.min.is_none() && l.max.is_none()) {
         return refuse("limit", &limit.measure, "it has no bound".to_owned(), "give min, max or both".to_owned());
+    }
+    let is_empty = |l: &&LimitSpec| {
+        let (min, max) = (l.min.unwrap_or(f64::NEG_INFINITY), l.max.unwrap_or(f64::INFINITY));
+        min.is_nan() || max.is_nan() || min > max
+    };
+    if let Some(limit) = file.limit.iter().find(is_empty) {
+        let message = "no value lies between its bounds".to_owned();
+        return refuse("limit", &limit.measure, message, "give min below max".to_owned());
     }
     if matches!(file.sampling, SamplingSpec::Nsga2 { .. }) && file.objective.is_empty() {
         let remedy = "add [[objective]] with measure and goal = \"maximise\" or \"minimise\"".to_owned();
@@ -263,6 +314,25 @@ mod tests {
             "format = 1\nname = \"t\"\nscene = \"muscle_bench\"\n[[vary]]\nkey = \"{key}\"\nfrom = {from:?}\nto = {to:?}\ncount = 3\n[[measure]]\nname = \"m\"\nof = \"{of}\"\n"
         ))
         .expect("a sweep")
+    }
+
+    #[test]
+    fn names_durations_and_limits_that_cannot_be_are_refused() {
+        let good = || file("muscles.friction.m0_n", 0.1, 0.2, "range(elongation_mm)");
+        let refused = |change: &dyn Fn(&mut SweepFile)| {
+            let mut file = good();
+            change(&mut file);
+            Plan::new(file).err().map_or_else(String::new, |e| e.to_string())
+        };
+        assert!(refused(&|f| f.name = "../evil".to_owned()).contains("../evil"));
+        assert!(refused(&|f| f.vary.push(f.vary[0].clone())).contains("stands twice"));
+        assert!(refused(&|f| f.measure.push(f.measure[0].clone())).contains("another column"));
+        assert!(refused(&|f| f.duration_s = Some(f64::INFINITY)).contains("duration_s"));
+        assert!(refused(&|f| f.duration_s = Some(1e12)).contains("samples"));
+        let limit = |min, max| LimitSpec { measure: "m".to_owned(), min, max, label: String::new() };
+        assert!(refused(&|f| f.limit.push(limit(Some(5.0), Some(1.0)))).contains("no value"));
+        assert!(refused(&|f| f.limit.push(limit(Some(f64::NAN), None))).contains("no value"));
+        assert_eq!(refused(&|f| f.limit.push(limit(Some(1.0), Some(5.0)))), "");
     }
 
     #[test]

@@ -122,7 +122,7 @@ pub fn identify(runs: &[LoopRun], form: Form, options: &SearchOptions) -> Result
         noise_mm: runs.iter().filter_map(|r| noise_sd(&r.time_s, &r.output_mm)).reduce(f64::min),
         warnings: Vec::new(),
     };
-    let warnings = warnings::warnings(&identification, &scale);
+    let warnings = warnings::warnings(&identification, &scale, runs);
     Ok(Identification { warnings, ..identification })
 }
 

@@ -1,7 +1,8 @@
 //! What one must know before believing the numbers.
 
 use super::Identification;
-use super::data::LoopScale;
+use super::data::{LoopRun, LoopScale};
+use statrs::statistics::Statistics;
 
 /// Two parameters this much alike move together.
 const ALIKE: f64 = 0.95;
@@ -10,8 +11,15 @@ const ILL: f64 = 1e6;
 /// Residuals this much above the output's own noise are misfit.
 const MISFIT: f64 = 1.3;
 
-pub(super) fn warnings(found: &Identification, scale: &LoopScale) -> Vec<String> {
+/// What a fit may leave of the output's variance before it explains next to nothing.
+const HOPELESS: f64 = 0.2;
+/// How far the first sample may lie from the model, as a share of the output's range.
+const AWAY: f64 = 0.2;
+
+pub(super) fn warnings(found: &Identification, scale: &LoopScale, runs: &[LoopRun]) -> Vec<String> {
     let mut said = Vec::new();
+    said.extend(hopeless(found, runs));
+    said.extend(runs.iter().filter_map(|run| away(found, run)));
     said.extend(fixed(found));
     said.extend(alike(found));
     if found.certainty.condition > ILL {
@@ -30,6 +38,34 @@ pub(super) fn warnings(found: &Identification, scale: &LoopScale) -> Vec<String>
         said.push(format!("not every closed loop of this model is sure to take energy: {reason}"));
     }
     said
+}
+
+/// A fit that is hardly better than a constant.
+fn hopeless(found: &Identification, runs: &[LoopRun]) -> Option<String> {
+    let outputs: Vec<f64> = runs.iter().flat_map(|r| &r.output_mm).copied().filter(|y| y.is_finite()).collect();
+    let share = found.mean_square_mm2 / outputs.iter().population_variance();
+    (share > HOPELESS).then(|| {
+        format!(
+            "the fit leaves {:.0} % of the output's variance: it explains next to nothing; look whether the columns belong \
+             together, and where the output counts from",
+            100.0 * share
+        )
+    })
+}
+
+/// An output that does not begin where the model at rest does.
+fn away(found: &Identification, run: &LoopRun) -> Option<String> {
+    let first = run.output_mm.iter().position(|y| y.is_finite())?;
+    let finite = || run.output_mm.iter().copied().filter(|y| y.is_finite());
+    let range = finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min);
+    let expected = found.model.follow(&run.time_s[..=first], &run.input_mm[..=first])[first];
+    ((run.output_mm[first] - expected).abs() > AWAY * range).then(|| {
+        format!(
+            "{}: the output begins at {:.2} mm with the input at {:.2} mm, the model there has {expected:.2} mm: a model \
+             starts at rest; count input and output from the muscle at rest, or skip the beginning",
+            run.name, run.output_mm[first], run.input_mm[first]
+        )
+    })
 }
 
 fn fixed(found: &Identification) -> impl Iterator<Item = String> {
