@@ -83,26 +83,14 @@ fn rig() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A truth of each model at the size of the paper's muscle, its redundant scale at 1; that of the paper as printed.
-fn truths() -> [(Form, Vec<f64>); 7] {
-    [
-        (Form::Symmetric, vec![9.0, -4.0, 1.0, 1.6, 0.5, 1.2]),
-        (Form::Asymmetric, vec![9.0, -4.0, 1.0, 1.2, 1.8, 0.3, -0.2, 0.0, 0.0, 0.4]),
-        (Form::Paper, vec![-0.082, 9.886, -5.393, 1.0, 1.035, 2.263, -0.1436]),
-        (Form::PrandtlIshlinskii, vec![5.0, -0.1, 0.04, 0.0, 1.0, 1.2, 0.8, 1.0]),
-        (Form::PrandtlIshlinskiiRate, vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0]),
-        (Form::MaxwellSlip, vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8]),
-        (Form::MaxwellSlipGrowing, vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5]),
-    ]
-}
-
 fn recovery(trials: u64) -> Result<(), Box<dyn Error>> {
     // Strokes of changing depth: inner loops, without which several of these parameters are not told apart.
     let programme: Programme = |t| 1.5 - 1.1 * (TAU * 0.1 * t).cos() - 0.4 * (TAU * 0.3 * t).cos();
     let time_s = Schedule::even(30.0, 0.01).0;
     let input_mm: Vec<f64> = time_s.iter().map(|&t| programme(t)).collect();
     println!("truth inside its 95 % interval, of {trials} trials");
-    for (form, truth) in truths() {
+    for form in Form::ALL {
+        let truth = form.typical();
         let model: HysteresisModel<f64> =
             form.blank(&LoopScale { input_mm: [0.0, 3.0], slope: 9.0 }).with_parameters(&truth)?;
         let clean = model.follow(&time_s, &input_mm);

@@ -25,6 +25,9 @@ pub struct ReproduceArguments {
 /// Makes the figures in parallel and writes one page; the table is printed too.
 pub fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, CliError> {
     let wanted = wanted(&arguments.figures)?;
+    // A folder that cannot be made is better said before the work than after it.
+    std::fs::create_dir_all(&arguments.out)
+        .map_err(|source| CliError::Write { file: arguments.out.clone(), source })?;
     let progress = ProgressBar::new(wanted.len() as u64);
     progress.set_style(
         ProgressStyle::with_template("{bar:30} {pos}/{len} figures {msg}")

@@ -198,7 +198,6 @@ mod tests {
                 let found = mean_squares(&form, &sets, &path, &measured);
                 for (set, found) in sets.iter().zip(&found) {
                     let exact = one_at_a_time(form, set, &path, &measured);
-                    println!("{:.1e}", found / exact - 1.0);
                     assert!((found / exact - 1.0).abs() < 1e-4, "{form:?}: {found} for {exact}");
                 }
             }

@@ -132,6 +132,15 @@ impl Recording {
             .ok_or_else(|| RecordingError::AllMissing { column: column.to_owned() })
     }
 
+    /// A column at a time, in its own unit: straight between samples, NaN where it has none.
+    ///
+    /// # Errors
+    /// No such column.
+    pub fn value_at(&self, column: &str, at_s: f64) -> Result<f64, RecordingError> {
+        let values = &self.channel(column)?.values;
+        Ok(PiecewiseLinear::new(&self.time_s, values).map_or(f64::NAN, |line| line.value(at_s)))
+    }
+
     fn check_length(&self, channel: &Channel) -> Result<(), RecordingError> {
         if channel.values.len() == self.time_s.len() {
             return Ok(());

@@ -27,9 +27,45 @@ pub fn rms(values: &[f64]) -> f64 {
     values.quadratic_mean()
 }
 
+/// A line over points, and how much of their scatter it explains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Units of y over units of x.
+    pub slope: f64,
+    /// Its value at x = 0.
+    pub offset: f64,
+    pub r_squared: f64,
+}
+
+/// The least-squares line of `y` over `x`, over as many points as both have.
+pub fn line_of_best_fit(x: &[f64], y: &[f64]) -> Line {
+    let n = x.len().min(y.len());
+    let (x, y) = (&x[..n], &y[..n]);
+    let (mx, my) = (mean(x), mean(y));
+    let product =
+        |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
+    let (xx, xy, yy) = (product(x, mx, x, mx), product(x, mx, y, my), product(y, my, y, my));
+    Line { slope: xy / xx, offset: my - xy / xx * mx, r_squared: xy * xy / (xx * yy) }
+}
+
+/// Area enclosed by a path that is closed by a straight line (trapezoids); its sign is that of the turning.
+pub fn enclosed(x: &[f64], y: &[f64]) -> f64 {
+    let pairs: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
+    let next = pairs.iter().cycle().skip(1);
+    pairs.iter().zip(next).map(|(a, b)| 0.5 * (b.0 - a.0) * (a.1 + b.1)).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_is_found_and_a_square_enclosed() {
+        let found = line_of_best_fit(&[1.0, 2.0, 4.0], &[3.0, 5.0, 9.0]);
+        assert!((found.slope - 2.0).abs() < 1e-12 && (found.offset - 1.0).abs() < 1e-12);
+        assert!((found.r_squared - 1.0).abs() < 1e-12);
+        assert_eq!(enclosed(&[0.0, 0.0, 1.0, 1.0], &[0.0, 1.0, 1.0, 0.0]).abs(), 1.0);
+    }
 
     #[test]
     fn figures_of_two_samples_of_none_and_of_a_missing_one() {

@@ -1,9 +1,10 @@
 //! The bending catheter with its forceps (Fig. 10).
 
-use crate::recording::{PiecewiseLinear, Recording};
+use crate::recording::Recording;
+use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series};
 
-use super::loops::{reach, rms_apart};
+use super::loops::rms_apart;
 use super::rig::{effect, pre_elongation_percent, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -30,7 +31,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         ),
     ];
     for (angle_deg, at_s) in HELD {
-        let ours = value_at(&bends, "bend_deg", at_s)?;
+        let ours = bends.value_at("bend_deg", at_s)?;
         rows.push(Row::compared(
             format!("bends to {angle_deg:.0} degrees"),
             "deg",
@@ -40,7 +41,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
             "plunger programme sought for it; tolerance 2 deg",
         ));
     }
-    let (closed, open) = (value_at(&bends, "jaw_deg", 10.5)?, value_at(&bends, "jaw_deg", 12.9)?);
+    let (closed, open) = (bends.value_at("jaw_deg", 10.5)?, bends.value_at("jaw_deg", 12.9)?);
     rows.push(Row::judged("forceps closed at 90 degrees", "deg", None, closed, closed.abs() < 1.0, "0 is closed"));
     rows.push(Row::judged(
         "forceps open again",
@@ -51,7 +52,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         "40 at rest; the muscle's hysteresis keeps a part",
     ));
     let effect_deg = rms_apart(&bends.channel("bend_deg")?.values, &coupled.channel("bend_deg")?.values);
-    let bend = reach(&bends.channel("bend_deg")?.values);
+    let bend = figures::range(&bends.channel("bend_deg")?.values);
     rows.push(Row::shown(
         "forceps' tension on the bending",
         "%",
@@ -63,10 +64,6 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     Ok(Chapter { text: vec![], panels: panels(&bends, &coupled, ball)?, rows })
 }
 
-fn value_at(run: &Recording, column: &str, at_s: f64) -> Result<f64, ReproduceError> {
-    Ok(PiecewiseLinear::new(run.time_s(), &run.channel(column)?.values).map_or(f64::NAN, |p| p.value(at_s)))
-}
-
 /// The ball's way: gripped, carried, let go.
 fn gripped(run: &Recording) -> Result<(Vec<Row>, Panel), ReproduceError> {
     let height = run.channel("ball_y_mm")?;
@@ -74,7 +71,7 @@ fn gripped(run: &Recording) -> Result<(Vec<Row>, Panel), ReproduceError> {
         let y = run.channel(column)?.values.clone();
         Ok(Series { label: column.to_owned(), colour, x: run.time_s().to_vec(), y })
     };
-    let carried = reach(&run.channel("ball_z_mm")?.values);
+    let carried = figures::range(&run.channel("ball_z_mm")?.values);
     let rows = vec![
         Row::judged(
             "grip, move, release: the ball is carried",

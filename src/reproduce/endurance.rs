@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use crate::effects::EffectTable;
+use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
 
 use super::error::lacking;
-use super::loops::{bounds, reach};
 use super::rig::{Fast, effect, sine, stock};
 use super::search::size_for;
 use super::{Chapter, ReproduceError, Row};
@@ -80,7 +80,7 @@ impl Endurance {
     fn new() -> Result<Self, ReproduceError> {
         let reached = |stroke_m: f64| -> Result<f64, ReproduceError> {
             let fast = stock("muscle_bench").driven("plunger_mm", sine(FIGURE, stroke_m, 0.1)?).lasting(30.0).fast()?;
-            Ok(bounds(&fast.channel("elongation_mm", &[], &[])?).1)
+            Ok(figures::greatest(&fast.channel("elongation_mm", &[], &[])?))
         };
         let stroke_m = size_for(ELONGATION_MM, (2e-3, 8e-3), reached)?;
         let stroke_m = stroke_m.ok_or_else(|| lacking(FIGURE, "no stroke elongates the muscle by 80 %"))?;
@@ -95,7 +95,7 @@ impl Endurance {
     fn peaks(&self, effects: &[EffectTable]) -> Result<Vec<f64>, ReproduceError> {
         let y = self.fast.channel("elongation_mm", &[], effects)?;
         let per_cycle = (PERIOD_S / 0.1).round() as usize;
-        Ok(y.chunks(per_cycle).filter(|c| c.len() == per_cycle).skip(1).map(|c| bounds(c).1).collect())
+        Ok(y.chunks(per_cycle).filter(|c| c.len() == per_cycle).skip(1).map(figures::greatest).collect())
     }
 
     /// Change of the peak from the second cycle to the last, %.
@@ -121,7 +121,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     let found: Result<Vec<_>, ReproduceError> = SUSPECTS.par_iter().map(|s| suspected(s, &endurance)).collect();
     for (suspect, (row, peaks)) in SUSPECTS.iter().zip(found?) {
         rows.push(row);
-        if reach(&peaks) > 0.01 {
+        if figures::range(&peaks) > 0.01 {
             series.push(peaks_line(suspect.name, suspect.colour, &peaks));
         }
     }

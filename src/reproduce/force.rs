@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use crate::identify::loops::Form;
 use crate::recording::Recording;
+use crate::recording::figures::{self, Line};
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series};
 
 use super::error::lacking;
 use super::identified::{fitted, recorded};
-use super::loops::{Loop, bounds, straight_line};
+use super::loops::Loop;
 use super::rig::{Play, program, sine, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -39,7 +40,7 @@ pub fn greatest() -> Result<Chapter, ReproduceError> {
         })
         .collect();
     let forces = forces?;
-    let (slope, offset, r_squared) = straight_line(&HELD_MM, &forces);
+    let Line { slope, offset, r_squared } = figures::line_of_best_fit(&HELD_MM, &forces);
     let fitted: Vec<f64> = HELD_MM.iter().map(|e| offset + slope * e).collect();
     let line =
         |label: &str, colour, y: &[f64]| Series { label: label.to_owned(), colour, x: HELD_MM.to_vec(), y: y.to_vec() };
@@ -97,7 +98,7 @@ pub fn held() -> Result<Chapter, ReproduceError> {
         let withdrawn: Vec<f64> = run.channel("plunger_mm")?.values.iter().map(|x| -x).collect();
         let force = run.channel("force_n")?.values.clone();
         let cycle = Loop::last(run.time_s(), &withdrawn, &force, 10.0);
-        let (width, greatest) = (cycle.width().0.abs(), bounds(&force).1);
+        let (width, greatest) = (cycle.width().0.abs(), figures::greatest(&force));
         chapter.rows.push(Row::given(
             format!("length {length_mm} mm: tension at the start"),
             "N",
@@ -143,7 +144,7 @@ fn fig_7(cycle: &Series) -> Result<(Panel, Row), ReproduceError> {
         ..Panel::default()
     };
     let rms_n = model.mean_square_mm2.sqrt();
-    let met = rms_n < 0.02 * bounds(&cycle.y).1;
+    let met = rms_n < 0.02 * figures::greatest(&cycle.y);
     let remark = "RMS; paper: fitted well, no number printed; met below 2 % of the greatest force";
     Ok((panel, Row::judged("paper's form on the force at 75 mm", "N", None, rms_n, met, remark)))
 }

@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 
 use crate::effects::EffectTable;
+use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
 
-use super::loops::{Loop, reach};
+use super::loops::Loop;
 use super::rig::{Fast, Play, effect, sine, stock};
 use super::search::size_for;
 use super::{Chapter, ReproduceError, Row};
@@ -58,7 +59,7 @@ impl Ends {
         let range = |fast: &Fast, hz: f64| -> Result<f64, ReproduceError> {
             let y = fast.channel("elongation_mm", &[], effects)?;
             let from = fast.times_s().partition_point(|t| *t < fast.times_s()[y.len() - 1] - 1.0 / hz - 1e-9);
-            Ok(reach(&y[from..]))
+            Ok(figures::range(&y[from..]))
         };
         Ok(decibel(range(&self.quick, 3.0)?, range(&self.slow, 0.1)?))
     }

@@ -5,10 +5,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::identify::loops::{Form, Identification, LoopRun, SearchOptions, identify};
+use crate::recording::figures;
 
 use super::ReproduceError;
 use super::error::lacking;
-use super::loops::reach;
 
 /// Noise of a recording over its range.
 pub const NOISE_SHARE: f64 = 1e-3;
@@ -16,7 +16,7 @@ pub const NOISE_SHARE: f64 = 1e-3;
 /// A run as it would be recorded: the output with white noise, seeded.
 pub fn recorded(name: &str, time_s: &[f64], input_mm: &[f64], output_mm: &[f64], seed: u64) -> LoopRun {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let sd = NOISE_SHARE * reach(output_mm);
+    let sd = NOISE_SHARE * figures::range(output_mm);
     let mut noise = || -> f64 { StandardNormal.sample(&mut rng) };
     LoopRun {
         name: name.to_owned(),

@@ -1,9 +1,9 @@
 //! Loads lifted: 50 g by 0.28 g (Fig. 1c), 4.72 kg by the 6.35 mm muscle (Fig. 1d).
 
 use crate::recording::Recording;
+use crate::recording::figures;
 use crate::report::{BLUE, ORANGE, Panel, Series};
 
-use super::loops::bounds;
 use super::rig::{Play, sine, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -21,7 +21,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     let (small, large) = (stock("muscle_lift").run()?, large()?.run()?);
     let height = |run: &Recording| -> Result<f64, ReproduceError> {
         let values = &run.channel("elongation_mm")?.values;
-        Ok(values[0] - bounds(values).0)
+        Ok(values[0] - figures::least(values))
     };
     let (small_mm, large_mm) = (height(&small)?, height(&large)?);
     let rows = vec![
@@ -46,7 +46,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         Row::shown(
             "greatest pressure, large muscle",
             "MPa",
-            bounds(&large.channel("pressure_kpa")?.values).1 * 1e-3,
+            figures::greatest(&large.channel("pressure_kpa")?.values) * 1e-3,
             "no pressure is printed",
         ),
     ];

@@ -1,5 +1,7 @@
 //! Figures of a loop: its last period, range, width, and how far two loops lie apart.
 
+use crate::recording::figures;
+
 /// A closed loop: one period of an input and an output.
 #[derive(Clone, Debug)]
 pub struct Loop {
@@ -20,7 +22,7 @@ impl Loop {
 
     /// Greatest less least output.
     pub fn range(&self) -> f64 {
-        reach(&self.y)
+        figures::range(&self.y)
     }
 
     /// The output counted from where the input is least.
@@ -33,7 +35,7 @@ impl Loop {
     /// Greatest distance of the two ways, positive where the way back lies above, and the input there.
     pub fn width(&self) -> (f64, f64) {
         let (there, back) = self.ways();
-        let (low, high) = bounds(&self.x);
+        let (low, high) = (figures::least(&self.x), figures::greatest(&self.x));
         let grid = (1..200).map(|i| low + (high - low) * f64::from(i) / 200.0);
         let widths = grid.map(|x| (at(&back, x) - at(&there, x), x)).filter(|w| w.0.is_finite());
         widths.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).unwrap_or((f64::NAN, f64::NAN))
@@ -41,8 +43,7 @@ impl Loop {
 
     /// Area enclosed, in units of the output times those of the input.
     pub fn area(&self) -> f64 {
-        let n = self.x.len();
-        (0..n).map(|i| 0.5 * (self.x[(i + 1) % n] - self.x[i]) * (self.y[(i + 1) % n] + self.y[i])).sum::<f64>().abs()
+        figures::enclosed(&self.x, &self.y).abs()
     }
 
     /// The way up from the least input to the greatest, and the way back, both by rising input.
@@ -68,17 +69,6 @@ fn at(way: &[(f64, f64)], x: f64) -> f64 {
     if b.0 > a.0 { a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) } else { a.1 }
 }
 
-/// Least and greatest.
-pub fn bounds(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
-}
-
-/// Greatest less least.
-pub fn reach(values: &[f64]) -> f64 {
-    let (low, high) = bounds(values);
-    high - low
-}
-
 /// Root of the mean square of a difference.
 pub fn rms_apart(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len()) as f64;
@@ -89,16 +79,6 @@ pub fn rms_apart(a: &[f64], b: &[f64]) -> f64 {
 pub fn mean_speed(time_s: &[f64], y: &[f64]) -> f64 {
     let way: f64 = y.windows(2).map(|w| (w[1] - w[0]).abs()).sum();
     way / (time_s[time_s.len() - 1] - time_s[0])
-}
-
-/// Slope, offset and R² of the least-squares line.
-pub fn straight_line(x: &[f64], y: &[f64]) -> (f64, f64, f64) {
-    let n = x.len() as f64;
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
-    let (mx, my) = (mean(x), mean(y));
-    let about = |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
-    let (xx, xy, yy) = (about(x, mx, x, mx), about(x, mx, y, my), about(y, my, y, my));
-    (xy / xx, my - xy / xx * mx, xy * xy / (xx * yy))
 }
 
 #[cfg(test)]

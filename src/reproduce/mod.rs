@@ -37,28 +37,24 @@ pub struct Figure {
     pub make: fn() -> Result<Chapter, ReproduceError>,
 }
 
+const fn figure(name: &'static str, title: &'static str, make: fn() -> Result<Chapter, ReproduceError>) -> Figure {
+    Figure { name, title, make }
+}
+
 /// Every figure and table of the paper, in its order.
 pub const FIGURES: &[Figure] = &[
-    Figure { name: "1", title: "sizes, and elongation to 245 %", make: sizes::chapter },
-    Figure { name: "lift", title: "loads lifted (Fig. 1c, d)", make: lifting::chapter },
-    Figure { name: "3", title: "three programmes of the plunger", make: programmes::chapter },
-    Figure { name: "4a", title: "frequency response to 3 Hz", make: frequency::response },
-    Figure { name: "4b", title: "greatest force over elongation", make: force::greatest },
-    Figure { name: "4cd", title: "routing of the line, and a tendon in a sheath", make: routing::chapter },
-    Figure { name: "4e", title: "the loop from 0.2 to 1.5 Hz", make: frequency::loops },
-    Figure { name: "4f", title: "2000 s at 80 % and 0.1 Hz", make: endurance::chapter },
-    Figure {
-        name: "4g",
-        title: "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)",
-        make: force::held,
-    },
-    Figure { name: "printed", title: "first principles against the printed model", make: printed::chapter },
-    Figure { name: "5", title: "three models on one loop, and on others (Figs. 5, 6)", make: models::chapter },
-    Figure { name: "8", title: "the pulley's positions", make: pulley::chapter },
-    Figure { name: "10", title: "the catheter bends, grips, moves, releases", make: catheter::chapter },
-    Figure {
-        name: "feedforward",
-        title: "tracking with the model inverted (announced in section VII)",
-        make: tracking::chapter,
-    },
+    figure("1", "sizes, and elongation to 245 %", sizes::chapter),
+    figure("lift", "loads lifted (Fig. 1c, d)", lifting::chapter),
+    figure("3", "three programmes of the plunger", programmes::chapter),
+    figure("4a", "frequency response to 3 Hz", frequency::response),
+    figure("4b", "greatest force over elongation", force::greatest),
+    figure("4cd", "routing of the line, and a tendon in a sheath", routing::chapter),
+    figure("4e", "the loop from 0.2 to 1.5 Hz", frequency::loops),
+    figure("4f", "2000 s at 80 % and 0.1 Hz", endurance::chapter),
+    figure("4g", "force over the plunger at 65, 75 and 85 mm, and its model (Fig. 7)", force::held),
+    figure("printed", "first principles against the printed model", printed::chapter),
+    figure("5", "three models on one loop, and on others (Figs. 5, 6)", models::chapter),
+    figure("8", "the pulley's positions", pulley::chapter),
+    figure("10", "the catheter bends, grips, moves, releases", catheter::chapter),
+    figure("feedforward", "tracking with the model inverted (announced in section VII)", tracking::chapter),
 ];

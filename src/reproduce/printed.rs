@@ -19,6 +19,11 @@ const fn calibrated(name: &'static str, key: &'static str, stock: f64) -> Knob {
     Knob { name, lever: Lever::Number(key), start: stock, range: Bounds { min: 0.6 * stock, max: 1.4 * stock } }
 }
 
+/// A number from nothing up to `max`.
+const fn further(name: &'static str, lever: Lever, start: f64, max: f64) -> Knob {
+    Knob { name, lever, start, range: Bounds { min: 0.0, max } }
+}
+
 const CALIBRATED: [Knob; 5] = [
     calibrated("C1 (Pa)", "muscles.tube.material.c1_pa", 0.255e6),
     calibrated("C_s (m³/Pa)", "hydraulics.upstream_compliance_m3_pa", 8.0e-15),
@@ -29,50 +34,33 @@ const CALIBRATED: [Knob; 5] = [
 
 /// Physics that the stock rig lacks, each by one number.
 const FURTHER: [Knob; 7] = [
-    Knob {
-        name: "bore that grows, b (1/m)",
-        lever: Lever::Number("muscles.tube.area_growth_1_m"),
-        start: 0.5,
-        range: Bounds { min: 0.0, max: 10.0 },
-    },
-    Knob {
-        name: "trapped_air (m³)",
-        lever: Lever::Effect(|v| effect("trapped_air", "line", &[("free_volume_m3", v)])),
-        start: 1e-10,
-        range: Bounds { min: 0.0, max: 2e-8 },
-    },
-    Knob {
-        name: "coil_preload (N)",
-        lever: Lever::Effect(|f| effect("coil_preload", "muscle", &[("preload_n", f)])),
-        start: 0.02,
-        range: Bounds { min: 0.0, max: 1.0 },
-    },
-    Knob {
-        name: "plunger_backlash (m)",
-        lever: Lever::Effect(|b| effect("plunger_backlash", "syringe", &[("width_m", b)])),
-        start: 2e-5,
-        range: Bounds { min: 0.0, max: 3e-4 },
-    },
-    Knob {
-        name: "viscoelasticity, 3 s (N/m)",
-        lever: Lever::Effect(|e| {
-            effect("viscoelasticity", "muscle", &[("stiffness_n_m", e), ("relaxation_time_s", 3.0)])
-        }),
-        start: 2.0,
-        range: Bounds { min: 0.0, max: 60.0 },
-    },
-    Knob {
-        name: "mullins_softening (1)",
-        lever: Lever::Effect(|d| effect("mullins_softening", "muscle", &[("softening_ratio", d)])),
-        start: 0.05,
-        range: Bounds { min: 0.0, max: 0.9 },
-    },
-    Knob {
-        name: "leak (m³/(s Pa))",
-        lever: Lever::Effect(|g| effect("leak", "line", &[("conductance_m3_s_pa", g)])),
-        start: 1e-17,
-        range: Bounds { min: 0.0, max: 5e-15 },
-    },
+    further("bore that grows, b (1/m)", Lever::Number("muscles.tube.area_growth_1_m"), 0.5, 10.0),
+    further(
+        "trapped_air (m³)",
+        Lever::Effect(|v| effect("trapped_air", "line", &[("free_volume_m3", v)])),
+        1e-10,
+        2e-8,
+    ),
+    further("coil_preload (N)", Lever::Effect(|f| effect("coil_preload", "muscle", &[("preload_n", f)])), 0.02, 1.0),
+    further(
+        "plunger_backlash (m)",
+        Lever::Effect(|b| effect("plunger_backlash", "syringe", &[("width_m", b)])),
+        2e-5,
+        3e-4,
+    ),
+    further(
+        "viscoelasticity, 3 s (N/m)",
+        Lever::Effect(|e| effect("viscoelasticity", "muscle", &[("stiffness_n_m", e), ("relaxation_time_s", 3.0)])),
+        2.0,
+        60.0,
+    ),
+    further(
+        "mullins_softening (1)",
+        Lever::Effect(|d| effect("mullins_softening", "muscle", &[("softening_ratio", d)])),
+        0.05,
+        0.9,
+    ),
+    further("leak (m³/(s Pa))", Lever::Effect(|g| effect("leak", "line", &[("conductance_m3_s_pa", g)])), 1e-17, 5e-15),
 ];
 
 /// The output of the printed model along a plunger's path from rest, mm.

@@ -1,9 +1,10 @@
 //! Three programmes of the plunger (Fig. 3), and the printed velocities (section V).
 
+use crate::recording::figures;
 use crate::report::{BLUE, Panel, Series};
 use crate::scene::Program;
 
-use super::loops::{Loop, mean_speed, reach, rms_apart};
+use super::loops::{Loop, mean_speed, rms_apart};
 use super::printed::printed_model;
 use super::rig::{program, sine, stock};
 use super::{Chapter, ReproduceError, Row};
@@ -103,7 +104,7 @@ fn panels(p: &Played) -> Vec<Panel> {
         let zero = y[0];
         Series { label: label.to_owned(), colour, x: x.to_vec(), y: y.iter().map(|y| y - zero).collect() }
     };
-    let range = reach(&p.elongation_mm);
+    let range = figures::range(&p.elongation_mm);
     let panel = |title: String, x_label: &str, x: &[f64]| Panel {
         title: vec![title],
         x_label: x_label.to_owned(),

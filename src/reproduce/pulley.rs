@@ -1,8 +1,8 @@
 //! The antagonistic pulley (Fig. 8).
 
+use crate::recording::figures;
 use crate::report::{BLUE, ORANGE, Panel, Series};
 
-use super::loops::bounds;
 use super::rig::{pre_elongation_percent, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -12,7 +12,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     let values = |column: &str| run.channel(column).map(|c| c.values.clone());
     let angle = values("angle_deg")?;
     let (first, second) = (values("plunger_1_mm")?, values("plunger_2_mm")?);
-    let (least, greatest) = bounds(&angle);
+    let (least, greatest) = (figures::least(&angle), figures::greatest(&angle));
     let at_least = angle.iter().position(|a| *a == least).unwrap_or(0);
     let line =
         |label: &str, colour, y: Vec<f64>| Series { label: label.to_owned(), colour, x: run.time_s().to_vec(), y };

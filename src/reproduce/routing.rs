@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series, VERMILION};
 
-use super::loops::{Loop, reach};
+use super::loops::Loop;
 use super::rig::{effect, sine, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -144,7 +145,7 @@ fn sheath_loops() -> Result<Vec<(f64, Loop)>, ReproduceError> {
 fn panels(loops: &[Loop], sheaths: &[(f64, Loop)]) -> Vec<Panel> {
     let line = |label: String, colour, l: &Loop| Series { label, colour, x: l.x.clone(), y: l.y.clone() };
     let colours = [BLUE, GREEN, ORANGE, VERMILION];
-    let range = reach(&loops[0].y);
+    let range = figures::range(&loops[0].y);
     vec![
         Panel {
             title: vec![format!("Hydraulic line, four ways to lay it: {range:.1} mm each")],

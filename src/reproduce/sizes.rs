@@ -2,9 +2,9 @@
 
 use crate::muscle::{SAFE_STRETCH, YIELD_STRETCH};
 use crate::recording::Recording;
+use crate::recording::figures;
 use crate::report::{BLUE, Panel, Series, VERMILION};
 
-use super::loops::bounds;
 use super::rig::{Play, effect, program, stock};
 use super::search::size_for;
 use super::{Chapter, ReproduceError, Row};
@@ -86,11 +86,12 @@ fn mass_g() -> f64 {
 }
 
 fn stretches(safe: &Recording, beyond: &Recording) -> Result<Vec<Row>, ReproduceError> {
-    let stretch = |run: &Recording| run.channel("elongation_mm").map(|c| bounds(&c.values).1 / REST_MM * 100.0 + 100.0);
+    let stretch =
+        |run: &Recording| run.channel("elongation_mm").map(|c| figures::greatest(&c.values) / REST_MM * 100.0 + 100.0);
     let left = |run: &Recording| {
         run.channel("elongation_mm").map(|c| c.values.last().map_or(f64::NAN, |e| e / REST_MM * 100.0))
     };
-    let pressure = bounds(&safe.channel("pressure_kpa")?.values).1 * 1e-3;
+    let pressure = figures::greatest(&safe.channel("pressure_kpa")?.values) * 1e-3;
     Ok(vec![
         Row::compared(
             "stretched to, of its length",
@@ -125,7 +126,7 @@ fn stretched_to(stretch: f64) -> Result<Recording, ReproduceError> {
     let wanted_mm = (stretch - 1.0) * REST_MM;
     let reached = |stroke_m: f64| -> Result<f64, ReproduceError> {
         let fast = play(stroke_m)?.fast()?;
-        Ok(bounds(&fast.channel("elongation_mm", &[], &[])?).1)
+        Ok(figures::greatest(&fast.channel("elongation_mm", &[], &[])?))
     };
     let stroke = size_for(wanted_mm, (2e-3, 25e-3), reached)?;
     play(stroke.ok_or_else(|| super::error::lacking(FIGURE, format!("no stroke stretches the muscle to {stretch}")))?)?

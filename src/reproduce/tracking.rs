@@ -4,12 +4,13 @@ use rayon::prelude::*;
 
 use crate::feedforward::{Inverse, Limits, Trim};
 use crate::identify::loops::{Form, Identification, LoopRun};
+use crate::recording::figures::{self, Line};
 use crate::report::{BLUE, GREY, Panel, Series, VERMILION};
 use crate::scene::{Override, Program};
 use crate::system::{Driver, InputSource, Schedule, Simulation, record_driven};
 
 use super::identified::{fitted, recorded};
-use super::loops::{rms_apart, straight_line};
+use super::loops::rms_apart;
 use super::rig::{Play, program, stock};
 use super::{Chapter, ReproduceError, Row};
 
@@ -218,7 +219,7 @@ impl Taught {
         let models: Result<Vec<Identification>, ReproduceError> =
             FORMS.par_iter().map(|form| fitted(FIGURE, std::slice::from_ref(&run), *form)).collect();
         let best = models?.into_iter().min_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
-        let (slope, offset_mm, _) = straight_line(&run.input_mm, &run.output_mm);
+        let Line { slope, offset: offset_mm, .. } = figures::line_of_best_fit(&run.input_mm, &run.output_mm);
         let [low, high] = rig.training_mm;
         let limits =
             Limits { input_mm: [low, high + 0.1 * (high - low)], speed_mm_s: 4.0 * (high - low), least_slope: 0.15 };

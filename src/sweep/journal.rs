@@ -1,7 +1,7 @@
 //! What is done of a sweep: one line per point, appended as it ends. A kill loses the points that were running.
 
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -35,6 +35,8 @@ pub enum JournalLine {
 
 /// The journal of a folder, open for more.
 pub struct Journal {
+    /// Held while the sweep runs; a kill lets go of it.
+    _folder: Option<File>,
     path: PathBuf,
     file: Mutex<File>,
     /// Points that were done when it was opened.
@@ -50,6 +52,7 @@ impl Journal {
         let path = folder.join(NAME);
         let write = |source: io::Error| SweepError::Write { file: path.clone(), source };
         std::fs::create_dir_all(folder).map_err(write)?;
+        let held = hold(folder)?;
         if path.is_file() && !resume {
             return Err(SweepError::Journal {
                 file: path,
@@ -62,7 +65,7 @@ impl Journal {
         // Written anew: a line that a kill cut off is gone, and what follows starts on a line of its own.
         crate::recording::write_whole(&path, &text).map_err(write)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(write)?;
-        Ok(Self { path, file: Mutex::new(file), done })
+        Ok(Self { _folder: held, path, file: Mutex::new(file), done })
     }
 
     /// Appends a point; it is on its way to the disk when this returns.
@@ -74,6 +77,20 @@ impl Journal {
         // A poisoned lock means that another thread panicked while writing; its line may be cut, ours is whole.
         let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         file.write_all(line(row).as_bytes()).map_err(write)
+    }
+}
+
+/// Takes a folder for this sweep alone. Where folders cannot be locked (some file systems) it goes on without.
+fn hold(folder: &Path) -> Result<Option<File>, SweepError> {
+    let Ok(held) = File::open(folder) else { return Ok(None) };
+    match held.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(SweepError::Journal {
+            file: folder.to_owned(),
+            message: "another sweep is writing here".to_owned(),
+            remedy: "wait for it, or give another folder with --out".to_owned(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(None),
+        Ok(()) => Ok(Some(held)),
     }
 }
 
@@ -139,6 +156,15 @@ fn line(row: &Row) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_is_for_one_sweep_at_a_time() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let held = hold(folder.path()).expect("free").expect("a file system with locks");
+        assert!(hold(folder.path()).unwrap_err().to_string().contains("another sweep"));
+        drop(held);
+        assert!(hold(folder.path()).is_ok());
+    }
 
     #[test]
     fn a_line_comes_back_as_it_was() {

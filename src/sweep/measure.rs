@@ -103,8 +103,8 @@ impl Call {
             Figure::Mean => figures::mean(series(0)?),
             Figure::Final => series(0)?.last().copied().unwrap_or(f64::NAN),
             Figure::Rms => figures::rms(series(0)?),
-            Figure::LoopArea => enclosed(series(0)?, series(1)?).abs(),
-            Figure::LoopWidth => enclosed(series(0)?, series(1)?).abs() / figures::range(series(0)?),
+            Figure::LoopArea => figures::enclosed(series(0)?, series(1)?).abs(),
+            Figure::LoopWidth => figures::enclosed(series(0)?, series(1)?).abs() / figures::range(series(0)?),
             Figure::TimeBelow => time_below(ran.recording.time_s(), series(0)?, number(0)),
             Figure::SlackTime => built_in::slack_time_s(ran, name(0))?,
             Figure::ClosedTime => built_in::closed_time_s(ran, name(0))?,
@@ -119,13 +119,6 @@ impl Call {
             }
         })
     }
-}
-
-/// Area enclosed by a path that is closed by a straight line (trapezoids).
-fn enclosed(x: &[f64], y: &[f64]) -> f64 {
-    let pairs: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
-    let next = pairs.iter().cycle().skip(1);
-    pairs.iter().zip(next).map(|(a, b)| 0.5 * (b.0 - a.0) * (a.1 + b.1)).sum()
 }
 
 /// Time that a series spends at or below a level, s: intervals of which both ends are.

@@ -47,9 +47,9 @@ fn figure(scene: &Scene, expect: &ExpectSpec, recording: &Recording) -> Result<f
         Measure::Max => figures::greatest(&y),
         Measure::Range => figures::range(&y),
         Measure::Final => y.last().copied().unwrap_or(f64::NAN),
-        Measure::ValueAt => value_at(recording, &expect.channel, expect.at_s.unwrap_or(0.0))?,
+        Measure::ValueAt => recording.value_at(&expect.channel, expect.at_s.unwrap_or(0.0))?,
         Measure::LoopWidth => loop_width(&other()?, &y, expect.at.unwrap_or(0.0)),
-        Measure::RSquared => r_squared(&other()?, &y),
+        Measure::RSquared => figures::line_of_best_fit(&other()?, &y).r_squared,
         Measure::Rmse => rmse_to_file(scene, expect, recording)?,
     })
 }
@@ -58,11 +58,6 @@ fn windowed(recording: &Recording, channel: &str, expect: &ExpectSpec) -> Result
     let inside = |t: f64| expect.from_s.is_none_or(|f| t >= f - 1e-9) && expect.to_s.is_none_or(|e| t <= e + 1e-9);
     let values = &recording.channel(channel)?.values;
     Ok(recording.time_s().iter().zip(values).filter(|(t, _)| inside(**t)).map(|(_, v)| *v).collect())
-}
-
-fn value_at(recording: &Recording, channel: &str, at_s: f64) -> Result<f64, SystemError> {
-    let column = recording.channel(channel)?;
-    Ok(crate::recording::PiecewiseLinear::new(recording.time_s(), &column.values).map_or(f64::NAN, |p| p.value(at_s)))
 }
 
 /// Value on the way down minus value on the way up, where the horizontal channel last passed `at` either way.
@@ -77,16 +72,6 @@ fn loop_width(x: &[f64], y: &[f64], at: f64) -> f64 {
         crossings[usize::from(a > b)] = value;
     }
     crossings[1] - crossings[0]
-}
-
-/// Coefficient of determination of the least-squares line of `y` over `x`.
-fn r_squared(x: &[f64], y: &[f64]) -> f64 {
-    let n = x.len().min(y.len());
-    let (mx, my) = (figures::mean(&x[..n]), figures::mean(&y[..n]));
-    let product =
-        |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
-    let xy = product(x, mx, y, my);
-    xy * xy / (product(x, mx, x, mx) * product(y, my, y, my))
 }
 
 fn rmse_to_file(scene: &Scene, expect: &ExpectSpec, recording: &Recording) -> Result<f64, SystemError> {
@@ -117,10 +102,5 @@ mod tests {
         let x: Vec<f64> = t.iter().map(|t| 1.0 - t.cos()).collect();
         let y: Vec<f64> = t.iter().map(|t| 3.0 * (1.0 - t.cos()) - 0.5 * t.sin()).collect();
         assert!((loop_width(&x, &y, 1.0) - 1.0).abs() < 1e-3);
-    }
-
-    #[test]
-    fn r_squared_of_a_line_is_one() {
-        assert!((r_squared(&[1.0, 2.0, 4.0], &[3.0, 5.0, 9.0]) - 1.0).abs() < 1e-12);
     }
 }

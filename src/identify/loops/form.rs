@@ -97,6 +97,20 @@ impl Form {
         }
     }
 
+    /// Parameters at the size of the paper's muscle (3 mm of stroke, about 9 mm per mm), a redundant scale at 1; those of the
+    /// paper's form are the printed ones.
+    pub fn typical(self) -> Vec<f64> {
+        match self {
+            Self::Symmetric => vec![9.0, -4.0, 1.0, 1.6, 0.5, 1.2],
+            Self::Asymmetric => vec![9.0, -4.0, 1.0, 1.2, 1.8, 0.3, -0.2, 0.0, 0.0, 0.4],
+            Self::Paper => vec![-0.082, 9.886, -5.393, 1.0, 1.035, 2.263, -0.1436],
+            Self::PrandtlIshlinskii => vec![5.0, -0.1, 0.04, 0.0, 1.0, 1.2, 0.8, 1.0],
+            Self::PrandtlIshlinskiiRate => vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0],
+            Self::MaxwellSlip => vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8],
+            Self::MaxwellSlipGrowing => vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5],
+        }
+    }
+
     /// Where each parameter is searched, in the order of [`HysteresisModel::parameters`]; bounds follow the data's size.
     pub fn parameters(self, scale: &LoopScale) -> Vec<ParameterSpec> {
         let names = self.blank(scale).parameter_names();

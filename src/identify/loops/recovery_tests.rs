@@ -6,17 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
-/// A truth of each form at the size of the paper's muscle, its redundant scale at 1.
-fn truths() -> Vec<(Form, Vec<f64>)> {
-    vec![
-        (Form::Symmetric, vec![9.0, -4.0, 1.0, 1.6, 0.5, 1.2]),
-        (Form::Asymmetric, vec![9.0, -4.0, 1.0, 1.2, 1.8, 0.3, -0.2, 0.0, 0.0, 0.4]),
-        (Form::Paper, vec![-0.082, 9.886, -5.393, 1.0, 1.035, 2.263, -0.1436]),
-        (Form::PrandtlIshlinskii, vec![5.0, -0.1, 0.04, 0.0, 1.0, 1.2, 0.8, 1.0]),
-        (Form::PrandtlIshlinskiiRate, vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0]),
-        (Form::MaxwellSlip, vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8]),
-        (Form::MaxwellSlipGrowing, vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5]),
-    ]
+fn truths() -> impl Iterator<Item = (Form, Vec<f64>)> {
+    Form::ALL.into_iter().map(|form| (form, form.typical()))
 }
 
 /// Thirty seconds at 100 Hz: 3 mm strokes at 0.1 Hz whose depth changes, so that there are inner loops.
@@ -76,7 +67,7 @@ fn val_without_noise_the_truth_comes_back() {
 
 #[test]
 fn val_hybrid_needs_a_twentieth_of_the_swarm() {
-    let (form, truth) = (Form::Paper, &truths()[2].1);
+    let (form, truth) = (Form::Paper, &Form::Paper.typical());
     let run = [noisy(form, truth, 0.027, 7)];
     let cma = CmaOptions { most_evaluations: 8_000, ..CmaOptions::default() };
     let by =
@@ -92,7 +83,7 @@ fn val_hybrid_needs_a_twentieth_of_the_swarm() {
 
 #[test]
 fn redundant_and_misfitting_numbers_are_warned_of() {
-    let (form, truth) = (Form::Paper, &truths()[2].1);
+    let (form, truth) = (Form::Paper, &Form::Paper.typical());
     let run = [noisy(form, truth, 0.027, 7)];
     let own = identify(&run, form, &SearchOptions::default()).unwrap();
     assert!(own.warnings.iter().any(|w| w.starts_with("a is fixed at 1")), "{:?}", own.warnings);
