@@ -69,8 +69,8 @@ enum Command {
     Effects(effects::EffectsArguments),
     /// Read a scene and say whether it is right
     Check(check::CheckArguments),
-    /// List the scenes that come with the program
-    Scenes,
+    /// List the scenes that come with the program, or copy one
+    Scenes(scenes::ScenesArguments),
     /// Run a scene at many points of its keys and tabulate what each run shows
     Sweep(sweep::SweepArguments),
     /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
@@ -110,7 +110,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Identify(arguments)) => identify::identify(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Scenes) => scenes::scenes(),
+        Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Trial(arguments)) => trial::trial(&arguments),
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),

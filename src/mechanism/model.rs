@@ -58,7 +58,7 @@ impl Mechanism {
     /// converge badly): stops come from the scene. Effort and velocity limits describe a motor controller and have
     /// no meaning here.
     pub fn load(spec: &MechanismSpec, base_dir: &Path) -> Result<Self, MechanismError> {
-        let file = base_dir.join(&spec.urdf);
+        let file = crate::stock::join(base_dir, &spec.urdf);
         let (robot, mut scan) = urdf_file::read(&file)?;
         check_spec(spec)?;
         let mut warnings = std::mem::take(&mut scan.warnings);
