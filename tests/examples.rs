@@ -45,7 +45,8 @@ fn pulley() {
 fn own_finger() {
     let text = printed("own_finger", &[]);
     assert!(text.contains("knuckle_deg") && text.contains("middle_deg"), "{text}");
-    let reach: f64 = text.lines().next().and_then(|l| l.rsplit(' ').next()).and_then(|w| w.parse().ok()).expect("a number");
+    let reach: f64 =
+        text.lines().next().and_then(|l| l.rsplit(' ').next()).and_then(|w| w.parse().ok()).expect("a number");
     assert!(reach > 10.0, "{text}");
 }
 
@@ -83,7 +84,9 @@ fn none_is_forgotten() {
     let here = include_str!("examples.rs");
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")).expect("a folder of the project") {
         let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
-        let Some((_, rest)) = name.split_once('_').filter(|(n, _)| n.chars().all(|c| c.is_ascii_digit())) else { continue };
+        let Some((_, rest)) = name.split_once('_').filter(|(n, _)| n.chars().all(|c| c.is_ascii_digit())) else {
+            continue;
+        };
         let example = rest.trim_end_matches(".rs");
         assert!(here.contains(&format!("printed(\"{example}\"")), "{name} is not run by tests/examples.rs");
     }

@@ -9,12 +9,14 @@ use smam::recording::{Channel, CsvWriter, Recording};
 use smam::system::observe::{Frame, Observer, SceneGraph};
 
 use super::CliError;
+use super::angles::Angles;
 
 /// All observers of one run; those not asked for are absent.
 #[derive(Default)]
 pub struct Observers {
     pub csv: Option<CsvFile>,
     pub recorder: Option<Recorder>,
+    pub angles: Option<Angles>,
     pub progress: Option<Progress>,
     #[cfg(feature = "viz")]
     pub viewers: Vec<smam::view::Viewer>,
@@ -30,6 +32,9 @@ impl Observer for Observers {
         if let Some(recorder) = &mut self.recorder {
             recorder.begin(graph);
         }
+        if let Some(angles) = &mut self.angles {
+            angles.begin(graph);
+        }
         #[cfg(feature = "viz")]
         for viewer in &mut self.viewers {
             viewer.begin(graph)?;
@@ -43,6 +48,9 @@ impl Observer for Observers {
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.frame(frame);
+        }
+        if let Some(angles) = &mut self.angles {
+            angles.frame(frame);
         }
         if let Some(progress) = &mut self.progress {
             progress.frame(frame.time_s);

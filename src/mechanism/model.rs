@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 use rapier3d_f64::dynamics::{Multibody, MultibodyIndex, RigidBodyHandle};
 use rapier3d_f64::math::Pose;
 use rapier3d_f64::pipeline::PhysicsWorld;
+use urdf_rs::Robot;
 
 use super::assembly::{Source, Weight};
 use super::convert::plain_pose;
@@ -35,6 +36,8 @@ pub struct Mechanism {
     pub(super) joints: Vec<JointModel>,
     pub(super) shares: Vec<Option<Share>>,
     pub(super) link_names: Vec<String>,
+    /// Link that each coordinate's joint moves.
+    pub(super) moved_links: Vec<usize>,
     /// Body of each URDF link, and the link's frame in it.
     pub(super) placement: Vec<(usize, Pose)>,
     pub(super) free_bodies: Vec<RigidBodyHandle>,
@@ -61,13 +64,13 @@ impl Mechanism {
         let file = crate::stock::join(base_dir, &spec.urdf);
         let (robot, mut scan) = urdf_file::read(&file)?;
         check_spec(spec)?;
-        let mut warnings = std::mem::take(&mut scan.warnings);
+        let mut remarks = std::mem::take(&mut scan.remarks);
         let tree = Tree::new(&file, &robot)?;
-        let joints = joints::resolve(&file, &robot, &spec.joint, &mut warnings)?;
+        let joints = joints::resolve(&file, &robot, &spec.joint, &mut remarks)?;
         let (coordinates, shares) = reduce(&joints)?;
         let source = Source { file: &file, robot: &robot, scan: &scan, tree: &tree, joints: &joints, spec };
-        let assembly = source.assemble(&mut warnings)?;
-        let mut visuals = shapes::visuals(&file, &robot, &mut warnings)?;
+        let assembly = source.assemble(&mut remarks)?;
+        let mut visuals = shapes::visuals(&file, &robot, &mut remarks)?;
         let mut built = world::build(&assembly, &joints, &shares, spec.gravity_m_s2);
         if let Some(contact) = &spec.contact {
             built.add_contacts(&file, &robot, &assembly, contact)?;
@@ -76,11 +79,12 @@ impl Mechanism {
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
         let mut mechanism = Self {
             link_names,
+            moved_links: moved_links(&robot, &coordinates),
             free_bodies,
             visuals,
             placement: assembly.placement,
             weights: assembly.weights,
-            warnings,
+            warnings: remarks.lines(),
             ..Self::new(built, joints, coordinates, shares)
         };
         mechanism.refresh_mass();
@@ -103,6 +107,7 @@ impl Mechanism {
             joints,
             shares,
             link_names: Vec::new(),
+            moved_links: Vec::new(),
             placement: Vec::new(),
             free_bodies: Vec::new(),
             visuals: Vec::new(),
@@ -112,7 +117,7 @@ impl Mechanism {
         }
     }
 
-    /// What the URDF holds that has no effect, one line each.
+    /// What the URDF holds that has no effect, one line for each kind.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -139,6 +144,11 @@ impl Mechanism {
     /// Names of the URDF's links, then of the free bodies.
     pub fn link_names(&self) -> &[String] {
         &self.link_names
+    }
+
+    /// The link that each coordinate's joint moves; its frame stands in the joint.
+    pub fn moved_links(&self) -> &[usize] {
+        &self.moved_links
     }
 
     /// Pose of each link, then of each free body, in the world.
@@ -189,6 +199,15 @@ impl Mechanism {
         }
         Ok(())
     }
+}
+
+/// The link that each coordinate's joint moves. Coordinates are named after joints, and a URDF's joints have links.
+fn moved_links(robot: &Robot, coordinates: &[Coordinate]) -> Vec<usize> {
+    let link = |c: &Coordinate| {
+        let child = robot.joints.iter().find(|j| j.name == c.name).map(|j| j.child.link.as_str());
+        robot.links.iter().position(|l| Some(l.name.as_str()) == child).unwrap_or(0)
+    };
+    coordinates.iter().map(link).collect()
 }
 
 fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {

@@ -39,8 +39,7 @@ impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text =
-            stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         Self::parse(&text, &path, overrides)
     }
 

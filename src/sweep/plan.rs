@@ -63,8 +63,7 @@ impl Plan {
         let fingerprint = fingerprint(&file, &base)?;
         let outputs = outputs(&file, &measures);
         let path = base.path;
-        let text =
-            stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
         plan.evolution()?;
         plan.check_ends()?;

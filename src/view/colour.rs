@@ -7,6 +7,10 @@ pub(super) type Rgb = [u8; 3];
 pub(super) const SLACK: Rgb = [140, 140, 140];
 /// Contact points and forces.
 pub(super) const CONTACT: Rgb = [255, 150, 40];
+/// Hinges.
+pub(super) const MARKER: Rgb = [245, 245, 245];
+/// The way of the tip.
+pub(super) const TRACE: Rgb = [120, 200, 255];
 /// Axes, ticks and frames of drawn plots.
 pub(super) const AXIS: Rgb = [150, 150, 150];
 /// Where a loop is now.
