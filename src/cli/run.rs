@@ -11,7 +11,7 @@ use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run
 
 use super::angles::Angles;
 use super::interrupt::{interrupted, stop_flag};
-use super::observers::{CsvFile, Observers, Progress, Recorder};
+use super::observers::{Clock, CsvFile, Observers, Progress, Recorder};
 use super::{CliError, junit};
 
 /// Arguments of `smam run`.
@@ -40,6 +40,9 @@ pub struct RunArguments {
     /// Serve the Rerun stream on the loopback interface and wait for viewers
     #[arg(long)]
     serve: bool,
+    /// Go no faster than the clock: for watching with --view or --serve
+    #[arg(long)]
+    real_time: bool,
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -168,6 +171,7 @@ fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) 
         recorder: arguments.check.then(Recorder::default),
         angles: arguments.angles.then(Angles::default),
         progress: Some(Progress::new(end_s)),
+        clock: arguments.real_time.then(Clock::default),
         #[cfg(feature = "viz")]
         viewers: Vec::new(),
     };

@@ -39,7 +39,7 @@ pub use coordinate::{Coordinate, CoordinateKind, Stop};
 pub use error::MechanismError;
 pub use forceps::Forceps;
 pub use geometry::{Contact, Pose, Shape, Visual};
-pub use model::Mechanism;
+pub use model::{Mechanism, Moved};
 pub use notch::NotchGeometry;
 pub use notched_tube::{NotchedTube, notched_tube_urdf};
 pub use route::{Arm, LinkPoint, Route};

@@ -36,8 +36,7 @@ pub struct Mechanism {
     pub(super) joints: Vec<JointModel>,
     pub(super) shares: Vec<Option<Share>>,
     pub(super) link_names: Vec<String>,
-    /// Link that each coordinate's joint moves.
-    pub(super) moved_links: Vec<usize>,
+    pub(super) moved: Vec<Moved>,
     /// Body of each URDF link, and the link's frame in it.
     pub(super) placement: Vec<(usize, Pose)>,
     pub(super) free_bodies: Vec<RigidBodyHandle>,
@@ -50,6 +49,15 @@ pub struct Mechanism {
     pub(super) full_mass: DMatrix<f64>,
     /// Length of the last step, for contact forces.
     pub(super) last_step_s: f64,
+}
+
+/// What a joint moves, for drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// The link: its frame stands in the joint.
+    pub link: usize,
+    /// Axis in that frame, a unit vector.
+    pub axis: [f64; 3],
 }
 
 impl Mechanism {
@@ -79,7 +87,7 @@ impl Mechanism {
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
         let mut mechanism = Self {
             link_names,
-            moved_links: moved_links(&robot, &coordinates),
+            moved: moved(&robot, &joints, &coordinates),
             free_bodies,
             visuals,
             placement: assembly.placement,
@@ -107,7 +115,7 @@ impl Mechanism {
             joints,
             shares,
             link_names: Vec::new(),
-            moved_links: Vec::new(),
+            moved: Vec::new(),
             placement: Vec::new(),
             free_bodies: Vec::new(),
             visuals: Vec::new(),
@@ -146,9 +154,9 @@ impl Mechanism {
         &self.link_names
     }
 
-    /// The link that each coordinate's joint moves; its frame stands in the joint.
-    pub fn moved_links(&self) -> &[usize] {
-        &self.moved_links
+    /// What each coordinate's joint moves.
+    pub fn moved(&self) -> &[Moved] {
+        &self.moved
     }
 
     /// Pose of each link, then of each free body, in the world.
@@ -201,13 +209,15 @@ impl Mechanism {
     }
 }
 
-/// The link that each coordinate's joint moves. Coordinates are named after joints, and a URDF's joints have links.
-fn moved_links(robot: &Robot, coordinates: &[Coordinate]) -> Vec<usize> {
-    let link = |c: &Coordinate| {
-        let child = robot.joints.iter().find(|j| j.name == c.name).map(|j| j.child.link.as_str());
-        robot.links.iter().position(|l| Some(l.name.as_str()) == child).unwrap_or(0)
+/// What each coordinate's joint moves. Coordinates are named after joints, and a URDF's joints have links.
+fn moved(robot: &Robot, joints: &[JointModel], coordinates: &[Coordinate]) -> Vec<Moved> {
+    let of = |c: &Coordinate| {
+        let joint = joints.iter().position(|j| j.name == c.name)?;
+        let child = &robot.joints[joint].child.link;
+        let link = robot.links.iter().position(|l| l.name == *child)?;
+        Some(Moved { link, axis: joints[joint].axis })
     };
-    coordinates.iter().map(link).collect()
+    coordinates.iter().map(|c| of(c).unwrap_or_default()).collect()
 }
 
 fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {

@@ -99,8 +99,12 @@ impl Simulation {
 }
 
 fn joint_graphs(mechanism: &Mechanism) -> Vec<JointGraph> {
-    let joints = mechanism.coordinates().iter().zip(mechanism.moved_links());
-    let graph =
-        joints.map(|(c, &link)| JointGraph { name: c.name.clone(), is_angle: c.kind == CoordinateKind::Angle, link });
+    let joints = mechanism.coordinates().iter().zip(mechanism.moved());
+    let graph = joints.map(|(c, moved)| JointGraph {
+        name: c.name.clone(),
+        is_angle: c.kind == CoordinateKind::Angle,
+        link: moved.link,
+        axis: moved.axis,
+    });
     graph.collect()
 }

@@ -44,13 +44,15 @@ impl SceneGraph {
 }
 
 /// What of a joint coordinate stays the same.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct JointGraph {
     pub name: String,
     /// Position in rad; else in m.
     pub is_angle: bool,
     /// The link that it moves: its frame stands in the joint.
     pub link: usize,
+    /// Direction of the joint's axis in that frame.
+    pub axis: [f64; 3],
 }
 
 impl JointGraph {

@@ -1,38 +1,55 @@
 //! Joints: a marker in every hinge, and a table of all positions at the cursor.
 
-use rerun::{Points3D, Radius, RecordingStream, TextDocument};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use rerun::{LineStrip3D, LineStrips3D, Radius, RecordingStream, TextDocument};
 
 use super::colour::{MARKER, opaque};
 use super::error::ViewError;
 use super::layer::{Layer, path, time_column};
-use crate::system::observe::{Frame, SceneGraph};
+use crate::mechanism::geometry::{Shape, Visual};
+use crate::system::observe::{Frame, JointGraph, SceneGraph};
 
 /// Rows of the table no closer than this, s: nobody reads faster.
 const ROW_EVERY_S: f64 = 0.1;
 
-/// A dot in each hinge; its name shows under the pointer.
+/// A pin through each hinge, a little longer than the link is wide; its name shows under the pointer.
 pub(super) struct Hinges {
     root: &'static str,
-    /// Link that the hinge moves, and the joint's name.
-    hinges: Vec<(String, String)>,
+    pins: Vec<Pin>,
 }
+
+struct Pin {
+    link: String,
+    joint: String,
+    /// Half the pin, from the hinge, m.
+    half_m: [f64; 3],
+}
+
+/// Length of a pin over the width of its link.
+const OVER_WIDTH: f64 = 1.15;
 
 impl Hinges {
     pub(super) fn new(root: &'static str, graph: &SceneGraph) -> Self {
-        let hinges = graph.joints.iter().filter(|j| j.is_angle);
-        Self { root, hinges: hinges.map(|j| (graph.links[j.link].clone(), j.name.clone())).collect() }
+        let pin = |j: &JointGraph| {
+            let shapes = graph.visuals.iter().filter(|v| v.link == j.link);
+            let half_width_m = shapes.map(|v| reach_m(v, j.axis)).fold(0.0, f64::max);
+            let half_m = j.axis.map(|x| OVER_WIDTH * half_width_m * x);
+            Pin { link: graph.links[j.link].clone(), joint: j.name.clone(), half_m }
+        };
+        Self { root, pins: graph.joints.iter().filter(|j| j.is_angle).map(pin).collect() }
     }
 }
 
 impl Layer for Hinges {
     fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
-        for (link, joint) in &self.hinges {
-            let dot = Points3D::new([[0.0; 3]])
-                .with_radii([Radius::new_ui_points(3.0)])
+        for pin in &self.pins {
+            let ends = [pin.half_m.map(|x| -x), pin.half_m];
+            let line = LineStrips3D::new([LineStrip3D::from_iter(ends)])
+                .with_radii([Radius::new_ui_points(2.0)])
                 .with_colors([opaque(MARKER)])
-                .with_labels([joint.as_str()])
+                .with_labels([pin.joint.as_str()])
                 .with_show_labels(false);
-            out.log_static(path([self.root, "links", link, "hinge"]), &dot)?;
+            out.log_static(path([self.root, "links", &pin.link, "hinge"]), &line)?;
         }
         Ok(())
     }
@@ -40,6 +57,23 @@ impl Layer for Hinges {
     fn stretch(&mut self, _: &RecordingStream, _: &[Frame]) -> Result<(), ViewError> {
         Ok(())
     }
+}
+
+/// How far a visual reaches from its link's origin along a direction, either way, m.
+fn reach_m(visual: &Visual, direction: [f64; 3]) -> f64 {
+    let [x, y, z, w] = visual.pose.rotation_xyzw;
+    let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    let direction = Vector3::from(direction);
+    let along = turned.inverse() * direction;
+    let half_m = match &visual.shape {
+        Shape::Box { size_m } => along.abs().dot(&Vector3::from(*size_m)) / 2.0,
+        Shape::Cylinder { radius_m, length_m } => along.z.abs() * length_m / 2.0 + along.xy().norm() * radius_m,
+        Shape::Sphere { radius_m } => *radius_m,
+        Shape::Mesh { vertices_m, .. } => {
+            vertices_m.iter().map(|v| Vector3::from(*v).dot(&along).abs()).fold(0.0, f64::max)
+        }
+    };
+    Vector3::from(visual.pose.translation_m).dot(&direction).abs() + half_m
 }
 
 /// What `smam run --angles` prints, at the cursor.

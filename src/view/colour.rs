@@ -25,8 +25,8 @@ const TENSION: [Rgb; 3] = [[70, 130, 255], [200, 80, 210], [255, 50, 40]];
 const PRESSURE: [Rgb; 3] = [[80, 95, 125], [50, 200, 200], [255, 230, 60]];
 const AGE: [Rgb; 3] = [[50, 70, 140], [40, 170, 170], [250, 220, 60]];
 
-/// Eight lines that stay apart on a dark ground.
-const SERIES: [Rgb; 8] = [
+/// Twelve lines that stay apart on a dark ground.
+const SERIES: [Rgb; 12] = [
     [90, 170, 255],
     [255, 160, 60],
     [110, 220, 120],
@@ -35,6 +35,10 @@ const SERIES: [Rgb; 8] = [
     [250, 225, 90],
     [90, 220, 220],
     [240, 150, 210],
+    [200, 200, 200],
+    [150, 190, 60],
+    [205, 130, 90],
+    [130, 130, 230],
 ];
 
 /// Colour of a cable at a tension.

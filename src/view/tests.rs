@@ -185,7 +185,7 @@ fn graph() -> SceneGraph {
             shape: Shape::Sphere { radius_m: 0.01 },
             colour_rgba: [1.0; 4],
         }],
-        joints: vec![JointGraph { name: "hinge 1".into(), is_angle: true, link: 0 }],
+        joints: vec![JointGraph { name: "hinge 1".into(), is_angle: true, link: 0, axis: [0.0, 1.0, 0.0] }],
         cables: vec!["c".into()],
         muscles: vec![MuscleGraph {
             name: "m".into(),

@@ -10,7 +10,7 @@ use super::trace::Trace;
 use crate::system::observe::{Frame, SceneGraph};
 
 /// Axes of the frame over the camera's distance.
-const AXIS_SHARE: f64 = 0.05;
+const AXIS_SHARE: f64 = 0.12;
 /// x, y, z.
 const AXES: [[u8; 3]; 3] = [[235, 70, 70], [90, 210, 90], [80, 140, 255]];
 
