@@ -25,7 +25,7 @@ table = smam.sweep(
 )
 print(table.drop(columns="error").to_string(float_format="%.4g"))
 
-# %% The greatest range of those whose line stays a hundred kilopascals from boiling
+# %% The greatest range of those whose line stays a hundred kilopascals above boiling
 safe = table[table["margin_kpa"] > 100.0]
 best = safe.loc[safe["range_deg"].idxmax()]
 paper_ratio = 0.5
@@ -40,10 +40,10 @@ panels = {
     "margin_kpa": "least pressure above\nboiling (kPa)",
 }
 figure, axes = plt.subplots(len(panels), sharex=True, figsize=(6.5, 8.0), layout="constrained")
-for axis, (column, label) in zip(axes, panels.items()):
+for axis, (column, label) in zip(axes, panels.items(), strict=False):
     axis.plot(percent, table[column], "o-", color="#1f5fa8", markersize=4)
     axis.axvline(100.0 * paper_ratio, color="0.6", linestyle="--", label="the paper's choice")
-    axis.axvline(100.0 * best["muscles.pre_elongation_ratio"], color="#2a8c4a", label="greatest range, 100 kPa from boiling")
+    axis.axvline(100.0 * best["muscles.pre_elongation_ratio"], color="#2a8c4a", label="greatest range, 100 kPa above boiling")
     axis.set_ylabel(label)
     axis.set_ylim(0.0, 1.1 * table[column].max())
     axis.grid(alpha=0.3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 import pandas as pd
 
@@ -32,9 +32,9 @@ class Comparison:
 def compare(
     folder: PathLike,
     *,
-    scene: Optional[PathLike] = None,
-    set: Optional[Mapping[str, Any]] = None,
-    out: Optional[PathLike] = None,
+    scene: PathLike | None = None,
+    set: Mapping[str, Any] | None = None,
+    out: PathLike | None = None,
 ) -> Comparison:
     """Simulates what was recorded and lays both over each other.
 

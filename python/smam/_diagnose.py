@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike as OsPathLike
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any
 
 import pandas as pd
 
@@ -41,38 +41,38 @@ class Diagnosis:
     """All of diagnosis.json."""
 
     @property
-    def report(self) -> Optional[Path]:
+    def report(self) -> Path | None:
         """The answer as one page."""
         return self._file("report.html")
 
     @property
-    def scene(self) -> Optional[Path]:
+    def scene(self) -> Path | None:
         """The corrected scene: :func:`run` and :func:`sweep` take it."""
         return self._file("scene.toml")
 
     @property
-    def baseline(self) -> Optional[Path]:
+    def baseline(self) -> Path | None:
         """The same scene calibrated alone, nothing added."""
         return self._file("baseline.toml")
 
     @property
-    def next_experiment(self) -> Optional[Path]:
+    def next_experiment(self) -> Path | None:
         """Inputs that would tell best what stays open."""
         return self._file("next_experiment.csv")
 
-    def _file(self, name: str) -> Optional[Path]:
+    def _file(self, name: str) -> Path | None:
         path = self.folder / name
         return path if path.is_file() else None
 
 
 def diagnose(
-    folders: Union[PathLike, Sequence[PathLike]],
+    folders: PathLike | Sequence[PathLike],
     *,
-    scene: Optional[PathLike] = None,
-    set: Optional[Mapping[str, Any]] = None,
-    out: Optional[PathLike] = None,
+    scene: PathLike | None = None,
+    set: Mapping[str, Any] | None = None,
+    out: PathLike | None = None,
     seed: int = 1,
-    threads: Optional[int] = None,
+    threads: int | None = None,
     rrd: bool = False,
 ) -> Diagnosis:
     """Finds what physics the scene of some recordings lacks.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 
 class SmamError(Exception):
     """What the program said when it stopped: place, cause and remedy.
@@ -18,7 +16,7 @@ class SmamError(Exception):
         self.exit_code = exit_code
 
     @property
-    def remedy(self) -> Optional[str]:
+    def remedy(self) -> str | None:
         """What to do about it, if the program knows."""
         _, found, remedy = self.message.partition("remedy: ")
         return remedy.strip() if found else None

@@ -6,14 +6,14 @@ import csv
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 TIME = "time_s"
-Series = Union[pd.DataFrame, Mapping[str, Any]]
-PathLike = Union[str, "os.PathLike[str]"]
+Series = pd.DataFrame | Mapping[str, Any]
+PathLike = str | os.PathLike[str]
 
 
 def over_time(series: Series) -> pd.DataFrame:

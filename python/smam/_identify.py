@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any
 
 import pandas as pd
 
@@ -31,14 +31,14 @@ class Identification:
 
 def identify(
     recordings: PathLike,
-    model: Union[str, Sequence[str]] = "paper",
+    model: str | Sequence[str] = "paper",
     *,
     method: str = "hybrid",
     seed: int = 1,
-    input: Optional[str] = None,
-    output: Optional[str] = None,
+    input: str | None = None,
+    output: str | None = None,
     skip_s: float = 0.0,
-    out: Optional[PathLike] = None,
+    out: PathLike | None = None,
 ) -> Identification:
     """Fits hysteresis models to recorded loops.
 

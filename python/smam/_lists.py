@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Optional
+from typing import Any
 
 import pandas as pd
 
@@ -22,7 +22,7 @@ def effects() -> pd.DataFrame:
     return _table("effects", ["name", "element", "title"])
 
 
-def keys(scene: PathLike, *, set: Optional[Mapping[str, Any]] = None) -> "pd.Series[str]":
+def keys(scene: PathLike, *, set: Mapping[str, Any] | None = None) -> pd.Series[str]:
     """Every key of a scene that ``set`` and ``vary`` take, with its value as the scene file writes it."""
     lines = call(["check", scene, "--keys", *set_arguments(set)]).stdout.splitlines()
     pairs = [line.split(" = ", 1) for line in lines]

@@ -8,7 +8,7 @@ import sys
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import IO, Optional, Union
+from typing import IO, Union
 
 from ._errors import SmamError
 from ._program import find_program
@@ -25,7 +25,7 @@ class Finished:
     stdout: str
 
 
-def call(words: Sequence[Word], also_fine: Sequence[int] = (), private: Optional[str] = None) -> Finished:
+def call(words: Sequence[Word], also_fine: Sequence[int] = (), private: str | None = None) -> Finished:
     """Runs ``smam WORDS`` to its end. Exit codes other than 0 are errors, but those in ``also_fine`` only with a message.
 
     Lines that name the folder ``private`` are not passed on.

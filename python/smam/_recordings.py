@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any
 
 from ._frames import PathLike, Series, over_time
 from ._toml import document
@@ -16,9 +16,9 @@ def write_recordings(
     runs: Mapping[str, Series],
     *,
     inputs: Collection[str],
-    outputs: Union[Collection[str], Mapping[str, Optional[float]]],
+    outputs: Collection[str] | Mapping[str, float | None],
     holdout: Collection[str] = (),
-    conditions: Optional[Mapping[str, Mapping[str, float]]] = None,
+    conditions: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Path:
     """Writes a folder that :func:`diagnose`, :func:`compare` and :func:`identify` read, and returns its path.
 
@@ -60,7 +60,7 @@ def write_recordings(
     return path
 
 
-def _output(column: str, noise_sd: Optional[float]) -> dict[str, Any]:
+def _output(column: str, noise_sd: float | None) -> dict[str, Any]:
     stated = {} if noise_sd is None else {"noise_sd": float(noise_sd)}
     return {"column": column, "role": "output", **stated}
 

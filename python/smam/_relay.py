@@ -6,7 +6,6 @@ import codecs
 import os
 import re
 import sys
-from typing import Optional
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _LEADING_ESCAPES = re.compile(rf"^({_ESCAPES.pattern})+")
@@ -17,7 +16,7 @@ _ERROR = "error: "
 class Relay:
     """Takes standard error piece by piece. Whole lines that name ``private``, a folder soon gone, are not passed on."""
 
-    def __init__(self, private: Optional[str] = None) -> None:
+    def __init__(self, private: str | None = None) -> None:
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._private = private
         self._line = ""  # what the present line holds so far
@@ -60,7 +59,7 @@ class Relay:
         """Progress bars are drawn without an end of line; a line of words is passed on when it is whole."""
         return "\x1b" in self._line and not _ERROR.startswith(_UNFINISHED_ESCAPE.sub("", plain))
 
-    def _pass_on(self, to: Optional[int] = None) -> None:
+    def _pass_on(self, to: int | None = None) -> None:
         text = self._line[self._shown : to]
         self._shown = len(self._line) if to is None else to
         self._said.append(text)

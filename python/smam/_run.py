@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any
 
 import pandas as pd
 
@@ -17,11 +17,11 @@ from ._toml import set_arguments
 def run(
     scene: PathLike,
     *,
-    set: Optional[Mapping[str, Any]] = None,
-    input: Optional[Union[PathLike, Series]] = None,
-    duration_s: Optional[float] = None,
-    output: Optional[PathLike] = None,
-    rrd: Optional[PathLike] = None,
+    set: Mapping[str, Any] | None = None,
+    input: PathLike | Series | None = None,
+    duration_s: float | None = None,
+    output: PathLike | None = None,
+    rrd: PathLike | None = None,
     view: bool = False,
 ) -> pd.DataFrame:
     """Runs a scene and returns its channels over ``time_s``.
@@ -48,7 +48,7 @@ def run(
         return read_csv(csv)
 
 
-def _input_file(given: Union[PathLike, Series], scratch: Path) -> PathLike:
+def _input_file(given: PathLike | Series, scratch: Path) -> PathLike:
     if isinstance(given, (pd.DataFrame, Mapping)):
         write_csv(given, scratch / "input.csv")
         return scratch / "input.csv"

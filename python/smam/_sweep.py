@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from shutil import copyfile
-from typing import Any, Optional, Union
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -23,15 +23,15 @@ Range = Union[Sequence[float], "npt.NDArray[Any]", "pd.Series[Any]", Mapping[str
 
 def sweep(
     scene: PathLike,
-    vary: Optional[Mapping[str, Range]] = None,
-    measure: Optional[Mapping[str, str]] = None,
+    vary: Mapping[str, Range] | None = None,
+    measure: Mapping[str, str] | None = None,
     *,
-    sampling: Optional[Mapping[str, Any]] = None,
-    set: Optional[Mapping[str, Any]] = None,
-    duration_s: Optional[float] = None,
-    out: Optional[PathLike] = None,
+    sampling: Mapping[str, Any] | None = None,
+    set: Mapping[str, Any] | None = None,
+    duration_s: float | None = None,
+    out: PathLike | None = None,
     resume: bool = False,
-    threads: Optional[int] = None,
+    threads: int | None = None,
 ) -> pd.DataFrame:
     """Runs a scene at many points of its keys: one row per point, a column for each key and each measure.
 
@@ -67,9 +67,9 @@ def _sweep_file(
     scene: PathLike,
     vary: Mapping[str, Range],
     measure: Mapping[str, str],
-    sampling: Optional[Mapping[str, Any]],
-    set: Optional[Mapping[str, Any]],
-    duration_s: Optional[float],
+    sampling: Mapping[str, Any] | None,
+    set: Mapping[str, Any] | None,
+    duration_s: float | None,
 ) -> dict[str, Any]:
     path = Path(scene)
     file: dict[str, Any] = {

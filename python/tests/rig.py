@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+
 import smam
 
 NOISE = {"elongation_mm": 0.02, "pressure_kpa": 5.0}

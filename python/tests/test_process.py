@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 import smam
 from smam._program import find_program
 from smam._relay import Relay

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import rig
+
 import smam
 
 LEAK = {"name": "leak", "element": "line", "conductance_m3_s_pa": 5e-18}
