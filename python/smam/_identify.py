@@ -54,7 +54,7 @@ def identify(
     for option, column in (("--input", input), ("--output", output)):
         if column is not None:
             words += [option, column]
-    call([*words, "--skip", repr(float(skip_s))])
+    call([*words, f"--skip={float(skip_s)!r}"])
     raw = read_json(written / "identify.json")
     found = raw["identified"]
     return Identification(

@@ -39,7 +39,7 @@ def run(
         if input is not None:
             words += ["--input", _input_file(input, Path(scratch))]
         if duration_s is not None:
-            words += ["--duration", repr(float(duration_s))]
+            words.append(f"--duration={float(duration_s)!r}")
         if rrd is not None:
             words += ["--rrd", rrd]
         if view:

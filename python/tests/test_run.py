@@ -58,6 +58,12 @@ def test_an_unknown_key_is_named_with_the_remedy(capfd: pytest.CaptureFixture[st
     assert "muscles.friction.m0_n" in smam.keys("muscle_bench").index
 
 
+def test_a_length_that_is_none_is_refused_with_the_remedy() -> None:
+    with pytest.raises(smam.SmamError, match="--duration -1: must be > 0") as raised:
+        smam.run("muscle_bench", duration_s=-1)
+    assert raised.value.remedy == "give the length of the run in seconds"
+
+
 def test_notes_of_the_program_pass_through(capsys: pytest.CaptureFixture[str]) -> None:
     smam.run("muscle_bench", duration_s=0.2)
     said = capsys.readouterr().err
