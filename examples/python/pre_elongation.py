@@ -40,10 +40,12 @@ panels = {
     "margin_kpa": "least pressure above\nboiling (kPa)",
 }
 figure, axes = plt.subplots(len(panels), sharex=True, figsize=(6.5, 8.0), layout="constrained")
-for axis, (column, label) in zip(axes, panels.items(), strict=False):
+for axis, (column, label) in zip(axes, panels.items()):
     axis.plot(percent, table[column], "o-", color="#1f5fa8", markersize=4)
     axis.axvline(100.0 * paper_ratio, color="0.6", linestyle="--", label="the paper's choice")
-    axis.axvline(100.0 * best["muscles.pre_elongation_ratio"], color="#2a8c4a", label="greatest range, 100 kPa above boiling")
+    axis.axvline(
+        100.0 * best["muscles.pre_elongation_ratio"], color="#2a8c4a", label="greatest range at least 100 kPa above boiling"
+    )
     axis.set_ylabel(label)
     axis.set_ylim(0.0, 1.1 * table[column].max())
     axis.grid(alpha=0.3)
