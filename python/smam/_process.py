@@ -60,7 +60,7 @@ def call(words: Sequence[Word], also_fine: Sequence[int] = (), private: str | No
         if not readers[0].is_alive():
             os.close(ours)
     if exit_code != 0 and (relay.has_error or exit_code not in also_fine):
-        raise SmamError(relay.error() or f"{' '.join(command)}: ended with exit code {exit_code}", exit_code)
+        raise SmamError(relay.error() or f"smam {words[0]} ended with exit code {exit_code}\n{relay.last_words()}", exit_code)
     return Finished(exit_code, b"".join(stdout).decode("utf-8", "replace"))
 
 

@@ -68,10 +68,11 @@ class Relay:
             sys.stderr.flush()
 
     def error(self) -> str:
-        """The error without the word; if there is none, the last lines said."""
-        kept = _ESCAPES.sub("", "".join(self._kept)).strip()
-        if kept:
-            return kept.removeprefix(_ERROR)
+        """The error without the word; empty if there is none."""
+        return _ESCAPES.sub("", "".join(self._kept)).strip().removeprefix(_ERROR)
+
+    def last_words(self) -> str:
+        """The last lines passed on."""
         said = re.split(r"[\r\n]+", _ESCAPES.sub("", "".join(self._said)).strip())
         return "\n".join(said[-5:])
 

@@ -58,6 +58,17 @@ def test_ctrl_c_stops_the_program(everybody: bool) -> None:
     assert Path("long.csv").read_text(encoding="utf-8").startswith("time_s,plunger_mm")
 
 
+@posix
+def test_a_program_that_is_killed_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    killed = tmp_path / "smam"
+    killed.write_text("#!/bin/sh\necho 'note: half way' >&2\nkill -KILL $$\n", encoding="utf-8")
+    killed.chmod(0o755)
+    monkeypatch.setenv("SMAM", str(killed))
+    with pytest.raises(smam.SmamError) as raised:
+        smam.diagnose("rig")
+    assert str(raised.value) == "smam diagnose ended with exit code -9\nnote: half way"
+
+
 def test_as_a_module_it_is_the_program() -> None:
     version = subprocess.run([sys.executable, "-m", "smam", "--version"], capture_output=True, text=True, check=True)
     assert version.stdout.startswith("smam ")
