@@ -61,6 +61,8 @@ def call(words: Sequence[Word], also_fine: Sequence[int] = (), private: str | No
             os.close(ours)
     if exit_code != 0 and (relay.has_error or exit_code not in also_fine):
         raise SmamError(relay.error() or f"smam {words[0]} ended with exit code {exit_code}\n{relay.last_words()}", exit_code)
+    if relay.has_error and sys.stderr is not None:  # kept for an exception that is none
+        print(f"error: {relay.error()}", file=sys.stderr)
     return Finished(exit_code, b"".join(stdout).decode("utf-8", "replace"))
 
 
