@@ -101,7 +101,8 @@ def look(picture):
     faults = []
     for what, (left, top, right, bottom), colour, tolerance, least in LOOKS:
         box = (int(left * SIZE[0]), int(top * SIZE[1]), int(right * SIZE[0]), int(bottom * SIZE[1]))
-        pixels = list(image.crop(box).convert("RGB").tobytes()[i : i + 3] for i in range(0, 3 * (box[2] - box[0]) * (box[3] - box[1]), 3))
+        data = image.crop(box).tobytes()
+        pixels = zip(data[0::3], data[1::3], data[2::3])
         count = sum(near(pixel, colour, tolerance) for pixel in pixels)
         print(f"{'ok  ' if count >= least else 'FAIL'}  {what}: {count} pixels, at least {least}")
         if count < least:
