@@ -115,7 +115,7 @@ class Commands(WithFolder):
 
     def test_lines_comments_and_long_lines(self) -> None:
         _, printed = self.commands("```sh\n# only said\nsmam a \\\n    b\n\nsmam c # more\n```")
-        self.assertEqual([line.split("  ")[-1] for line in printed.splitlines()], ["b", "smam c # more"])
+        self.assertEqual([line.split("  ")[-1] for line in printed.splitlines()], ["smam a b", "smam c # more"])
 
     def test_what_is_not_run_is_printed_with_its_reason(self) -> None:
         faults, printed = self.commands("```sh,norun(takes 4 minutes, or 5)\nsmam fail\n```")
