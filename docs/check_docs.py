@@ -27,12 +27,11 @@ import sys
 import tempfile
 import time
 import tomllib
-from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote
 
-FENCE = re.compile(r"^(\s*)(`{3,}|~{3,})\s*(.*?)\s*$")
-WORD = re.compile(r"(norun)\((.+)\)|(file|exit)=([^,\s]+)|(output)$")
+from doc_pages import Block, Fault, Page, pages_of, read_page
+
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*<?([^)\s>]*)>?(?:\s+\"[^\"]*\")?\s*\)")
 HTML_LINK = re.compile(r"<(?:a|img)\b[^>]*?(?:href|src)=\"([^\"]+)\"")
 DEFINITION = re.compile(r"^ {0,3}\[[^\]^][^\]]*\]:\s+(\S+)", re.MULTILINE)
@@ -47,82 +46,6 @@ fi
 echo "check_docs: of cargo's commands only 'cargo run --release -- ...' can be tried here" >&2
 exit 127
 """
-
-
-@dataclass(frozen=True)
-class Fault:
-    """Something that is not as the page says."""
-
-    page: str
-    line: int
-    text: str
-
-    def __str__(self) -> str:
-        return f"{self.page}:{self.line}: {self.text}"
-
-
-@dataclass
-class Block:
-    """A fenced block: where it begins, its language, the words after it, its text."""
-
-    line: int
-    language: str
-    words: dict[str, str]
-    unknown: list[str]
-    lines: list[str] = field(default_factory=list)
-
-    @property
-    def text(self) -> str:
-        return "\n".join(self.lines) + "\n"
-
-
-@dataclass
-class Page:
-    """A Markdown file, taken apart: fenced blocks, and the prose between them (blocks are empty lines there)."""
-
-    name: str
-    blocks: list[Block]
-    prose: list[str]
-
-
-def read_info(info: str) -> tuple[str, dict[str, str], list[str]]:
-    """The language of a fence and the words after it; words that nobody knows are handed back too."""
-    language, *rest = re.split(r",(?![^(]*\))", info)
-    words, unknown = {}, []
-    for word in (w.strip() for w in rest):
-        if match := WORD.fullmatch(word):
-            a, reason, b, value, c = match.groups()
-            words[a or b or c] = reason or value or ""
-        else:
-            unknown.append(word)
-    return language.strip(), words, unknown
-
-
-def read_page(name: str, text: str) -> Page:
-    """Takes a page apart."""
-    blocks, prose, block, closing = [], [], None, ""
-    for number, line in enumerate(text.splitlines(), 1):
-        fence = FENCE.match(line)
-        if block is not None:
-            if fence and fence[2].startswith(closing) and not fence[3]:
-                block = None
-            else:
-                block.lines.append(line.removeprefix(indent))
-        elif fence:
-            indent, closing = fence[1], fence[2]
-            block = Block(number, *read_info(fence[3]))
-            blocks.append(block)
-        else:
-            prose.append(line)
-            continue
-        prose.append("")
-    return Page(name, blocks, prose)
-
-
-def pages_of(root: Path) -> list[str]:
-    """Names of all pages, from the root."""
-    patterns = ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "proof/README.md", "benches/**/README.md", "docs/**/*.md"]
-    return [p.relative_to(root).as_posix() for pattern in patterns for p in sorted(root.glob(pattern))]
 
 
 # Links
@@ -267,7 +190,7 @@ def missing_output(block: Block, printed: str) -> list[tuple[int, str]]:
 
 def run_page(page: Page, folder: Path, env: dict[str, str], times: bool) -> list[Fault]:
     """Writes the files of a page and runs its commands, in the page's order."""
-    faults, printed = [], None
+    faults, printed = [], ""
     for block in page.blocks:
         if name := block.words.get("file"):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -289,7 +212,7 @@ def check_commands(root: Path, pages: list[Page], smam: Path, times: bool) -> li
     for page in pages:
         if page.name != "README.md" and not page.name.startswith("docs/"):
             continue
-        if any(b.language == "sh" or "file" in b.words for b in page.blocks):
+        if any(b.language == "sh" or b.words for b in page.blocks):
             with tempfile.TemporaryDirectory(prefix="check_docs_") as scratch:
                 faults += run_page(page, Path(scratch), lay_out(Path(scratch), root, smam), times)
     return faults
@@ -300,8 +223,9 @@ def check_commands(root: Path, pages: list[Page], smam: Path, times: bool) -> li
 
 def check_spelling(root: Path, names: list[str], typos: str) -> list[Fault]:
     """Faults that `typos` finds."""
-    config = Path(__file__).parent / "spelling.toml"
-    done = subprocess.run([typos, "--config", str(config), "--format", "json", *names], cwd=root, capture_output=True, text=True)
+    config = Path(__file__).resolve().parent / "spelling.toml"
+    program = str(Path(typos).resolve()) if "/" in typos else typos
+    done = subprocess.run([program, "--config", str(config), "--format", "json", *names], cwd=root, capture_output=True, text=True)
     if done.returncode not in (0, 2):
         return [Fault("typos", 0, done.stderr.strip())]
     found = [json.loads(line) for line in done.stdout.splitlines()]
@@ -321,6 +245,10 @@ def parse_arguments() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parse_arguments()
+    for file in [arguments.smam or arguments.root, *(arguments.root / name for name in arguments.pages)]:
+        if not file.exists():
+            print(f"{file}: does not exist; give the path from where you are (pages: from the root)", file=sys.stderr)
+            return 2
     names = arguments.pages or pages_of(arguments.root)
     pages = [read_page(name, (arguments.root / name).read_text()) for name in names]
     faults = check_links(arguments.root, pages, set(arguments.later)) + check_data(pages)

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import check_docs
-from check_docs import Page, read_page
+from doc_pages import Page, read_page
 
 ECHO = "#!/bin/sh\n[ \"$1\" = fail ] && exit 2\necho \"told: $*\"\n"
 
@@ -90,6 +90,9 @@ class Data(unittest.TestCase):
     def test_a_word_that_nobody_knows(self) -> None:
         self.assertIn("'nrun(slow)'", self.faults("```sh,nrun(slow)\nsmam\n```")[0])
 
+    def test_an_exit_code_is_a_number(self) -> None:
+        self.assertIn("'exit=two'", self.faults("```sh,exit=two\nsmam\n```")[0])
+
     def test_not_running_needs_a_reason(self) -> None:
         self.assertIn("'norun'", self.faults("```sh,norun\nsmam\n```")[0])
         self.assertIn("'norun()'", self.faults("```sh,norun()\nsmam\n```")[0])
@@ -127,6 +130,9 @@ class Commands(WithFolder):
         self.assertEqual(self.commands(shown.format("told: a   b"))[0], [])
         self.assertEqual(self.commands(shown.format("told: ... b"))[0], [])
         self.assertEqual(self.commands(shown.format("told: a c"))[0], ["docs/page.md:6: was not printed: told: a c"])
+
+    def test_output_without_a_command(self) -> None:
+        self.assertEqual(len(self.commands("```text,output\ntold: a\n```")[0]), 1)
 
     def test_files_of_a_page_and_of_a_clone(self) -> None:
         self.assertEqual(self.commands("```csv,file=a/b.csv\nx\n```\n\n```sh\ngrep x a/b.csv\ntest -f scenes/one.toml\n```")[0], [])
