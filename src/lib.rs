@@ -19,6 +19,7 @@ pub mod report;
 pub mod reproduce;
 pub mod scalar;
 pub mod scene;
+pub mod stock;
 pub mod sweep;
 pub mod system;
 pub mod trial;

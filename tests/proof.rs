@@ -24,17 +24,32 @@ fn a_small_proof_is_scored_and_goes_on_where_it_was() {
     assert!(table.contains("false alarms where nothing is missing"), "{table}");
     let rows = fs::read_to_string(folder.path().join("rows.jsonl")).expect("rows");
     assert_eq!(rows.lines().count(), 2);
-    // A kill in the middle: one answer is half written.
+    // A kill in the middle: one answer is half written, its row is not there yet.
     let answers = folder.path().join("answers");
     let one = fs::read_dir(&answers).expect("answers").next().expect("one").expect("readable").path();
     fs::remove_file(one.join("seconds.txt")).expect("there");
+    let name = one.file_name().expect("a name").to_string_lossy().into_owned();
+    let kept: String = rows.lines().filter(|l| !l.contains(&name)).map(|l| format!("{l}\n")).collect();
+    fs::write(folder.path().join("rows.jsonl"), kept).expect("written");
     let again = smam(&arguments);
-    assert!(text(&again.stderr).contains("2 cases, 1 of them answered already"), "{}", text(&again.stderr));
+    assert!(text(&again.stderr).contains("2 cases, 1 of them done already"), "{}", text(&again.stderr));
     let without_times = |rows: &str| -> Vec<String> {
         rows.lines().map(|l| l.split(",\"seconds\"").next().unwrap_or("").to_owned()).collect()
     };
     let rows_again = fs::read_to_string(folder.path().join("rows.jsonl")).expect("rows");
     assert_eq!(without_times(&rows), without_times(&rows_again));
+    // Rows and seals alone are enough to go on from: what was published can be continued elsewhere.
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    fs::create_dir_all(elsewhere.path().join("cases")).expect("a folder");
+    for file in ["rows.jsonl", "cases/seals.txt"] {
+        fs::copy(folder.path().join(file), elsewhere.path().join(file)).expect("copied");
+    }
+    let out = elsewhere.path().to_str().expect("UTF-8");
+    let continued = smam(&["proof", "--cases", "1", "--nothing", "1", "--seed", "3", "--out", out]);
+    assert!(text(&continued.stderr).contains("2 cases, 2 of them done already"), "{}", text(&continued.stderr));
+    let table_again = fs::read_to_string(elsewhere.path().join("table.md")).expect("a table");
+    let first_table = fs::read_to_string(folder.path().join("table.md")).expect("a table");
+    assert_eq!(first_table, table_again);
 }
 
 #[test]

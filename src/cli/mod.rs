@@ -6,6 +6,7 @@ macro_rules! say {
     ($($words:tt)*) => { $crate::cli::print_line(format_args!($($words)*)) };
 }
 
+mod angles;
 mod ceiling;
 mod check;
 mod compare;
@@ -36,7 +37,7 @@ mod trial;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::{Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use error::CliError;
 
@@ -69,8 +70,8 @@ enum Command {
     Effects(effects::EffectsArguments),
     /// Read a scene and say whether it is right
     Check(check::CheckArguments),
-    /// List the scenes that come with the program
-    Scenes,
+    /// List the scenes that come with the program, or copy one
+    Scenes(scenes::ScenesArguments),
     /// Run a scene at many points of its keys and tabulate what each run shows
     Sweep(sweep::SweepArguments),
     /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
@@ -87,6 +88,25 @@ enum Command {
     Reproduce(reproduce::ReproduceArguments),
     /// Generate a model file
     Model(model::ModelArguments),
+    /// Print a script that completes commands and options in a shell
+    Completions(CompletionsArguments),
+}
+
+#[derive(Args)]
+#[command(after_help = "Examples:
+  smam completions bash > ~/.local/share/bash-completion/completions/smam
+  smam completions zsh > ~/.zfunc/_smam             with ~/.zfunc in $fpath
+  smam completions fish > ~/.config/fish/completions/smam.fish")]
+struct CompletionsArguments {
+    /// The shell
+    shell: clap_complete::Shell,
+}
+
+fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, CliError> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "smam", &mut script);
+    print_text(&String::from_utf8_lossy(&script))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Parses the arguments and runs the command.
@@ -110,7 +130,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Identify(arguments)) => identify::identify(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Scenes) => scenes::scenes(),
+        Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Trial(arguments)) => trial::trial(&arguments),
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
@@ -119,6 +139,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
         Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
+        Some(Command::Completions(arguments)) => completions(&arguments),
     }
 }
 

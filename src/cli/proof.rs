@@ -1,5 +1,6 @@
 //! `smam proof`.
 
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -8,15 +9,18 @@ use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use smam::conceal::Hiding;
 use smam::diagnose::{Step, Verdict};
-use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, settle};
+use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, row, settle};
 
 use super::CliError;
 use super::ceiling::write_ceiling;
 use super::diagnose::StepName;
-use super::score::{open_all, read_seals, write_score, write_seals};
+use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
 
 /// Arguments of `smam proof`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam proof --cases 20 --seed 42                 your own seed; goes on where it was when started again
+  smam proof --cases 20 --seed 42 --without pressure")]
 pub struct ProofArguments {
     /// Cases in which something is missing
     #[arg(long, default_value_t = 20)]
@@ -38,13 +42,12 @@ pub struct ProofArguments {
     out: PathBuf,
 }
 
-/// Runs the command: conceals every case, publishes the seals, diagnoses case after case, opens the seals,
-/// plays the experiments that ambiguous answers propose.
+/// Runs the command: conceals every case, publishes the seals, then case after case diagnoses, opens the seal and, of an
+/// ambiguous answer, plays the experiment that it proposes. Rows that are there already, with their seals, are kept.
 pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let nothing = arguments.nothing.unwrap_or(arguments.cases);
     let planned = Plan { hiding: arguments.cases, nothing, seed: arguments.seed }.cases();
     let folders = Folders::below(&arguments.out);
-    let seals = conceal_all(&planned, &folders)?;
     let (folders, out) = match arguments.without.and_then(|s| s.to_possible_value()) {
         Some(step) => {
             let out = arguments.out.join(format!("without_{}", step.get_name()));
@@ -52,9 +55,12 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
         }
         None => (folders, arguments.out.clone()),
     };
-    answer_all(&planned, &folders, arguments.without.map(StepName::step))?;
-    let mut rows = open_all(&seals, &folders)?;
-    settle_all(&mut rows, &seals, &folders, &out)?;
+    let journal = out.join("rows.jsonl");
+    let former = former_rows(&journal, &planned)?;
+    let seals = conceal_all(&planned, &former, &folders)?;
+    let run =
+        Run { planned: &planned, seals: &seals, folders: &folders, without: arguments.without.map(StepName::step) };
+    let rows = run.answer_all(former, &out, &journal)?;
     write_score(&rows, &out)?;
     if arguments.ceiling > 0 {
         write_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
@@ -62,15 +68,25 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Makes what is not there yet; the seals stand in cases/seals.txt before anything is diagnosed.
-fn conceal_all(planned: &[Planned], folders: &Folders) -> Result<Vec<(String, String)>, CliError> {
+/// Rows that a former run has written, of the cases that are planned.
+fn former_rows(journal: &Path, planned: &[Planned]) -> Result<Vec<Row>, CliError> {
+    let rows = if journal.is_file() { read_rows(journal)? } else { Vec::new() };
+    let is_planned = |r: &Row| planned.iter().any(|c| c.name == r.name && c.rig == r.rig && c.hiding == r.hiding);
+    Ok(rows.into_iter().filter(is_planned).collect())
+}
+
+/// Makes what is not there yet; the seals stand in cases/seals.txt before anything is diagnosed. Of a case with a row
+/// only the seal is wanted.
+fn conceal_all(planned: &[Planned], former: &[Row], folders: &Folders) -> Result<Vec<(String, String)>, CliError> {
     let path = folders.cases.join("seals.txt");
-    let known = if path.is_file() { read_seals(&path)? } else { Vec::new() };
+    let published: HashMap<String, String> =
+        if path.is_file() { read_seals(&path)?.into_iter().collect() } else { HashMap::new() };
+    let has_row: HashSet<&str> = former.iter().map(|r| r.name.as_str()).collect();
     let seal = |case: &Planned| -> Result<(String, String), ProofError> {
         let there = folders.seal_of(&case.name);
         // What was published counts, should the answer have been changed since.
-        let published = known.iter().find(|(name, _)| there.is_some() && *name == case.name);
-        if let Some(seal) = published.map(|(_, seal)| seal.clone()).or(there) {
+        let is_done = there.is_some() || has_row.contains(case.name.as_str());
+        if let Some(seal) = published.get(&case.name).filter(|_| is_done).cloned().or(there) {
             return Ok((case.name.clone(), seal));
         }
         let seal = conceal_case(case, folders)?;
@@ -82,28 +98,47 @@ fn conceal_all(planned: &[Planned], folders: &Folders) -> Result<Vec<(String, St
     Ok(seals)
 }
 
-fn answer_all(planned: &[Planned], folders: &Folders, without: Option<Step>) -> Result<(), CliError> {
-    let missing: Vec<&Planned> = planned.iter().filter(|c| !folders.is_answered(&c.name)).collect();
-    eprintln!("{} cases, {} of them answered already", planned.len(), planned.len() - missing.len());
-    let begun = Instant::now();
-    for (i, case) in missing.iter().enumerate() {
-        answer_case(&case.name, folders, without)?;
-        let took_s = begun.elapsed().as_secs_f64();
-        let left_s = took_s / (i + 1) as f64 * (missing.len() - i - 1) as f64;
-        let seconds = folders.seconds(&case.name).unwrap_or(f64::NAN);
-        eprintln!("{}/{} {} {seconds:.1} s; about {:.0} min left", i + 1, missing.len(), case.name, left_s / 60.0);
-    }
-    Ok(())
+/// What is to be answered, and how.
+struct Run<'a> {
+    planned: &'a [Planned],
+    /// In the order of the plan.
+    seals: &'a [(String, String)],
+    folders: &'a Folders,
+    without: Option<Step>,
 }
 
-/// Plays what ambiguous answers propose, and a random programme beside it; what was diagnosed already is kept.
-fn settle_all(rows: &mut [Row], seals: &[(String, String)], folders: &Folders, out: &Path) -> Result<(), CliError> {
-    let is_open = |r: &Row| r.verdict == Verdict::Ambiguous && r.hiding != Hiding::Nothing;
-    let count = rows.iter().filter(|r| is_open(r)).count();
-    for (i, row) in rows.iter_mut().filter(|r| is_open(r)).enumerate() {
-        eprintln!("experiment {}/{count} for {}", i + 1, row.name);
-        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { continue };
-        row.settled = settle(&open(&row.name, seal, folders)?, folders, &out.join("experiments"))?;
+impl Run<'_> {
+    /// The rows of all cases, in the order of the plan; each is on disk before the next case is begun.
+    fn answer_all(&self, mut rows: Vec<Row>, out: &Path, journal: &Path) -> Result<Vec<Row>, CliError> {
+        let done: HashSet<String> = rows.iter().map(|r| r.name.clone()).collect();
+        let seals = self.seals.iter().filter(|(name, _)| !done.contains(name));
+        let missing: Vec<&(String, String)> = seals.collect();
+        eprintln!("{} cases, {} of them done already", self.planned.len(), done.len());
+        let begun = Instant::now();
+        for (i, (name, seal)) in missing.iter().enumerate() {
+            rows.push(self.answer(name, seal, out)?);
+            write_rows(&rows, journal)?;
+            let took_s = begun.elapsed().as_secs_f64();
+            let left_s = took_s / (i + 1) as f64 * (missing.len() - i - 1) as f64;
+            let seconds = self.folders.seconds(name).unwrap_or(f64::NAN);
+            eprintln!("{}/{} {name} {seconds:.1} s; about {:.0} min left", i + 1, missing.len(), left_s / 60.0);
+        }
+        let place: HashMap<&str, usize> = self.planned.iter().enumerate().map(|(i, c)| (c.name.as_str(), i)).collect();
+        rows.sort_by_key(|r| place.get(r.name.as_str()).copied());
+        Ok(rows)
     }
-    Ok(())
+
+    /// Diagnoses a case unless its answer is there, opens its seal, and tries the experiment of an ambiguous answer.
+    fn answer(&self, name: &str, seal: &str, out: &Path) -> Result<Row, ProofError> {
+        if !self.folders.is_answered(name) {
+            answer_case(name, self.folders, self.without)?;
+        }
+        let truth = open(name, seal, self.folders)?;
+        let mut row = row(&truth, self.folders)?;
+        if row.verdict == Verdict::Ambiguous && row.hiding != Hiding::Nothing && self.without.is_none() {
+            eprintln!("the proposed experiment, and a random one, for {name}");
+            row.settled = settle(&truth, self.folders, &out.join("experiments"))?;
+        }
+        Ok(row)
+    }
 }

@@ -1,17 +1,78 @@
 //! `smam scenes`.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::Args;
+use smam::recording::did_you_mean;
 use smam::scene::{STOCK_SCENES, Scene};
+use smam::stock;
 
 use super::CliError;
+use super::files::write;
 
-/// Lists the stock scenes with their titles.
-pub fn scenes() -> Result<ExitCode, CliError> {
-    for name in STOCK_SCENES {
-        let scene = Scene::load(name, &[])?;
-        say!("{name:<24} {}", scene.file.title);
+/// Arguments of `smam scenes`.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  smam scenes                                  what there is
+  smam scenes muscle_bench --copy-to my_rig    my_rig/scenes/muscle_bench.toml and its model, to be changed")]
+pub struct ScenesArguments {
+    /// One of them: its title, or a copy of it
+    name: Option<String>,
+    /// Copy the scene (all of them if none is named) and its model to DIR/scenes and DIR/models
+    #[arg(long, value_name = "DIR")]
+    copy_to: Option<PathBuf>,
+}
+
+/// Lists the stock scenes with their titles, or copies them.
+pub fn scenes(arguments: &ScenesArguments) -> Result<ExitCode, CliError> {
+    let names = match &arguments.name {
+        Some(name) => vec![known(name)?],
+        None => STOCK_SCENES.to_vec(),
+    };
+    for name in &names {
+        let scene = carried(name)?;
+        match &arguments.copy_to {
+            Some(folder) => copy(&scene, folder)?,
+            None => say!("{name:<24} {}", scene.file.title),
+        }
     }
-    say!("\nRun one: smam run {}", STOCK_SCENES[0]);
+    if arguments.copy_to.is_none() {
+        say!("\nRun one: smam run {}", names[0]);
+    }
     Ok(ExitCode::SUCCESS)
+}
+
+fn known(name: &str) -> Result<&'static str, CliError> {
+    STOCK_SCENES.into_iter().find(|known| *known == name).ok_or_else(|| {
+        let nearest = did_you_mean(name, &STOCK_SCENES);
+        CliError::Usage(format!("{name}: no stock scene{nearest}\n  remedy: `smam scenes` lists them"))
+    })
+}
+
+/// The scene as the program carries it, whatever stands in `scenes/` here.
+fn carried(name: &str) -> Result<Scene, CliError> {
+    let path = stock::builtin(&format!("scenes/{name}.toml")).unwrap_or_default();
+    Ok(Scene::load(&path.to_string_lossy(), &[])?)
+}
+
+/// Writes the scene and its model; a file that is there with another content stays.
+fn copy(scene: &Scene, folder: &Path) -> Result<(), CliError> {
+    let model = scene.file.mechanism.as_ref().map(|m| stock::join(scene.folder(), &m.urdf));
+    for path in std::iter::once(scene.path.clone()).chain(model) {
+        let text = stock::read_text(&path).map_err(|e| CliError::Failed(format!("{}: {e}", path.display())))?;
+        let to = folder.join(path.to_string_lossy().trim_start_matches(stock::PREFIX));
+        let there = std::fs::read_to_string(&to).ok();
+        if there.as_ref().is_some_and(|t| *t != text) {
+            return Err(CliError::Usage(format!(
+                "{}: is there already, with other content\n  remedy: name another folder, or move it away",
+                to.display()
+            )));
+        }
+        if there.is_none() {
+            write(&to, &text)?;
+        }
+        say!("{}", to.display());
+    }
+    Ok(())
 }

@@ -13,6 +13,9 @@ use super::proof_figure::proof_svg;
 
 /// Arguments of `smam score`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam diagnose out/blind/case_7 --out out/answers/case_7
+  smam score out/blind --answers out/answers")]
 pub struct ScoreArguments {
     /// Folder that `smam conceal` wrote: cases, seals.txt and sealed answers
     cases: PathBuf,
@@ -62,13 +65,33 @@ pub fn open_all<'a>(
     seals.into_par_iter().map(|(name, seal)| row(&open(name, seal, folders)?, folders)).collect()
 }
 
+fn not_json(error: serde_json::Error) -> CliError {
+    CliError::Failed(format!("the score cannot be written as JSON: {error}"))
+}
+
+/// Writes opened cases, one a line.
+pub fn write_rows(rows: &[Row], path: &Path) -> Result<(), CliError> {
+    let lines: Vec<String> = rows.iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(not_json)?;
+    write(path, &format!("{}\n", lines.join("\n")))
+}
+
+/// Reads what [`write_rows`] wrote.
+pub fn read_rows(path: &Path) -> Result<Vec<Row>, CliError> {
+    let refuse = |why: String| {
+        CliError::Usage(format!("{}: {why}\n  remedy: move it away; the cases are then answered again", path.display()))
+    };
+    let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let row = |(i, line): (usize, &str)| {
+        serde_json::from_str(line).map_err(|e| refuse(format!("line {}: not a row of a proof: {e}", i + 1)))
+    };
+    text.lines().enumerate().map(row).collect()
+}
+
 /// Writes rows, figures, picture and table, and prints the table.
 pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
-    let json = |e: serde_json::Error| CliError::Failed(format!("the score cannot be written as JSON: {e}"));
     let figures = metrics(rows);
-    let lines: Result<Vec<String>, serde_json::Error> = rows.iter().map(serde_json::to_string).collect();
-    write(&out.join("rows.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
-    write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(json)?))?;
+    write_rows(rows, &out.join("rows.jsonl"))?;
+    write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(not_json)?))?;
     let page = page(rows, &figures);
     write(&out.join("table.md"), &page)?;
     write(&out.join("proof.svg"), &proof_svg(rows))?;

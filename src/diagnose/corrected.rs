@@ -3,6 +3,7 @@
 use toml::Table;
 
 use crate::scene::{Override, Scene, SceneError, SceneFile};
+use crate::stock;
 
 use super::case::Case;
 use super::fit::Fit;
@@ -15,7 +16,7 @@ use super::fit::Fit;
 pub fn fitted_scene(case: &Case, fit: &Fit, suffix: &str, title: &str) -> Result<String, SceneError> {
     let mut file = case.scene.file.clone();
     if let Some(mechanism) = &mut file.mechanism {
-        let urdf = case.scene.folder().join(&mechanism.urdf);
+        let urdf = stock::join(case.scene.folder(), &mechanism.urdf);
         mechanism.urdf = urdf.canonicalize().unwrap_or(urdf);
     }
     file.name = format!("{}_{suffix}", file.name);

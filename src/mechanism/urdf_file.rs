@@ -9,7 +9,7 @@ use super::xml_scan::{XmlScan, scan};
 
 /// The parsed URDF and what its reader dropped.
 pub(super) fn read(file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
-    let text = std::fs::read_to_string(file).map_err(|error| MechanismError::Read {
+    let text = crate::stock::read_text(file).map_err(|error| MechanismError::Read {
         file: file.to_path_buf(),
         reason: error.to_string(),
         remedy: "check `urdf` in the scene; it is relative to the scene file".into(),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::Table;
 
 use crate::recording::did_you_mean;
+use crate::stock;
 
 use super::overrides::Override;
 use super::{Program, SceneError, SceneFile, check};
@@ -38,8 +39,7 @@ impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text =
-            std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         Self::parse(&text, &path, overrides)
     }
 
@@ -105,19 +105,15 @@ fn place(path: &serde_path_to_error::Path, message: &str) -> String {
     if path.iter().next().is_none() { message.to_owned() } else { format!("{path}: {message}") }
 }
 
-/// A path as it is, or a stock scene by name: looked for in `scenes/` here, beside the program, and where it was built.
+/// A path as it is, or a stock scene by name: `scenes/NAME.toml` here if there is one, else the one that the program carries.
 pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     let direct = Path::new(path_or_name);
-    if direct.extension().is_some() || direct.exists() {
+    if direct.extension().is_some() || direct.is_file() {
         return Ok(direct.to_owned());
     }
-    let file = Path::new("scenes").join(format!("{path_or_name}.toml"));
-    let beside_program = std::env::current_exe().ok();
-    let built_at = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = std::iter::once(Path::new(""))
-        .chain(beside_program.iter().flat_map(|p| p.ancestors().skip(1)))
-        .chain(std::iter::once(built_at));
-    folders.map(|folder| folder.join(&file)).find(|path| path.is_file()).ok_or_else(|| SceneError::UnknownName {
+    let file = format!("scenes/{path_or_name}.toml");
+    let here = Some(PathBuf::from(&file)).filter(|path| path.is_file());
+    here.or_else(|| stock::builtin(&file)).ok_or_else(|| SceneError::UnknownName {
         name: path_or_name.to_owned(),
         nearest: did_you_mean(path_or_name, &STOCK_SCENES),
         known: STOCK_SCENES.join(", "),

@@ -15,6 +15,7 @@ use super::spec::{LimitSpec, SamplingSpec, SweepFile, VarySpec};
 use super::vocabulary::Vocabulary;
 use crate::recording::did_you_mean;
 use crate::scene::{OutputSpec, Override, Scene, SceneError, calibration_key};
+use crate::stock;
 use crate::system::Schedule;
 
 /// A sweep ready to run.
@@ -62,8 +63,7 @@ impl Plan {
         let fingerprint = fingerprint(&file, &base)?;
         let outputs = outputs(&file, &measures);
         let path = base.path;
-        let text =
-            std::fs::read_to_string(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
         plan.evolution()?;
         plan.check_ends()?;

@@ -109,6 +109,12 @@ impl Simulation {
         Ok(())
     }
 
+    /// Position of a free joint, rad or m; none of a joint that is not one.
+    pub fn joint_position(&self, joint: &str) -> Option<f64> {
+        let coordinates = self.mechanism.as_ref()?.coordinates();
+        coordinates.iter().position(|c| c.name == joint).map(|i| self.built.state.y()[i])
+    }
+
     /// Replaces the programme of an input; nothing happens if there is no such channel.
     pub fn set_input(&mut self, channel: &str, source: InputSource) {
         if let Some(i) = self.scene.file.input.iter().position(|c| c.channel == channel) {

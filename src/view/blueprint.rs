@@ -91,16 +91,18 @@ fn below(graph: &SceneGraph) -> Vec<(f32, Pane)> {
     panes
 }
 
-/// Plots along the chain, then events, joints and energies.
+/// Plots along the chain, then joints, events and energies.
 fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
     let mut plots: Vec<Pane> =
         groups(&graph.channels).into_iter().map(|group| series(&group.title, path(["plots", &group.key]))).collect();
     let rest = plots.split_off(plots.len().min(PLOTS_IN_SIGHT));
-    let mut tabs = vec![events()];
-    tabs.extend(rest);
-    if !first.joint_positions.is_empty() {
-        tabs.push(series("Joints (rad; sliders m)", path(["joints"])));
+    let mut tabs = Vec::new();
+    if !graph.joints.is_empty() {
+        tabs.push(series("Joints (°; sliders mm)", path(["joints"])));
+        tabs.push(view(Kind::Document, "Angles", path(["angles"]), Vec::new()));
     }
+    tabs.push(events());
+    tabs.extend(rest);
     if !first.energy_j.is_empty() {
         tabs.push(series("Energy (J)", path(["energy"])));
     }

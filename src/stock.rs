@@ -1,0 +1,122 @@
+//! Scenes and models that come with the program, carried inside it.
+//!
+//! They are named by paths that begin with [`PREFIX`], `builtin:scenes/muscle_bench.toml`, so that a program without its
+//! sources at hand (an installed one) reads and names them like files.
+
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// Begins the path of a file that the program carries.
+pub const PREFIX: &str = "builtin:";
+
+macro_rules! carried {
+    ($($path:literal),* $(,)?) => {
+        &[$(($path, include_str!(concat!("../", $path)))),*]
+    };
+}
+
+/// Path and text of every file that the program carries.
+pub const FILES: &[(&str, &str)] = carried![
+    "scenes/muscle_bench.toml",
+    "scenes/muscle_free.toml",
+    "scenes/muscle_lift.toml",
+    "scenes/muscle_blocked.toml",
+    "scenes/muscle_printed_model.toml",
+    "scenes/antagonistic_pulley.toml",
+    "scenes/bending_catheter.toml",
+    "scenes/grip_and_release.toml",
+    "scenes/pressure_muscle.toml",
+    "scenes/tendon_sheath.toml",
+    "scenes/driven_axis.toml",
+    "models/antagonistic_pulley.urdf",
+    "models/bending_catheter.urdf",
+    "models/muscle_bench.urdf",
+];
+
+/// The path of a file that the program carries; none of one that it does not.
+pub fn builtin(path: &str) -> Option<PathBuf> {
+    FILES.iter().any(|(known, _)| *known == path).then(|| PathBuf::from(format!("{PREFIX}{path}")))
+}
+
+/// `file` as seen from `folder`, as [`Path::join`] does; a file that the program carries stands on its own.
+pub fn join(folder: &Path, file: &Path) -> PathBuf {
+    if inside(file).is_some() { tidy(file) } else { tidy(&folder.join(file)) }
+}
+
+/// The text of a file, of this machine or carried.
+///
+/// # Errors
+/// A file that cannot be read, or is not carried.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    let Some(name) = inside(path) else { return std::fs::read_to_string(path) };
+    let found = FILES.iter().find(|(known, _)| Path::new(known) == without_parents(&name));
+    found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| {
+        let known: Vec<&str> = FILES.iter().map(|(known, _)| *known).collect();
+        io::Error::new(
+            io::ErrorKind::NotFound,
+            format!("the program carries no such file; it has {}", known.join(", ")),
+        )
+    })
+}
+
+/// What stands behind the prefix.
+fn inside(path: &Path) -> Option<PathBuf> {
+    path.to_str()?.strip_prefix(PREFIX).map(PathBuf::from)
+}
+
+/// A carried file's path without `..`; other paths as they are: links in them may lead elsewhere.
+fn tidy(path: &Path) -> PathBuf {
+    match inside(path) {
+        Some(name) => PathBuf::from(format!("{PREFIX}{}", without_parents(&name).display())),
+        None => path.to_owned(),
+    }
+}
+
+fn without_parents(path: &Path) -> PathBuf {
+    path.components().fold(PathBuf::new(), |mut so_far, part| {
+        match part {
+            Component::ParentDir => {
+                so_far.pop();
+            }
+            Component::CurDir => {}
+            other => so_far.push(other),
+        }
+        so_far
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_scenes_and_models_is_carried() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        for (folder, ending) in [("scenes", "toml"), ("models", "urdf")] {
+            for entry in std::fs::read_dir(root.join(folder)).expect("a folder of the project") {
+                let path = entry.expect("an entry").path();
+                if path.extension().is_some_and(|e| e == ending) {
+                    let name = format!("{folder}/{}", path.file_name().expect("a name").to_string_lossy());
+                    assert!(builtin(&name).is_some(), "{name} is not in FILES");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_carried_file_is_found_from_a_carried_folder_and_from_any_other() {
+        let from_scene = join(Path::new("builtin:scenes"), Path::new("../models/muscle_bench.urdf"));
+        assert_eq!(from_scene, Path::new("builtin:models/muscle_bench.urdf"));
+        let from_elsewhere = join(Path::new("/somewhere"), Path::new("builtin:models/muscle_bench.urdf"));
+        assert_eq!(from_elsewhere, from_scene);
+        assert!(read_text(&from_scene).expect("carried").contains("<robot"));
+        let message = read_text(Path::new("builtin:models/none.urdf")).expect_err("not carried").to_string();
+        assert!(message.contains("models/muscle_bench.urdf"), "{message}");
+    }
+
+    #[test]
+    fn other_paths_stay_as_they_are() {
+        let path = join(Path::new("a/../b"), Path::new("../c.urdf"));
+        assert_eq!(path, Path::new("a/../b/../c.urdf"));
+    }
+}

@@ -1,0 +1,93 @@
+//! Contract: every example runs, in an empty folder, and prints what it is there to show.
+//!
+//! `cargo test` builds the examples beside this program; here they are started.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+fn program(example: &str) -> PathBuf {
+    let own = std::env::current_exe().expect("a running program has a path");
+    let build = own.parent().and_then(|deps| deps.parent()).expect("target/PROFILE/deps/NAME");
+    build.join("examples").join(format!("{example}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// What an example prints.
+fn printed(example: &str, arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = program(example);
+    assert!(program.is_file(), "{}: not built; `cargo test` builds it", program.display());
+    let done = Command::new(&program).args(arguments).current_dir(folder.path()).output().expect("it starts");
+    assert!(done.status.success(), "{example}: {}", String::from_utf8_lossy(&done.stderr));
+    String::from_utf8(done.stdout).expect("UTF-8")
+}
+
+/// The number that stands before some words.
+fn number_before(text: &str, words: &str) -> f64 {
+    let before = text.split(words).next().expect("a first part");
+    before.split_whitespace().last().and_then(|w| w.trim_start_matches('(').parse().ok()).unwrap_or(f64::NAN)
+}
+
+#[test]
+fn one_muscle() {
+    let text = printed("one_muscle", &[]);
+    let range_mm = number_before(&text, " mm, pressure");
+    assert!((26.0..28.0).contains(&range_mm), "{text}");
+    assert_eq!(text.matches("energy unaccounted").count(), 2);
+}
+
+#[test]
+fn pulley() {
+    let text = printed("pulley", &[]);
+    assert_eq!(text.lines().count(), 5, "{text}");
+}
+
+#[test]
+fn own_finger() {
+    let text = printed("own_finger", &[]);
+    assert!(text.contains("knuckle_deg") && text.contains("middle_deg"), "{text}");
+    let reach: f64 =
+        text.lines().next().and_then(|l| l.rsplit(' ').next()).and_then(|w| w.parse().ok()).expect("a number");
+    assert!(reach > 10.0, "{text}");
+}
+
+#[test]
+fn custom_effect() {
+    let text = printed("custom_effect", &[]);
+    let at_most: Vec<f64> = text.lines().map(|l| number_before(l, " mm at most")).collect();
+    assert!(at_most.len() == 3 && at_most[0] > at_most[1] && at_most[1] > at_most[2], "{text}");
+}
+
+#[test]
+fn find_a_leak() {
+    let text = printed("find_a_leak", &[]);
+    let answer: serde_json::Value = serde_json::from_str(&text).expect("a diagnosis");
+    assert_eq!(answer["verdict"], "missing_physics");
+    assert_eq!(answer["effects"][0]["name"], "leak");
+}
+
+#[test]
+fn sweep() {
+    let text = printed("sweep", &[]);
+    assert_eq!(text.lines().count(), 10, "{text}");
+    assert!(!text.contains("NaN"), "{text}");
+}
+
+#[test]
+fn feedforward() {
+    let text = printed("feedforward", &[]);
+    assert!(number_before(&text, " times less") > 3.0, "{text}");
+}
+
+/// Every file in `examples/` with a number is started here.
+#[test]
+fn none_is_forgotten() {
+    let here = include_str!("examples.rs");
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")).expect("a folder of the project") {
+        let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
+        let Some((_, rest)) = name.split_once('_').filter(|(n, _)| n.chars().all(|c| c.is_ascii_digit())) else {
+            continue;
+        };
+        let example = rest.trim_end_matches(".rs");
+        assert!(here.contains(&format!("printed(\"{example}\"")), "{name} is not run by tests/examples.rs");
+    }
+}
