@@ -3,7 +3,8 @@
 
 Looks at README.md, ARCHITECTURE.md, CHANGELOG.md, proof/README.md, benches/**/README.md and docs/**/*.md.
 
-Links     Every relative link and picture exists, anchors included. A page of the book links to no file outside docs/.
+Links     Every relative link and picture exists, anchors included. A page of the book links to no file outside docs/,
+          and docs/SUMMARY.md lists all pages.
 Data      Every fenced block of toml or json can be read.
 Commands  Every fenced block of sh in README.md and docs/ is run, line by line, in one scratch folder per page which holds
           scenes/ and models/ as a clone does. `smam` and `cargo run --release --` both mean the program of --smam.
@@ -102,6 +103,16 @@ def check_links(root: Path, pages: list[Page], later: set[str]) -> list[Fault]:
     cache: dict[str, set[str]] = {}
     wrong = [(page.name, line, check_link(root, page, t, cache, later)) for page in pages for line, t in links(page)]
     return [Fault(name, line, text) for name, line, text in wrong if text]
+
+
+def check_contents(root: Path) -> list[Fault]:
+    """Pages of docs/ that the book's table of contents does not list: mdBook would leave them out without a word."""
+    table = root / "docs" / "SUMMARY.md"
+    if not table.exists():
+        return [Fault("docs/SUMMARY.md", 0, "does not exist; it lists the pages of the book")]
+    listed = {(table.parent / target).resolve() for _, target in links(read_page("docs/SUMMARY.md", table.read_text()))}
+    missing = [p for p in sorted(table.parent.rglob("*.md")) if p != table and p.resolve() not in listed]
+    return [Fault("docs/SUMMARY.md", 0, f"does not list {p.relative_to(table.parent).as_posix()}: add a line for it") for p in missing]
 
 
 # Data
@@ -251,7 +262,7 @@ def main() -> int:
             return 2
     names = arguments.pages or pages_of(arguments.root)
     pages = [read_page(name, (arguments.root / name).read_text()) for name in names]
-    faults = check_links(arguments.root, pages, set(arguments.later)) + check_data(pages)
+    faults = check_links(arguments.root, pages, set(arguments.later)) + check_data(pages) + check_contents(arguments.root)
     if arguments.typos:
         faults += check_spelling(arguments.root, names, arguments.typos)
     if arguments.smam:

@@ -74,6 +74,13 @@ class Links(WithFolder):
     def test_what_is_no_link(self) -> None:
         self.assertEqual(self.links("`[a](b.md)`\n\n```sh\n[a](b.md)\n```\n\n[web](https://example.org)"), [])
 
+    def test_a_page_that_the_book_does_not_list(self) -> None:
+        (self.root / "docs" / "SUMMARY.md").write_text("- [A](a.md)\n")
+        (self.root / "docs" / "a.md").write_text("# A\n")
+        self.assertEqual(check_docs.check_contents(self.root), [])
+        (self.root / "docs" / "b.md").write_text("# B\n")
+        self.assertEqual([f.text for f in check_docs.check_contents(self.root)], ["does not list b.md: add a line for it"])
+
     def test_a_page_that_comes_later(self) -> None:
         self.assertEqual(self.links("[b](b.md)", later=("docs/b.md",)), [])
 
