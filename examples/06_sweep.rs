@@ -14,7 +14,7 @@ format = 1
 name = "wall_and_line"
 scene = "muscle_bench"
 duration_s = 12.0
-set = ["input.0.program.frequency_hz=0.25"]
+set = ["input.plunger_mm.program.frequency_hz=0.25"]
 
 [[vary]]
 key = "muscles.tube.material.c1_pa"

@@ -238,7 +238,7 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
         let refuse = |message: String, remedy: &str| {
             Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
         };
-        let Some((_, value)) = known.iter().find(|(name, _)| name == calibration_key(key)) else {
+        let Some(value) = base.value(calibration_key(key)) else {
             let message = format!("the scene has no such key{}", did_you_mean(key, &names));
             return refuse(message, "`smam check SCENE --keys` lists them");
         };
