@@ -10,8 +10,8 @@ use crate::system::observe::{Frame, SceneGraph};
 
 const STEPS: usize = 48;
 /// Height of a strip and the distance between two.
-const HEIGHT: f32 = 0.06;
-pub(super) const SPACING: f32 = 0.34;
+const HEIGHT: f32 = 0.05;
+pub(super) const SPACING: f32 = 0.21;
 
 /// One strip: a title, its colours from left to right, texts below both ends.
 struct Strip {
