@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::geometry::Shape;
 use super::stl::{self, Triangles};
+use crate::stock;
 
 /// Why a mesh cannot be had: what is wrong, and with which file.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +25,7 @@ pub(super) fn read(urdf: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, Me
         return Err(fault(format!("*.{ending} meshes are not read"), convert));
     }
     let wanted = "give the file relative to the URDF, or keep the package's folder above the URDF";
-    let bytes = std::fs::read(&file).map_err(|e| fault(e.to_string(), wanted))?;
+    let bytes = stock::read(&file).map_err(|e| fault(e.to_string(), wanted))?;
     let found = if ending == "obj" { obj(&bytes) } else { stl::read(&bytes) };
     let found = found.map_err(|reason| fault(reason, convert))?;
     if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
@@ -52,7 +53,7 @@ fn obj(bytes: &[u8]) -> Result<Triangles, String> {
 /// `ROS_PACKAGE_PATH`, and last below the URDF's folder.
 fn find(folder: &Path, name: &str) -> PathBuf {
     let name = name.strip_prefix("file://").unwrap_or(name);
-    let Some(packaged) = name.strip_prefix("package://") else { return folder.join(name) };
+    let Some(packaged) = name.strip_prefix("package://") else { return stock::join(folder, Path::new(name)) };
     let inner = packaged.split_once('/').map_or(packaged, |(_, inner)| inner);
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let above = folder.ancestors().map(|up| up.join(packaged));
