@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
-use smam::mechanism::{Forceps, NotchGeometry, NotchedTube, notched_tube_urdf};
+use smam::mechanism::{Forceps, MechanismError, NotchGeometry, NotchedTube, notched_tube_urdf};
 
 use smam::recording::write_whole;
 
@@ -60,6 +60,11 @@ struct TubeArguments {
 /// Generates the model; the numbers that the scene file needs go to stderr.
 pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     let Kind::NotchedTube(a) = &arguments.kind;
+    let modulus_pa = a.youngs_modulus_pa;
+    if !(modulus_pa > 0.0 && modulus_pa.is_finite()) {
+        let remedy = "give it in Pa, for example 0.5e9";
+        return Err(CliError::Usage(format!("--youngs-modulus-pa {modulus_pa}: must be > 0\n  remedy: {remedy}")));
+    }
     let notch = NotchGeometry {
         outer_radius_m: a.outer_diameter_m / 2.0,
         inner_radius_m: a.outer_diameter_m / 2.0 - a.wall_m,
@@ -74,7 +79,7 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
         forceps: (!a.no_forceps).then_some(Forceps::STOCK),
         ..NotchedTube::STOCK
     };
-    let text = notched_tube_urdf(&tube)?;
+    let text = notched_tube_urdf(&tube).map_err(of_option)?;
     match &a.output {
         Some(path) => write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
         None => super::print_text(&text)?,
@@ -84,4 +89,19 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     eprintln!("  lever_m = {:.6e}", notch.lever_m());
     eprintln!("  closes at {:.4} rad", notch.closing_angle_rad());
     Ok(ExitCode::SUCCESS)
+}
+
+/// An error of the tube, told by the option that the number came from.
+fn of_option(error: MechanismError) -> CliError {
+    match error {
+        MechanismError::Spec { name, problem, remedy, .. } => {
+            let option = match name.as_str() {
+                "outer_radius_m" => "outer-diameter-m".to_owned(),
+                "inner_radius_m" => "wall-m".to_owned(),
+                other => other.replace('_', "-"),
+            };
+            CliError::Usage(format!("--{option}: {problem}\n  remedy: {remedy}"))
+        }
+        other => other.into(),
+    }
 }

@@ -174,9 +174,10 @@ fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneErr
 }
 
 fn si_unit(channel: &str, place: &Place) -> Result<&'static str, SceneError> {
-    parse_column(channel)
-        .map(|name| name.unit.si_suffix)
-        .map_err(|e| place.error(e.to_string(), "end the channel's name in its unit, for example plunger_mm"))
+    parse_column(channel).map(|name| name.unit.si_suffix).map_err(|_| {
+        let message = format!("channel = \"{channel}\": its name ends in no known unit");
+        place.error(message, "end it in its unit, for example plunger_mm; docs/recordings.md lists the units")
+    })
 }
 
 fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError> {

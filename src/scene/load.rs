@@ -114,9 +114,12 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     }
     let file = format!("scenes/{path_or_name}.toml");
     let here = Some(PathBuf::from(&file)).filter(|path| path.is_file());
-    here.or_else(|| stock::builtin(&file)).ok_or_else(|| SceneError::UnknownName {
-        name: path_or_name.to_owned(),
-        nearest: did_you_mean(path_or_name, &STOCK_SCENES),
-        known: STOCK_SCENES.join(", "),
+    here.or_else(|| stock::builtin(&file)).ok_or_else(|| match direct.is_dir() {
+        true => SceneError::Unreadable { file: direct.to_owned(), source: std::io::ErrorKind::IsADirectory.into() },
+        false => SceneError::UnknownName {
+            name: path_or_name.to_owned(),
+            nearest: did_you_mean(path_or_name, &STOCK_SCENES),
+            known: STOCK_SCENES.join(", "),
+        },
     })
 }

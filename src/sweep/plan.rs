@@ -52,7 +52,10 @@ impl Plan {
             return Err(SweepError::Measure {
                 measure: file.name.clone(),
                 message: "nothing is measured".to_owned(),
-                remedy: format!("add [[measure]] with name and of; the channels are {}", known.channels()),
+                remedy: format!(
+                    "add [[measure]] with name and of, or --measure 'max(CHANNEL)'; the channels are {}",
+                    known.channels()
+                ),
             });
         }
         let measures: Vec<Measure> = file.measure.iter().map(|m| Measure::new(m, &known)).collect::<Result<_, _>>()?;
