@@ -62,12 +62,22 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let unit = recording.channel(&a.column).and_then(Channel::unit).map_err(in_file)?;
     if unit.si_suffix != "m" {
         return Err(CliError::Usage(format!(
-            "{}: column {} is no length\n  remedy: name a column that ends in a unit of length with --column",
+            "{}: column \"{}\" is no length\n  remedy: name a column that ends in a unit of length with --column",
             a.wanted.display(),
             a.column
         )));
     }
     let wanted_mm: Vec<f64> = recording.si(&a.column)?.iter().map(|y| y * 1e3).collect();
+    let missing = wanted_mm.iter().filter(|y| !y.is_finite()).count();
+    if missing > 0 {
+        return Err(CliError::Usage(format!(
+            "{}: column \"{}\": {missing} of {} samples are missing\n  remedy: fill them in; a programme must know what is \
+             wanted at every time",
+            a.wanted.display(),
+            a.column,
+            wanted_mm.len()
+        )));
+    }
     let found = programme(&model, limits, 0.0f64.clamp(a.least, a.most), recording.time_s(), &wanted_mm);
     let expected = model.follow(recording.time_s(), &found.input_mm);
     let worst = expected.iter().zip(&wanted_mm).map(|(y, w)| (y - w).abs()).fold(0.0, f64::max);
@@ -100,9 +110,12 @@ fn read_model(path: &Path) -> Result<HysteresisModel<f64>, CliError> {
         ))
     };
     let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
-    let file: ModelFile = toml::from_str(&text).map_err(|e| refuse(e.message().to_owned()))?;
+    let file: ModelFile = toml::from_str(&text).map_err(|e| refuse(e.to_string().trim_end().to_owned()))?;
     let model = file.muscles.displacement;
-    model.check().map_err(|e| refuse(e.to_string()))?;
+    model.check().map_err(|e| {
+        let remedy = "choose numbers with which the state stays bounded";
+        CliError::Usage(format!("{}: [muscles.displacement]: {e}\n  remedy: {remedy}", path.display()))
+    })?;
     Ok(model)
 }
 
@@ -112,6 +125,12 @@ fn limits(a: &FeedforwardArguments) -> Result<Limits, CliError> {
         return refuse(format!(
             "--least {} must lie below --most {}\n  remedy: give the plunger's range in mm",
             a.least, a.most
+        ));
+    }
+    if !a.input.ends_with("_mm") {
+        return refuse(format!(
+            "--input {}: the programme is in mm\n  remedy: give a name that ends in _mm, such as plunger_mm",
+            a.input
         ));
     }
     if !(a.speed > 0.0 && a.speed.is_finite()) {

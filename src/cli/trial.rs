@@ -41,6 +41,9 @@ pub struct TrialArguments {
 /// Runs the command; cases that a former run has finished are not tried again.
 pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     check_effect(arguments.effect.as_deref())?;
+    if arguments.only_nulls && arguments.nulls == 0 {
+        return Err(no_case("--nulls 0 with --only-nulls"));
+    }
     let path = arguments.out.join("trial.jsonl");
     let done = read_rows(&path)?;
     let mut cases = Vec::new();
@@ -51,8 +54,7 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
         cases.extend(own);
     }
     if cases.is_empty() {
-        let remedy = "give --nulls 1 or more, or an --effect that the scene can have";
-        return Err(CliError::Usage(format!("there is no case to try\n  remedy: {remedy}")));
+        return Err(no_case(&arguments.scenes.join(", ")));
     }
     let missing: Vec<&TrialCase> = cases.iter().filter(|c| !done.iter().any(|r| r.name == c.name)).collect();
     eprintln!("{} cases, {} of them known already", cases.len(), cases.len() - missing.len());
@@ -73,6 +75,11 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
     say!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());
     Ok(ExitCode::SUCCESS)
+}
+
+fn no_case(place: &str) -> CliError {
+    let remedy = "give --nulls 1 or more, or an --effect that the scene can have";
+    CliError::Usage(format!("{place}: there is no case to try\n  remedy: {remedy}"))
 }
 
 fn check_effect(name: Option<&str>) -> Result<(), CliError> {

@@ -53,7 +53,7 @@ impl Mechanism {
             (true, false) if spec.via.len() >= 2 && spec.draw.is_empty() => Ok(Route::Via(self.points(&spec.via)?)),
             (true, false) => {
                 let problem = "needs two points or more, and no `draw`";
-                Err(MechanismError::spec("route", "via", problem, "complete it"))
+                Err(MechanismError::spec("route", "via", problem, "give via two points or more, and leave draw out"))
             }
             _ => {
                 let problem = "needs exactly one of them";

@@ -84,8 +84,7 @@ impl RecordingSet {
             true => path.to_owned(),
             false => path.join(SET_FILE_NAME),
         };
-        let text =
-            std::fs::read_to_string(&file).map_err(|source| RecordingError::Read { file: file.clone(), source })?;
+        let text = std::fs::read_to_string(&file).map_err(|source| unreadable(&file, source))?;
         Self::parse(&text, &file)
     }
 
@@ -141,6 +140,18 @@ impl RecordingSet {
         others.retain(|column| !is_declared(column));
         (!others.is_empty())
             .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
+    }
+}
+
+/// A file that is there but no text has another remedy than one that is not there.
+fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
+    let file = file.to_owned();
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => {
+            let problem = "it is not UTF-8 text\n  remedy: save it as text in UTF-8".to_owned();
+            RecordingError::Key { file, table: "encoding".to_owned(), problem }
+        }
+        _ => RecordingError::Read { file, source },
     }
 }
 

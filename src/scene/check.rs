@@ -132,8 +132,10 @@ fn check_range(min: f64, max: f64, place: &Place) -> Result<(), SceneError> {
     if min.is_finite() && max.is_finite() && min < max {
         return Ok(());
     }
-    Err(place
-        .error(format!("min = {min} must be < max = {max}"), "give the range in SI units, the smaller number as min"))
+    Err(place.error(
+        format!("min = {min:?} must be < max = {max:?}"),
+        "give the range in SI units, the smaller number as min",
+    ))
 }
 
 fn input_names(scene: &SceneFile) -> Vec<&str> {
@@ -151,6 +153,12 @@ fn check_simulation(scene: &SceneFile, place: &Place) -> Result<(), SceneError> 
             "choose substeps so that step_s/substeps is about 1e-4 s",
         ));
     }
+    if s.duration_s / s.step_s > 1e9 {
+        return Err(place.error(
+            format!("step_s = {:e} cuts the run into more than 1e9 steps", s.step_s),
+            "take a longer step, 1e-3 s is usual, or shorten the run",
+        ));
+    }
     if s.duration_s / s.output_interval_s > 1e8 {
         return Err(place
             .error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
@@ -166,7 +174,7 @@ fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneErr
         let place = Place { file, table: format!("[[input]] \"{}\"", input.channel) };
         let unit = si_unit(&input.channel, &place)?;
         let program = Program::parse(&input.program, unit).map_err(|message| {
-            place.error(message, "see the table of programmes in the documentation of scene files")
+            place.error(message, "docs/scene-files.md has the table of programmes with their keys")
         })?;
         programs.push(program);
     }
@@ -206,7 +214,7 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
     if !(1.0..=4.0 / 3.0 + 1e-12).contains(&h.line.momentum_factor) {
         return Err(place.error(
             format!("line.momentum_factor = {} must be 1 to 4/3", h.line.momentum_factor),
-            "4/3 for laminar flow",
+            "give 4/3 for laminar flow, 1 for a flat profile",
         ));
     }
     Ok(())

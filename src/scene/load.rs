@@ -39,8 +39,7 @@ impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text =
-            stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| unreadable(&path, source))?;
         Self::parse(&text, &path, overrides)
     }
 
@@ -85,6 +84,20 @@ impl Scene {
     /// Folder that relative paths of the scene start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new("."))
+    }
+}
+
+/// A file that is there but no text has another remedy than one that is not there.
+fn unreadable(path: &Path, source: std::io::Error) -> SceneError {
+    let file = path.to_owned();
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => SceneError::Value {
+            file,
+            table: "encoding".to_owned(),
+            message: "it is not UTF-8 text".to_owned(),
+            remedy: "save it as text in UTF-8".to_owned(),
+        },
+        _ => SceneError::Unreadable { file, source },
     }
 }
 
