@@ -153,15 +153,15 @@ fn check_simulation(scene: &SceneFile, place: &Place) -> Result<(), SceneError> 
             "choose substeps so that step_s/substeps is about 1e-4 s",
         ));
     }
+    if s.duration_s / s.output_interval_s > 1e8 {
+        return Err(place
+            .error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
+    }
     if s.duration_s / s.step_s > 1e9 {
         return Err(place.error(
             format!("step_s = {:e} cuts the run into more than 1e9 steps", s.step_s),
             "take a longer step, 1e-3 s is usual, or shorten the run",
         ));
-    }
-    if s.duration_s / s.output_interval_s > 1e8 {
-        return Err(place
-            .error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
     }
     Ok(())
 }

@@ -46,7 +46,9 @@ pub enum LoopError {
     TooLittle { file: String, counted: usize, travel_mm: f64 },
     #[error("{file}: time, input and output must be of one length, the input without gaps\n  remedy: cut or fill them")]
     Ragged { file: String },
-    #[error("recordings.toml: no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml")]
+    #[error(
+        "recordings.toml: no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml"
+    )]
     NoRun,
     #[error(
         "{form}: no parameters within their bounds can follow the data\n  remedy: look at the recording first; input and \
