@@ -35,15 +35,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let train_s = times(70.0, 0.05);
     let input_mm: Vec<f64> = train_s
         .iter()
-        .map(|t| 1.4 + (t / 3.0).min(1.0) * (0.8 * (TAU * 0.13 * t).sin() + 0.6 * (TAU * 0.053 * t).sin()) - 1.4 * (1.0 - (t / 3.0).min(1.0)))
+        .map(|t| {
+            1.4 + (t / 3.0).min(1.0) * (0.8 * (TAU * 0.13 * t).sin() + 0.6 * (TAU * 0.053 * t).sin())
+                - 1.4 * (1.0 - (t / 3.0).min(1.0))
+        })
         .collect();
     let output_mm = play(&train_s, &input_mm)?;
     let run = LoopRun { name: "training".to_owned(), time_s: train_s, input_mm, output_mm };
     let found = identify(&[run], Form::MaxwellSlip, &SearchOptions::default())?;
     // A wanted motion with other frequencies.
     let time_s = times(30.0, 0.01);
-    let wanted_mm: Vec<f64> =
-        time_s.iter().map(|t| (t / 3.0).min(1.0) * (13.0 + 6.0 * (TAU * 0.09 * t).sin() + 2.0 * (TAU * 0.17 * t).sin())).collect();
+    let wanted_mm: Vec<f64> = time_s
+        .iter()
+        .map(|t| (t / 3.0).min(1.0) * (13.0 + 6.0 * (TAU * 0.09 * t).sin() + 2.0 * (TAU * 0.17 * t).sin()))
+        .collect();
     let limits = Limits { input_mm: [0.0, 3.0], speed_mm_s: 5.0, least_slope: 0.15 };
     let plunger_mm = programme(&found.model, limits, 0.0, &time_s, &wanted_mm).input_mm;
     let with_mm = play(&time_s, &plunger_mm)?;
@@ -51,6 +56,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let straight_mm: Vec<f64> = wanted_mm.iter().map(|y| y / 9.0).collect();
     let without_mm = play(&time_s, &straight_mm)?;
     let (without, with) = (rms_apart(&time_s, &without_mm, &wanted_mm), rms_apart(&time_s, &with_mm, &wanted_mm));
-    println!("tracking error, RMS: {without:.3} mm with a straight line, {with:.3} mm with the model ({:.1} times less)", without / with);
+    println!(
+        "tracking error, RMS: {without:.3} mm with a straight line, {with:.3} mm with the model ({:.1} times less)",
+        without / with
+    );
     Ok(())
 }

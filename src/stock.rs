@@ -52,7 +52,10 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     let found = FILES.iter().find(|(known, _)| Path::new(known) == without_parents(&name));
     found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| {
         let known: Vec<&str> = FILES.iter().map(|(known, _)| *known).collect();
-        io::Error::new(io::ErrorKind::NotFound, format!("the program carries no such file; it has {}", known.join(", ")))
+        io::Error::new(
+            io::ErrorKind::NotFound,
+            format!("the program carries no such file; it has {}", known.join(", ")),
+        )
     })
 }
 

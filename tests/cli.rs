@@ -395,3 +395,67 @@ fn a_reader_that_goes_and_a_full_output_do_not_panic() {
     assert!(output.status.success(), "{output:?}");
     assert_eq!(listing(here.path()), ["run.csv"]);
 }
+
+/// Commands whose help must show how they are used; `help` is clap's own.
+fn commands() -> Vec<String> {
+    let help = smam(&["--help"], folder().path());
+    let text = printed(&help);
+    let list = text.split("Commands:\n").nth(1).and_then(|t| t.split("\n\n").next()).expect("a list of commands");
+    let named = list.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   "));
+    named.filter_map(|l| l.split_whitespace().next()).filter(|c| *c != "help").map(str::to_owned).collect()
+}
+
+#[test]
+fn every_help_has_examples_and_no_colour_reaches_a_file() {
+    let here = folder();
+    let commands = commands();
+    assert!(commands.len() > 15, "{commands:?}");
+    for command in &commands {
+        let help = smam(&[command, "--help"], here.path());
+        let text = printed(&help);
+        assert!(text.contains("Examples:"), "{command}: {text}");
+        assert!(!text.contains('\u{1b}'), "{command}: colours in a file");
+    }
+}
+
+#[test]
+fn shells_get_their_completions() {
+    for (shell, word) in [("bash", "complete -F"), ("zsh", "#compdef smam"), ("fish", "complete -c smam")] {
+        let output = smam(&["completions", shell], folder().path());
+        assert!(output.status.success() && printed(&output).contains(word), "{shell}");
+    }
+}
+
+#[test]
+fn angles_are_printed_at_the_end_with_their_extremes() {
+    let here = folder();
+    let output = smam(&["run", "antagonistic_pulley", "--duration", "5", "--angles", "--output", "a.csv"], here.path());
+    let text = printed(&output);
+    let row = text.lines().find(|l| l.starts_with("pulley ")).expect("the pulley's joint");
+    let numbers: Vec<f64> = row.split_whitespace().filter_map(|w| w.parse().ok()).collect();
+    let csv = std::fs::read_to_string(here.path().join("a.csv")).expect("written");
+    let column = csv.lines().next().and_then(|h| h.split(',').position(|c| c == "angle_deg")).expect("a column");
+    let last: f64 = csv.lines().last().and_then(|l| l.split(',').nth(column)?.parse().ok()).expect("a number");
+    assert!(numbers.len() == 3 && (numbers[0] - last).abs() < 1e-3, "{row} beside {last}");
+    assert!(numbers[1] <= numbers[0] && numbers[0] <= numbers[2], "{row}");
+}
+
+#[test]
+fn a_run_in_real_time_takes_its_time() {
+    let begun = std::time::Instant::now();
+    let output = smam(&["run", "muscle_bench", "--duration", "1", "--real-time", "--output", "a.csv"], folder().path());
+    assert!(output.status.success() && begun.elapsed().as_secs_f64() > 0.95);
+}
+
+#[test]
+fn stock_scenes_run_anywhere_and_are_copied_whole() {
+    let here = folder();
+    let copied = smam(&["scenes", "antagonistic_pulley", "--copy-to", "mine"], here.path());
+    assert!(copied.status.success(), "{}", said(&copied));
+    assert!(smam(&["check", "mine/scenes/antagonistic_pulley.toml"], here.path()).status.success());
+    let scene = here.path().join("mine/scenes/antagonistic_pulley.toml");
+    std::fs::write(&scene, "changed").expect("written");
+    let again = smam(&["scenes", "antagonistic_pulley", "--copy-to", "mine"], here.path());
+    refused(&again, &["antagonistic_pulley.toml", "is there already", "remedy"]);
+    assert_eq!(std::fs::read_to_string(&scene).expect("there"), "changed");
+}

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use smam::mechanism::geometry::{Contact, Pose, Shape, Visual};
 use smam::system::observe::{
-    CableFrame, Frame, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+    CableFrame, Frame, JointGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
 };
 use smam::view::{ViewOptions, ViewSink, Viewer, show_diagnosis};
 
@@ -101,6 +101,9 @@ fn graph() -> SceneGraph {
         input_count: 2,
         links: (0..=LINKS).map(link_name).collect(),
         visuals: visuals(),
+        joints: (1..=LINKS)
+            .map(|n| JointGraph { name: format!("hinge {n}"), is_angle: true, link: n, axis: [0.0, 1.0, 0.0] })
+            .collect(),
         cables: vec!["left".into(), "right".into()],
         muscles: SIDES.map(muscle).to_vec(),
         loops: vec![(0, 6)],

@@ -10,6 +10,9 @@ use super::CliError;
 
 /// Arguments of `smam check`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam check muscle_bench --keys     every key with its value, defaults included
+  smam check my_scene.toml           what is wrong with it, and what to do")]
 pub struct CheckArguments {
     /// Path of a scene file, or a name that `smam scenes` lists
     scene: String,

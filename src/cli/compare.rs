@@ -17,6 +17,9 @@ use super::files::{make_folder, write};
 
 /// Arguments of `smam compare`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam compare rig/monday                        every run beside its simulation
+  smam compare rig/monday --scene my_scene.toml  against another scene than the recordings name")]
 pub struct CompareArguments {
     /// Folder with a recordings.toml
     dir: PathBuf,

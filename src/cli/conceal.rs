@@ -12,6 +12,10 @@ use super::score::{read_seals, write_seals};
 
 /// Arguments of `smam conceal`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam conceal --seed 7 --hiding one --out out/blind     a bench with one thing hidden; the answer under seal
+  smam diagnose out/blind/case_7                         then look for it
+  smam score out/blind --answers out/answers             and open the seal")]
 pub struct ConcealArguments {
     /// Of everything that is drawn; the same seed hides the same
     #[arg(long)]

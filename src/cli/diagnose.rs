@@ -15,6 +15,10 @@ use super::files::{make_folder, write};
 
 /// Arguments of `smam diagnose`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam diagnose rig/monday                   answer on the screen; page, scene and next experiment in out/
+  smam diagnose rig/monday rig/tuesday       two folders of the same rig together
+  smam diagnose rig/monday --rrd --seed 3    with a side-by-side recording for the viewer")]
 pub struct DiagnoseArguments {
     /// Folders with a recordings.toml, all of one rig
     #[arg(required = true)]

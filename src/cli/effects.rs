@@ -15,6 +15,9 @@ use super::files::write;
 
 /// Arguments of `smam effects`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam effects                    the catalogue
+  smam effects trapped_air        its law, its numbers, and pictures of what it does, in out/effects/")]
 pub struct EffectsArguments {
     /// Show the law and the numbers of this effect, and draw what it does to the stock scenes
     name: Option<String>,

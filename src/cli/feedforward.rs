@@ -13,6 +13,9 @@ use super::CliError;
 
 /// Arguments of `smam feedforward`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam identify rig/loop --model maxwell-slip
+  smam feedforward out/identify_loop/maxwell-slip.toml wanted.csv --out programme.csv")]
 pub struct FeedforwardArguments {
     /// Identified model, as `smam identify` writes it
     model: PathBuf,

@@ -18,6 +18,9 @@ use super::identify_page::page;
 
 /// Arguments of `smam identify`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam identify rig/loop --model paper --model asymmetric
+  smam identify loop.csv --model maxwell-slip --method hybrid")]
 pub struct IdentifyArguments {
     /// Folder with a recordings.toml, or a CSV or Parquet file
     recordings: PathBuf,

@@ -6,6 +6,7 @@ macro_rules! say {
     ($($words:tt)*) => { $crate::cli::print_line(format_args!($($words)*)) };
 }
 
+mod angles;
 mod ceiling;
 mod check;
 mod compare;
@@ -36,7 +37,7 @@ mod trial;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::{Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use error::CliError;
 
@@ -87,6 +88,25 @@ enum Command {
     Reproduce(reproduce::ReproduceArguments),
     /// Generate a model file
     Model(model::ModelArguments),
+    /// Print a script that completes commands and options in a shell
+    Completions(CompletionsArguments),
+}
+
+#[derive(Args)]
+#[command(after_help = "Examples:
+  smam completions bash > ~/.local/share/bash-completion/completions/smam
+  smam completions zsh > ~/.zfunc/_smam             with ~/.zfunc in $fpath
+  smam completions fish > ~/.config/fish/completions/smam.fish")]
+struct CompletionsArguments {
+    /// The shell
+    shell: clap_complete::Shell,
+}
+
+fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, CliError> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "smam", &mut script);
+    print_text(&String::from_utf8_lossy(&script))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Parses the arguments and runs the command.
@@ -119,6 +139,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
         Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
+        Some(Command::Completions(arguments)) => completions(&arguments),
     }
 }
 

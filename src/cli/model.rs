@@ -12,6 +12,8 @@ use super::CliError;
 
 /// Arguments of `smam model`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam model notched-tube --notches 12 --cut-depth-m 1.2e-3 --output my_tube.urdf")]
 pub struct ModelArguments {
     #[command(subcommand)]
     kind: Kind,

@@ -9,13 +9,17 @@ use smam::recording::{Channel, CsvWriter, Recording};
 use smam::system::observe::{Frame, Observer, SceneGraph};
 
 use super::CliError;
+use super::angles::Angles;
+use super::interrupt::interrupted;
 
 /// All observers of one run; those not asked for are absent.
 #[derive(Default)]
 pub struct Observers {
     pub csv: Option<CsvFile>,
     pub recorder: Option<Recorder>,
+    pub angles: Option<Angles>,
     pub progress: Option<Progress>,
+    pub clock: Option<Clock>,
     #[cfg(feature = "viz")]
     pub viewers: Vec<smam::view::Viewer>,
 }
@@ -29,6 +33,9 @@ impl Observer for Observers {
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.begin(graph);
+        }
+        if let Some(angles) = &mut self.angles {
+            angles.begin(graph);
         }
         #[cfg(feature = "viz")]
         for viewer in &mut self.viewers {
@@ -44,8 +51,14 @@ impl Observer for Observers {
         if let Some(recorder) = &mut self.recorder {
             recorder.frame(frame);
         }
+        if let Some(angles) = &mut self.angles {
+            angles.frame(frame);
+        }
         if let Some(progress) = &mut self.progress {
             progress.frame(frame.time_s);
+        }
+        if let Some(clock) = &mut self.clock {
+            clock.wait(frame.time_s);
         }
         #[cfg(feature = "viz")]
         for viewer in &mut self.viewers {
@@ -116,6 +129,25 @@ impl Recorder {
     pub fn finish(self) -> Result<Recording, CliError> {
         let channels = self.names.into_iter().zip(self.columns).map(|(n, v)| Channel::new(n, v));
         Ok(Recording::new(self.time_s, channels.collect())?)
+    }
+}
+
+/// Holds a run back so that it goes no faster than the clock on the wall.
+#[derive(Default)]
+pub struct Clock {
+    begun: Option<(Instant, f64)>,
+}
+
+impl Clock {
+    fn wait(&mut self, time_s: f64) {
+        let (begun, first_s) = *self.begun.get_or_insert_with(|| (Instant::now(), time_s));
+        // A run that falls behind is not hurried afterwards.
+        let ahead_s = time_s - first_s - begun.elapsed().as_secs_f64();
+        if ahead_s > 0.0 && !interrupted() {
+            std::thread::sleep(Duration::from_secs_f64(ahead_s.min(1.0)));
+        } else if ahead_s < 0.0 {
+            self.begun = Some((Instant::now(), time_s));
+        }
     }
 }
 

@@ -18,6 +18,9 @@ use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
 
 /// Arguments of `smam proof`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam proof --cases 20 --seed 42                 your own seed; goes on where it was when started again
+  smam proof --cases 20 --seed 42 --without pressure")]
 pub struct ProofArguments {
     /// Cases in which something is missing
     #[arg(long, default_value_t = 20)]
@@ -55,7 +58,8 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let journal = out.join("rows.jsonl");
     let former = former_rows(&journal, &planned)?;
     let seals = conceal_all(&planned, &former, &folders)?;
-    let run = Run { planned: &planned, seals: &seals, folders: &folders, without: arguments.without.map(StepName::step) };
+    let run =
+        Run { planned: &planned, seals: &seals, folders: &folders, without: arguments.without.map(StepName::step) };
     let rows = run.answer_all(former, &out, &journal)?;
     write_score(&rows, &out)?;
     if arguments.ceiling > 0 {

@@ -13,6 +13,9 @@ use super::files::write;
 
 /// Arguments of `smam reproduce`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam reproduce                      every figure of the paper, one page
+  smam reproduce 4a 8 --out out/two   two of them")]
 pub struct ReproduceArguments {
     /// Figures, for example 4a 5; all of them if none is named
     #[arg(value_name = "FIG")]

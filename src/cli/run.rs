@@ -9,12 +9,19 @@ use smam::recording::{Recording, read_recording, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
 
+use super::angles::Angles;
 use super::interrupt::{interrupted, stop_flag};
-use super::observers::{CsvFile, Observers, Progress, Recorder};
+use super::observers::{Clock, CsvFile, Observers, Progress, Recorder};
 use super::{CliError, junit};
 
 /// Arguments of `smam run`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam run bending_catheter                                    writes out/bending_catheter.csv and .rrd
+  smam run muscle_bench --set hydraulics.line.length_m=2       one key changed for this run
+  smam run muscle_bench --input measured.csv --output sim.csv  driven by a recording
+  smam run bending_catheter --angles --output c.csv            prints every notch's angle and the tip's place
+  smam run muscle_bench --check --junit checks.xml             the scene's own expectations, for CI")]
 pub struct RunArguments {
     /// Path of a scene file, or a name that `smam scenes` lists
     scene: String,
@@ -33,12 +40,18 @@ pub struct RunArguments {
     /// Serve the Rerun stream on the loopback interface and wait for viewers
     #[arg(long)]
     serve: bool,
+    /// Go no faster than the clock: for watching with --view or --serve
+    #[arg(long)]
+    real_time: bool,
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Length of the run, s, instead of the scene's
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
+    /// Print the position of every joint and of the tip: at the end, least and greatest on the way
+    #[arg(long)]
+    angles: bool,
     /// Print where the plunger's work went
     #[arg(long)]
     energy: bool,
@@ -71,11 +84,15 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if let Some(progress) = observers.progress.take() {
         progress.finish();
     }
+    let angles = observers.angles.take();
     let recording = finish(&mut observers)?;
     let mut warnings = outcome?;
     eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.0.first().unwrap_or(&0.0));
     warnings.summary(reached_s).iter().for_each(|w| eprintln!("warning: {w}"));
     say_what_to_open(arguments, &name);
+    if let Some(angles) = angles {
+        super::print_text(&angles.table())?;
+    }
     if let Some(book) = simulation.energy_book() {
         print_energy(book);
     }
@@ -152,7 +169,9 @@ fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) 
     let mut observers = Observers {
         csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
         recorder: arguments.check.then(Recorder::default),
+        angles: arguments.angles.then(Angles::default),
         progress: Some(Progress::new(end_s)),
+        clock: arguments.real_time.then(Clock::default),
         #[cfg(feature = "viz")]
         viewers: Vec::new(),
     };

@@ -13,6 +13,9 @@ use super::proof_figure::proof_svg;
 
 /// Arguments of `smam score`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam diagnose out/blind/case_7 --out out/answers/case_7
+  smam score out/blind --answers out/answers")]
 pub struct ScoreArguments {
     /// Folder that `smam conceal` wrote: cases, seals.txt and sealed answers
     cases: PathBuf,

@@ -17,7 +17,14 @@ use super::sweep_page::write_page;
 
 /// Arguments of `smam sweep`.
 #[derive(Args)]
-#[command(args_conflicts_with_subcommands = true)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:
+  smam sweep antagonistic_pulley --vary muscles.pre_elongation_ratio=0.2:1.0:17 --measure 'range_deg=range(angle_deg)'
+  smam sweep my_sweep.toml --resume                      goes on after a kill
+  smam sweep my_sweep.toml --shard 1/4 --out out/a       a part of it, for another machine
+  smam sweep merge my_sweep.toml out/a out/b --out out/whole"
+)]
 pub struct SweepArguments {
     #[command(subcommand)]
     command: Option<SweepCommand>,

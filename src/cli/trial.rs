@@ -17,6 +17,9 @@ use super::files::write;
 
 /// Arguments of `smam trial`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam trial --scene muscle_bench --nulls 10           every effect of the bench at three sizes, ten benches without any
+  smam trial --scene muscle_bench --only-nulls --nulls 200 --seed 2")]
 pub struct TrialArguments {
     /// Scenes to hold it on
     #[arg(long = "scene", value_name = "SCENE", default_values = ["muscle_bench", "antagonistic_pulley", "bending_catheter"])]

@@ -11,6 +11,7 @@ use super::coordinate::CoordinateKind;
 use super::error::{MechanismError, known_names};
 use super::inertia::Inertial;
 use super::joints::JointModel;
+use super::remarks::Remarks;
 use super::spec::MechanismSpec;
 use super::tree::Tree;
 use super::xml_scan::XmlScan;
@@ -55,11 +56,11 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// Merges links into bodies and checks their masses.
-    pub fn assemble(&self, warnings: &mut Vec<String>) -> Result<Assembly, MechanismError> {
+    pub fn assemble(&self, remarks: &mut Remarks) -> Result<Assembly, MechanismError> {
         let mut made = Assembly { placement: vec![(0, Pose::IDENTITY); self.robot.links.len()], ..Assembly::default() };
         for &link in &self.tree.order {
             self.place(link, &mut made);
-            self.load(link, warnings, &mut made)?;
+            self.load(link, remarks, &mut made)?;
         }
         for hung in &self.spec.link_mass {
             self.hang(&hung.link, hung.mass_kg, &mut made)?;
@@ -90,14 +91,20 @@ impl Source<'_> {
     }
 
     /// Adds a link's own mass to its body.
-    fn load(&self, link: usize, warnings: &mut Vec<String>, made: &mut Assembly) -> Result<(), MechanismError> {
+    fn load(&self, link: usize, remarks: &mut Remarks, made: &mut Assembly) -> Result<(), MechanismError> {
         let link_model = &self.robot.links[link];
         if !self.scan.links_with_inertial.contains(&link_model.name) {
             return Ok(());
         }
+        let about = format!("link \"{}\"", link_model.name);
+        // Frames that somebody gave an empty <inertial>: many exporters do.
+        if link_model.inertial.mass.value == 0.0 {
+            remarks.add("an <inertial> without mass counts as none", about);
+            return Ok(());
+        }
         let own = self.checked_inertial(link_model)?;
         if let Some(fault) = own.fault() {
-            warnings.push(format!("link \"{}\": {fault}; no real body has that", link_model.name));
+            remarks.add(format!("{fault}; no real body has that"), about);
         }
         let (body, pose) = made.placement[link];
         let own = own.seen_from(&pose);
@@ -150,7 +157,7 @@ impl Source<'_> {
         let Some(joint) = massless.and_then(|body| body.joint) else {
             return Ok(());
         };
-        let problem = format!("moves with joint \"{}\" but has no <inertial>", self.joints[joint].name);
+        let problem = format!("moves with joint \"{}\" but has no mass of its own", self.joints[joint].name);
         let remedy = "give it mass and inertia (or fix it to a link that has them)";
         let link = &self.robot.joints[joint].child.link;
         Err(MechanismError::urdf(self.file, "link", link, problem, remedy))

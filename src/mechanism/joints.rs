@@ -7,6 +7,7 @@ use urdf_rs::{Joint, JointType, Robot};
 use super::coordinate::{CoordinateKind, Stop};
 use super::error::{MechanismError, known_names};
 use super::joint_values::apply;
+use super::remarks::Remarks;
 use super::spec::JointSpec;
 
 /// q = multiplier · q_leader + offset.
@@ -43,10 +44,9 @@ pub(super) fn resolve(
     file: &Path,
     robot: &Robot,
     specs: &[JointSpec],
-    warnings: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Result<Vec<JointModel>, MechanismError> {
-    let mut joints =
-        robot.joints.iter().map(|joint| from_urdf(file, joint, warnings)).collect::<Result<Vec<_>, _>>()?;
+    let mut joints = robot.joints.iter().map(|joint| from_urdf(file, joint, remarks)).collect::<Result<Vec<_>, _>>()?;
     let mut mentioned = vec![false; joints.len()];
     for spec in specs {
         for name in &spec.joints {
@@ -69,15 +69,13 @@ fn find(joints: &[JointModel], name: &str) -> Result<usize, MechanismError> {
     })
 }
 
-fn from_urdf(file: &Path, joint: &Joint, warnings: &mut Vec<String>) -> Result<JointModel, MechanismError> {
+fn from_urdf(file: &Path, joint: &Joint, remarks: &mut Remarks) -> Result<JointModel, MechanismError> {
     let (kind, moves) = kind_of(file, joint)?;
     check_numbers(file, joint)?;
     let dynamics = joint.dynamics.clone().unwrap_or_default();
     if dynamics.friction != 0.0 {
-        warnings.push(format!(
-            "<dynamics friction> of joint \"{}\" is not read; use the effect bearing_friction",
-            joint.name
-        ));
+        let about = format!("joint \"{}\"", joint.name);
+        remarks.add("<dynamics friction> is not read; use the effect bearing_friction", about);
     }
     Ok(JointModel {
         name: joint.name.clone(),

@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 use rapier3d_f64::dynamics::{Multibody, MultibodyIndex, RigidBodyHandle};
 use rapier3d_f64::math::Pose;
 use rapier3d_f64::pipeline::PhysicsWorld;
+use urdf_rs::Robot;
 
 use super::assembly::{Source, Weight};
 use super::convert::plain_pose;
@@ -35,6 +36,7 @@ pub struct Mechanism {
     pub(super) joints: Vec<JointModel>,
     pub(super) shares: Vec<Option<Share>>,
     pub(super) link_names: Vec<String>,
+    pub(super) moved: Vec<Moved>,
     /// Body of each URDF link, and the link's frame in it.
     pub(super) placement: Vec<(usize, Pose)>,
     pub(super) free_bodies: Vec<RigidBodyHandle>,
@@ -49,6 +51,15 @@ pub struct Mechanism {
     pub(super) last_step_s: f64,
 }
 
+/// What a joint moves, for drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// The link: its frame stands in the joint.
+    pub link: usize,
+    /// Axis in that frame, a unit vector.
+    pub axis: [f64; 3],
+}
+
 impl Mechanism {
     /// Reads the URDF (relative to `base_dir`) and puts every joint at its initial position, at rest.
     ///
@@ -61,13 +72,13 @@ impl Mechanism {
         let file = crate::stock::join(base_dir, &spec.urdf);
         let (robot, mut scan) = urdf_file::read(&file)?;
         check_spec(spec)?;
-        let mut warnings = std::mem::take(&mut scan.warnings);
+        let mut remarks = std::mem::take(&mut scan.remarks);
         let tree = Tree::new(&file, &robot)?;
-        let joints = joints::resolve(&file, &robot, &spec.joint, &mut warnings)?;
+        let joints = joints::resolve(&file, &robot, &spec.joint, &mut remarks)?;
         let (coordinates, shares) = reduce(&joints)?;
         let source = Source { file: &file, robot: &robot, scan: &scan, tree: &tree, joints: &joints, spec };
-        let assembly = source.assemble(&mut warnings)?;
-        let mut visuals = shapes::visuals(&file, &robot, &mut warnings)?;
+        let assembly = source.assemble(&mut remarks)?;
+        let mut visuals = shapes::visuals(&file, &robot, &mut remarks)?;
         let mut built = world::build(&assembly, &joints, &shares, spec.gravity_m_s2);
         if let Some(contact) = &spec.contact {
             built.add_contacts(&file, &robot, &assembly, contact)?;
@@ -76,11 +87,12 @@ impl Mechanism {
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
         let mut mechanism = Self {
             link_names,
+            moved: moved(&robot, &joints, &coordinates),
             free_bodies,
             visuals,
             placement: assembly.placement,
             weights: assembly.weights,
-            warnings,
+            warnings: remarks.lines(),
             ..Self::new(built, joints, coordinates, shares)
         };
         mechanism.refresh_mass();
@@ -103,6 +115,7 @@ impl Mechanism {
             joints,
             shares,
             link_names: Vec::new(),
+            moved: Vec::new(),
             placement: Vec::new(),
             free_bodies: Vec::new(),
             visuals: Vec::new(),
@@ -112,7 +125,7 @@ impl Mechanism {
         }
     }
 
-    /// What the URDF holds that has no effect, one line each.
+    /// What the URDF holds that has no effect, one line for each kind.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -139,6 +152,11 @@ impl Mechanism {
     /// Names of the URDF's links, then of the free bodies.
     pub fn link_names(&self) -> &[String] {
         &self.link_names
+    }
+
+    /// What each coordinate's joint moves.
+    pub fn moved(&self) -> &[Moved] {
+        &self.moved
     }
 
     /// Pose of each link, then of each free body, in the world.
@@ -189,6 +207,17 @@ impl Mechanism {
         }
         Ok(())
     }
+}
+
+/// What each coordinate's joint moves. Coordinates are named after joints, and a URDF's joints have links.
+fn moved(robot: &Robot, joints: &[JointModel], coordinates: &[Coordinate]) -> Vec<Moved> {
+    let of = |c: &Coordinate| {
+        let joint = joints.iter().position(|j| j.name == c.name)?;
+        let child = &robot.joints[joint].child.link;
+        let link = robot.links.iter().position(|l| l.name == *child)?;
+        Some(Moved { link, axis: joints[joint].axis })
+    };
+    coordinates.iter().map(|c| of(c).unwrap_or_default()).collect()
 }
 
 fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {

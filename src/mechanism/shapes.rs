@@ -1,6 +1,6 @@
 //! URDF geometry as plain shapes, and those as the engine's colliders.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rapier3d_f64::math::{Pose, Rotation, Vector};
 use rapier3d_f64::prelude::ColliderBuilder;
@@ -9,12 +9,13 @@ use urdf_rs::{Geometry, Robot};
 use super::convert::{plain_pose, pose_from_urdf};
 use super::error::MechanismError;
 use super::geometry::{Shape, Visual};
-use super::stl;
+use super::mesh;
+use super::remarks::Remarks;
 
 const GREY: [f32; 4] = [0.7, 0.7, 0.72, 1.0];
 
 /// Everything the links look like; link indices are the URDF's.
-pub(super) fn visuals(file: &Path, robot: &Robot, warnings: &mut Vec<String>) -> Result<Vec<Visual>, MechanismError> {
+pub(super) fn visuals(file: &Path, robot: &Robot, remarks: &mut Remarks) -> Result<Vec<Visual>, MechanismError> {
     let mut found = Vec::new();
     for (link, model) in robot.links.iter().enumerate() {
         for visual in &model.visual {
@@ -26,8 +27,8 @@ pub(super) fn visuals(file: &Path, robot: &Robot, warnings: &mut Vec<String>) ->
                     shape,
                     colour_rgba: colour(robot, visual.material.as_ref()),
                 }),
-                Err(error) if matches!(visual.geometry, Geometry::Mesh { .. }) => {
-                    warnings.push(format!("not drawn: {error}"));
+                Err(MechanismError::Read { file, reason, remedy }) => {
+                    remarks.add(format!("not drawn, {reason} ({remedy})"), file.display().to_string());
                 }
                 Err(error) => return Err(error),
             }
@@ -87,37 +88,13 @@ fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, Mechanis
             let problem = "has a <capsule>, which is not read";
             Err(MechanismError::urdf(file, "link", link, problem, remedy))
         }
-        Geometry::Mesh { filename, scale } => mesh(file, filename, scale.map_or([1.0; 3], |s| s.0)),
-    }
-}
-
-fn mesh(file: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, MechanismError> {
-    let error = |file: PathBuf, reason: String| MechanismError::Read {
-        file,
-        reason,
-        remedy: "give an STL file, relative to the URDF".into(),
-    };
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let path = mesh_path(folder, name);
-    let bytes = std::fs::read(&path).map_err(|e| error(path.clone(), e.to_string()))?;
-    let found = stl::read(&bytes).map_err(|reason| error(path.clone(), reason))?;
-    if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
-        return Err(error(path, "a vertex or the scale is not finite".into()));
-    }
-    let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
-    Ok(Shape::Mesh { vertices_m: found.vertices.iter().map(scaled).collect(), triangles: found.triangles })
-}
-
-/// `package://name/path` is looked for below the URDF's folder, with and without the package's name.
-fn mesh_path(folder: &Path, name: &str) -> PathBuf {
-    let name = name.strip_prefix("file://").unwrap_or(name);
-    let Some(packaged) = name.strip_prefix("package://") else {
-        return folder.join(name);
-    };
-    let whole = folder.join(packaged);
-    match packaged.split_once('/') {
-        Some((_, inner)) if !whole.exists() => folder.join(inner),
-        _ => whole,
+        Geometry::Mesh { filename, scale } => {
+            mesh::read(file, filename, scale.map_or([1.0; 3], |s| s.0)).map_err(|fault| MechanismError::Read {
+                file: fault.file,
+                reason: fault.reason,
+                remedy: fault.remedy.into(),
+            })
+        }
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use super::remarks::Remarks;
+
 /// Elements that are read, each only where the URDF format has it.
 const READ: &[(&str, &[&str])] = &[
     ("", &["robot"]),
@@ -18,8 +20,8 @@ const READ: &[(&str, &[&str])] = &[
 /// What the scan found.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct XmlScan {
-    /// One line per dropped element.
-    pub warnings: Vec<String>,
+    /// Dropped elements.
+    pub remarks: Remarks,
     /// Names of the links that have an `<inertial>`.
     pub links_with_inertial: BTreeSet<String>,
 }
@@ -62,10 +64,9 @@ fn look_at(element: &str, open: &[Open], found: &mut XmlScan) -> bool {
     let read = READ.iter().any(|(p, children)| *p == parent && children.contains(&element));
     let owner = open.iter().rev().find(|o| !o.name.is_empty());
     if !read {
-        let place = owner.map_or(String::new(), |o| format!(" of {} \"{}\"", o.element, o.name));
-        found.warnings.push(format!(
-            "<{element}>{place} is not read and has no effect; what it describes belongs into the scene file"
-        ));
+        let about = owner.map_or("robot".to_owned(), |o| format!("{} \"{}\"", o.element, o.name));
+        let kind = format!("<{element}> is not read and has no effect; what it describes belongs into the scene file");
+        found.remarks.add(kind, about);
     }
     if element == "inertial"
         && let Some(link) = owner
@@ -140,10 +141,11 @@ mod tests {
             <joint name="j" type="revolute"><safety_controller k_velocity="1"/></joint>
             <gazebo:thing text="a > b"/></robot>"#,
         );
-        assert_eq!(found.warnings.len(), 3, "{:?}", found.warnings);
-        assert!(found.warnings[0].starts_with("<transmission> of robot \"r\""));
-        assert!(found.warnings[1].starts_with("<safety_controller> of joint \"j\""));
-        assert!(found.warnings[2].starts_with("<gazebo:thing>"));
+        let lines = found.remarks.lines();
+        assert_eq!(lines.len(), 3, "{lines:?}");
+        assert!(lines[0].starts_with("<transmission>") && lines[0].ends_with("robot \"r\""), "{lines:?}");
+        assert!(lines[1].starts_with("<safety_controller>") && lines[1].ends_with("joint \"j\""), "{lines:?}");
+        assert!(lines[2].starts_with("<gazebo:thing>"), "{lines:?}");
         assert!(found.links_with_inertial.contains("a"));
     }
 

@@ -7,7 +7,7 @@ use toml::Table;
 use crate::recording::did_you_mean;
 use crate::stock;
 
-use super::overrides::Override;
+use super::overrides::{Override, child, entry_name};
 use super::{Program, SceneError, SceneFile, check};
 
 /// Scenes that come with the program, by name.
@@ -81,6 +81,16 @@ impl Scene {
         keys
     }
 
+    /// The value that stands at a key, as [`Self::keys`] writes it; entries of a list also by their index.
+    pub fn value(&self, key: &str) -> Option<String> {
+        let mut value = toml::Value::try_from(&self.file).ok()?;
+        let mut here = &mut value;
+        for segment in key.split('.') {
+            here = child(here, segment)?;
+        }
+        (!here.is_table()).then(|| here.to_string())
+    }
+
     /// Folder that relative paths of the scene start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new("."))
@@ -107,7 +117,7 @@ fn list_keys(prefix: &str, value: &toml::Value, keys: &mut Vec<(String, String)>
         toml::Value::Table(table) => table.iter().for_each(|(k, v)| list_keys(&join(k), v, keys)),
         toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
             for (i, item) in list.iter().enumerate() {
-                let name = item.get("name").and_then(toml::Value::as_str).map_or_else(|| i.to_string(), str::to_owned);
+                let name = entry_name(item).map_or_else(|| i.to_string(), str::to_owned);
                 list_keys(&join(&name), item, keys);
             }
         }

@@ -66,8 +66,7 @@ impl Plan {
         let fingerprint = fingerprint(&file, &base)?;
         let outputs = outputs(&file, &measures);
         let path = base.path;
-        let text =
-            stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
         let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
         plan.evolution()?;
         plan.check_ends()?;
@@ -240,7 +239,7 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
         let refuse = |message: String, remedy: &str| {
             Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
         };
-        let Some((_, value)) = known.iter().find(|(name, _)| name == calibration_key(key)) else {
+        let Some(value) = base.value(calibration_key(key)) else {
             let message = format!("the scene has no such key{}", did_you_mean(key, &names));
             return refuse(message, "`smam check SCENE --keys` lists them");
         };

@@ -2,7 +2,8 @@
 
 use super::Simulation;
 use super::channels::Channels;
-use super::observe::{CableFrame, Frame, MuscleFrame, MuscleGraph, SceneGraph};
+use super::observe::{CableFrame, Frame, JointGraph, MuscleFrame, MuscleGraph, SceneGraph};
+use crate::mechanism::{CoordinateKind, Mechanism};
 
 impl Simulation {
     /// What stays the same during the run.
@@ -17,6 +18,7 @@ impl Simulation {
             tip_link: file.view.tip_link.as_ref().and_then(|t| links.iter().position(|l| l == t)),
             links,
             visuals: self.mechanism.as_ref().map_or(Vec::new(), |m| m.visuals().to_vec()),
+            joints: self.mechanism.as_ref().map_or(Vec::new(), joint_graphs),
             cables: file.cable.iter().map(|c| c.name.clone()).collect(),
             muscles: self.muscle_graphs(),
             loops: file.view.loops.iter().filter_map(|(x, y)| Some((find(x)?, find(y)?))).collect(),
@@ -94,4 +96,15 @@ impl Simulation {
         });
         frames.collect()
     }
+}
+
+fn joint_graphs(mechanism: &Mechanism) -> Vec<JointGraph> {
+    let joints = mechanism.coordinates().iter().zip(mechanism.moved());
+    let graph = joints.map(|(c, moved)| JointGraph {
+        name: c.name.clone(),
+        is_angle: c.kind == CoordinateKind::Angle,
+        link: moved.link,
+        axis: moved.axis,
+    });
+    graph.collect()
 }

@@ -14,6 +14,8 @@ pub struct SceneGraph {
     /// Links and free bodies; `Frame::link_poses` follows this order.
     pub links: Vec<String>,
     pub visuals: Vec<Visual>,
+    /// One per free joint coordinate; `Frame::joint_positions` follows this order.
+    pub joints: Vec<JointGraph>,
     /// One name per cable; `Frame::cables` follows this order.
     pub cables: Vec<String>,
     /// One per muscle: how to draw it.
@@ -25,6 +27,44 @@ pub struct SceneGraph {
     pub camera_position_m: [f64; 3],
     /// Link that carries the working tip, if the scene has one.
     pub tip_link: Option<usize>,
+}
+
+impl SceneGraph {
+    /// Position of every joint (degrees, of sliders mm) and place of the tip (mm) in a frame: name, value, unit.
+    pub fn readings(&self, frame: &Frame) -> Vec<(String, f64, &'static str)> {
+        let joints = self.joints.iter().zip(&frame.joint_positions);
+        let mut readings: Vec<_> = joints.map(|(j, q)| (j.name.clone(), j.shown(*q), j.unit())).collect();
+        let tip = self.tip_link.and_then(|link| Some((self.links.get(link)?, frame.link_poses.get(link)?)));
+        if let Some((link, pose)) = tip {
+            let places = ["x", "y", "z"].iter().zip(pose.translation_m);
+            readings.extend(places.map(|(axis, x)| (format!("{link} {axis}"), x * 1e3, "mm")));
+        }
+        readings
+    }
+}
+
+/// What of a joint coordinate stays the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointGraph {
+    pub name: String,
+    /// Position in rad; else in m.
+    pub is_angle: bool,
+    /// The link that it moves: its frame stands in the joint.
+    pub link: usize,
+    /// Direction of the joint's axis in that frame.
+    pub axis: [f64; 3],
+}
+
+impl JointGraph {
+    /// A position as people read it: degrees, or mm of a slider.
+    pub fn shown(&self, position: f64) -> f64 {
+        if self.is_angle { position.to_degrees() } else { position * 1e3 }
+    }
+
+    /// Unit of [`Self::shown`].
+    pub fn unit(&self) -> &'static str {
+        if self.is_angle { "°" } else { "mm" }
+    }
 }
 
 /// What of a muscle stays the same.

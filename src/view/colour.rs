@@ -7,6 +7,10 @@ pub(super) type Rgb = [u8; 3];
 pub(super) const SLACK: Rgb = [140, 140, 140];
 /// Contact points and forces.
 pub(super) const CONTACT: Rgb = [255, 150, 40];
+/// Hinges.
+pub(super) const MARKER: Rgb = [245, 245, 245];
+/// The way of the tip.
+pub(super) const TRACE: Rgb = [120, 200, 255];
 /// Axes, ticks and frames of drawn plots.
 pub(super) const AXIS: Rgb = [150, 150, 150];
 /// Where a loop is now.
@@ -21,8 +25,8 @@ const TENSION: [Rgb; 3] = [[70, 130, 255], [200, 80, 210], [255, 50, 40]];
 const PRESSURE: [Rgb; 3] = [[80, 95, 125], [50, 200, 200], [255, 230, 60]];
 const AGE: [Rgb; 3] = [[50, 70, 140], [40, 170, 170], [250, 220, 60]];
 
-/// Eight lines that stay apart on a dark ground.
-const SERIES: [Rgb; 8] = [
+/// Twelve lines that stay apart on a dark ground.
+const SERIES: [Rgb; 12] = [
     [90, 170, 255],
     [255, 160, 60],
     [110, 220, 120],
@@ -31,6 +35,10 @@ const SERIES: [Rgb; 8] = [
     [250, 225, 90],
     [90, 220, 220],
     [240, 150, 210],
+    [200, 200, 200],
+    [150, 190, 60],
+    [205, 130, 90],
+    [130, 130, 230],
 ];
 
 /// Colour of a cable at a tension.

@@ -82,7 +82,7 @@ pub(super) fn log_diagnosis(
 fn check(run: &SideBySide) -> Result<(), ViewError> {
     shape::check_graph(&run.graph)?;
     for frame in run.calibrated.iter().chain(&run.corrected) {
-        shape::check_frame(&run.graph, None, frame)?;
+        shape::check_frame(&run.graph, frame)?;
     }
     let samples = run.calibrated.len();
     let counts = run.measured.iter().map(|m| ("measured samples", m.values.len()));

@@ -9,9 +9,9 @@ use super::channels::axis_title;
 use super::colour::{AXIS, NOW, age, opaque};
 use super::error::ViewError;
 use super::layer::{Layer, path, times};
-use super::loop_trace::LoopTrace;
 use super::options::ViewOptions;
 use super::ticks::{padded, text, ticks};
+use super::trace::Trace;
 use crate::system::observe::{Frame, SceneGraph};
 
 /// Size of the drawn frame; its lower left corner is the origin.
@@ -25,7 +25,7 @@ pub(super) struct Loop {
     number: usize,
     channels: (usize, usize),
     titles: [String; 2],
-    trace: LoopTrace,
+    trace: Trace<2>,
 }
 
 impl Loop {
@@ -34,7 +34,7 @@ impl Loop {
             number,
             channels: (x, y),
             titles: [axis_title(&graph.channels[x]), axis_title(&graph.channels[y])],
-            trace: LoopTrace::new(options.loop_points),
+            trace: Trace::new(options.loop_points),
         };
         graph.loops.iter().enumerate().map(new).collect()
     }

@@ -5,9 +5,11 @@
 //! stays flat and ten thousand frames cost milliseconds.
 //!
 //! Entities: `world/links/<link>` (poses and shapes), `world/cables/<cable>`, `world/muscles/<muscle>`,
-//! `world/contacts`, `plots/<quantity>_<unit>/<channel>`, `joints/<n>`, `energy/<name>`, `loops/<n>`,
-//! `headline`, `events`, `legend`. The only timeline is `time`, the simulated time.
+//! `world/contacts`, `world/tip` (trace), `plots/<quantity>_<unit>/<channel>`, `joints/<n>` (degrees; sliders mm),
+//! `energy/<name>`, `loops/<n>`, `headline`, `angles`, `events`, `legend`. A link that turns in a hinge carries its marker,
+//! `world/links/<link>/hinge`, the tip's link its frame, `world/links/<link>/frame`. The only timeline is `time`, the simulated time.
 
+mod angles;
 mod blueprint;
 mod cables;
 mod channels;
@@ -23,17 +25,19 @@ mod layer;
 mod layout;
 mod legend;
 mod links;
-mod loop_trace;
 mod loops;
 mod muscles;
 mod options;
 mod scalars;
+mod scale_bar;
 mod shape;
 mod sink;
 mod solids;
 #[cfg(test)]
 mod tests;
 mod ticks;
+mod tip;
+mod trace;
 mod viewer;
 
 pub use diagnosis::show_diagnosis;

@@ -8,7 +8,7 @@ use super::channels::{groups, label};
 use super::colour::{Rgb, opaque, series};
 use super::error::ViewError;
 use super::layer::{Layer, path, time_column, times};
-use crate::system::observe::{Frame, SceneGraph};
+use crate::system::observe::{Frame, JointGraph, SceneGraph};
 
 /// One line of a plot.
 struct Line {
@@ -58,26 +58,35 @@ impl Layer for Channels {
     }
 }
 
-/// Joint coordinates under `joints/<n>`, in the mechanism's order, starting at 1.
-#[derive(Default)]
+/// Joint coordinates under `joints/<n>`, in the mechanism's order, starting at 1: degrees, of sliders mm.
 pub(super) struct Joints {
-    styled: usize,
+    joints: Vec<JointGraph>,
+}
+
+impl Joints {
+    pub(super) fn new(graph: &SceneGraph) -> Self {
+        Self { joints: graph.joints.clone() }
+    }
+}
+
+fn joint_entity(index: usize) -> EntityPath {
+    path(["joints", &format!("{:02}", index + 1)])
 }
 
 impl Layer for Joints {
-    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
-        let count = frames[0].joint_positions.len();
-        for joint in 0..count {
-            let name = format!("{:02}", joint + 1);
-            let entity = path(["joints", &name]);
-            if joint >= self.styled {
-                style(out, &entity, &format!("joint {}", joint + 1), joint)?;
-            }
-            let values = frames.iter().map(|frame| frame.joint_positions[joint]);
-            let columns = Scalars::new(values).columns_of_unit_batches()?;
-            out.send_columns(entity, [times(frames)], columns)?;
+    fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
+        for (i, joint) in self.joints.iter().enumerate() {
+            style(out, &joint_entity(i), &format!("{} ({})", joint.name, joint.unit()), i)?;
         }
-        self.styled = self.styled.max(count);
+        Ok(())
+    }
+
+    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
+        for (i, joint) in self.joints.iter().enumerate() {
+            let values = frames.iter().map(|frame| joint.shown(frame.joint_positions[i]));
+            let columns = Scalars::new(values).columns_of_unit_batches()?;
+            out.send_columns(joint_entity(i), [times(frames)], columns)?;
+        }
         Ok(())
     }
 }

@@ -8,6 +8,9 @@ pub(super) fn check_graph(graph: &SceneGraph) -> Result<(), ViewError> {
     for visual in &graph.visuals {
         check_index("a visual's link", visual.link, graph.links.len())?;
     }
+    for joint in &graph.joints {
+        check_index("a joint's link", joint.link, graph.links.len())?;
+    }
     for (x, y) in &graph.loops {
         check_index("a loop's channel", *x, graph.channels.len())?;
         check_index("a loop's channel", *y, graph.channels.len())?;
@@ -15,15 +18,15 @@ pub(super) fn check_graph(graph: &SceneGraph) -> Result<(), ViewError> {
     Ok(())
 }
 
-/// A frame has what its graph promises, and as many joints as the frame before.
-pub(super) fn check_frame(graph: &SceneGraph, joints_before: Option<usize>, frame: &Frame) -> Result<(), ViewError> {
+/// A frame has what its graph promises.
+pub(super) fn check_frame(graph: &SceneGraph, frame: &Frame) -> Result<(), ViewError> {
     let joints = frame.joint_positions.len();
     let counts = [
         ("channels", graph.channels.len(), frame.channels.len()),
         ("link poses", graph.links.len(), frame.link_poses.len()),
         ("cables", graph.cables.len(), frame.cables.len()),
         ("muscles", graph.muscles.len(), frame.muscles.len()),
-        ("joints", joints_before.unwrap_or(joints), joints),
+        ("joints", graph.joints.len(), joints),
     ];
     let time_s = frame.time_s;
     match counts.into_iter().find(|(_, expected, found)| expected != found) {

@@ -12,7 +12,7 @@ use super::sink::Connection;
 use super::viewer::Viewer;
 use crate::mechanism::geometry::{Contact, Pose, Shape, Visual};
 use crate::system::observe::{
-    CableFrame, Frame, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+    CableFrame, Frame, JointGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
 };
 
 const FRAMES: usize = 250;
@@ -185,6 +185,7 @@ fn graph() -> SceneGraph {
             shape: Shape::Sphere { radius_m: 0.01 },
             colour_rgba: [1.0; 4],
         }],
+        joints: vec![JointGraph { name: "hinge 1".into(), is_angle: true, link: 0, axis: [0.0, 1.0, 0.0] }],
         cables: vec!["c".into()],
         muscles: vec![MuscleGraph {
             name: "m".into(),

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use rerun::RecordingStream;
 
+use super::angles::{Angles, Hinges};
 use super::blueprint;
 use super::cables::Cables;
 use super::contacts::Contacts;
@@ -16,8 +17,10 @@ use super::loops::Loop;
 use super::muscles::Muscles;
 use super::options::{Pace, ViewOptions};
 use super::scalars::{Channels, Energies, Joints};
+use super::scale_bar::ScaleBar;
 use super::shape;
 use super::sink::{Connection, ViewSink};
+use super::tip::Tip;
 use crate::system::observe::{Frame, Observer, SceneGraph};
 
 /// A stretch is never longer than this, however fast the frames come.
@@ -157,8 +160,7 @@ impl Run {
     }
 
     fn keep(&mut self, frame: &Frame) -> Result<(), ViewError> {
-        let joints = self.frames.last().map(|frame| frame.joint_positions.len());
-        shape::check_frame(&self.graph, joints, frame)?;
+        shape::check_frame(&self.graph, frame)?;
         self.frames.push(frame.clone());
         Ok(())
     }
@@ -200,7 +202,8 @@ fn layers(graph: &SceneGraph, options: &ViewOptions) -> Vec<Box<dyn Layer>> {
         Box::new(Muscles::new(WORLD, graph, options)),
         Box::new(Contacts::new(options)),
         Box::new(Channels::new(graph)),
-        Box::new(Joints::default()),
+        Box::new(Hinges::new(WORLD, graph)),
+        Box::new(Joints::new(graph)),
         Box::new(Energies::default()),
         Box::new(Events),
         Box::new(Legend::new(graph, options)),
@@ -210,6 +213,15 @@ fn layers(graph: &SceneGraph, options: &ViewOptions) -> Vec<Box<dyn Layer>> {
     }
     if let Some(headline) = Headline::new(graph) {
         layers.push(Box::new(headline));
+    }
+    if let Some(angles) = Angles::new(graph) {
+        layers.push(Box::new(angles));
+    }
+    if let Some(bar) = ScaleBar::new(WORLD, graph) {
+        layers.push(Box::new(bar));
+    }
+    if let Some(tip) = Tip::new(WORLD, graph, options) {
+        layers.push(Box::new(tip));
     }
     layers
 }

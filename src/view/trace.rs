@@ -1,22 +1,22 @@
-//! A hysteresis loop's points, thinned out so that a long run stays small.
+//! The points of a loop or of a way in space, thinned out so that a long run stays small.
 
-/// Points of a loop in the order of time, at most `capacity` of them.
+/// Points of `N` numbers in the order of time, at most `capacity` of them.
 #[derive(Clone, Debug)]
-pub(super) struct LoopTrace {
-    points: Vec<[f64; 2]>,
+pub(super) struct Trace<const N: usize> {
+    points: Vec<[f64; N]>,
     capacity: usize,
     stride: usize,
     seen: usize,
-    range: Option<[[f64; 2]; 2]>,
+    range: Option<[[f64; 2]; N]>,
 }
 
-impl LoopTrace {
+impl<const N: usize> Trace<N> {
     pub(super) fn new(capacity: usize) -> Self {
-        LoopTrace { points: Vec::new(), capacity: capacity.max(16), stride: 1, seen: 0, range: None }
+        Trace { points: Vec::new(), capacity: capacity.max(16), stride: 1, seen: 0, range: None }
     }
 
     /// Adds a point; points that are not finite are left out.
-    pub(super) fn push(&mut self, point: [f64; 2]) {
+    pub(super) fn push(&mut self, point: [f64; N]) {
         if !point.iter().all(|value| value.is_finite()) {
             return;
         }
@@ -30,17 +30,17 @@ impl LoopTrace {
         }
     }
 
-    pub(super) fn points(&self) -> &[[f64; 2]] {
+    pub(super) fn points(&self) -> &[[f64; N]] {
         &self.points
     }
 
-    /// Smallest and largest value, horizontally and vertically, of all points ever added.
-    pub(super) fn range(&self) -> Option<[[f64; 2]; 2]> {
+    /// Smallest and largest value, along each axis, of all points ever added.
+    pub(super) fn range(&self) -> Option<[[f64; 2]; N]> {
         self.range
     }
 
-    fn widen(&mut self, point: [f64; 2]) {
-        let mut range = self.range.unwrap_or([[point[0]; 2], [point[1]; 2]]);
+    fn widen(&mut self, point: [f64; N]) {
+        let mut range = self.range.unwrap_or(point.map(|value| [value; 2]));
         for (bounds, value) in range.iter_mut().zip(point) {
             *bounds = [bounds[0].min(value), bounds[1].max(value)];
         }
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_long_run_stays_small_and_evenly_spaced() {
-        let mut trace = LoopTrace::new(64);
+        let mut trace = Trace::new(64);
         for n in 0..10_000 {
             trace.push([f64::from(n), -f64::from(n)]);
         }
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_is_left_out() {
-        let mut trace = LoopTrace::new(64);
+        let mut trace = Trace::new(64);
         trace.push([f64::NAN, 0.0]);
         assert!(trace.points().is_empty() && trace.range().is_none());
     }

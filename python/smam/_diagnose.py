@@ -1,0 +1,138 @@
+"""What physics recordings show and their scene lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike as OsPathLike
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from ._answers import answer_folder, read_json
+from ._frames import PathLike
+from ._process import Word, call
+from ._toml import set_arguments
+
+_EFFECT_COLUMNS = [
+    "name", "element", "channel", "probability", "parameter", "value", "ci95_low", "ci95_high", "rivals", "law", "hypothetical",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer of :func:`diagnose`."""
+
+    verdict: str
+    """adequate, missing_physics, ambiguous, unknown_physics or unusable_data."""
+    summary: str
+    """The verdict in plain words."""
+    effects: pd.DataFrame = field(repr=False)
+    """One row per effect and number of it: size in SI units with its 95 % interval, probability, rivals, law."""
+    channels: pd.DataFrame = field(repr=False)
+    """Errors on the sealed runs by channel, in its unit: ``rmse_baseline``, ``rmse_corrected``, ``noise_sd``."""
+    gap_closed: float
+    """Share of the gap between calibrated scene and noise that the effects close on the sealed runs."""
+    warnings: list[str] = field(repr=False)
+    folder: Path
+    """Where everything was written."""
+    raw: dict[str, Any] = field(repr=False)
+    """All of diagnosis.json."""
+
+    @property
+    def report(self) -> Path | None:
+        """The answer as one page."""
+        return self._file("report.html")
+
+    @property
+    def scene(self) -> Path | None:
+        """The corrected scene: :func:`run` and :func:`sweep` take it."""
+        return self._file("scene.toml")
+
+    @property
+    def baseline(self) -> Path | None:
+        """The same scene calibrated alone, nothing added."""
+        return self._file("baseline.toml")
+
+    @property
+    def next_experiment(self) -> Path | None:
+        """Inputs that would tell best what stays open."""
+        return self._file("next_experiment.csv")
+
+    def _file(self, name: str) -> Path | None:
+        path = self.folder / name
+        return path if path.is_file() else None
+
+
+def diagnose(
+    folders: PathLike | Sequence[PathLike],
+    *,
+    scene: PathLike | None = None,
+    set: Mapping[str, Any] | None = None,
+    out: PathLike | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+    rrd: bool = False,
+) -> Diagnosis:
+    """Finds what physics the scene of some recordings lacks.
+
+    ``folders``: one folder with a recordings.toml (:func:`write_recordings` makes one) or several of one rig.
+    ``scene``: instead of the one that recordings.toml names. ``set``: keys of the scene with other values.
+    ``out``: where to write, ``out/diagnose_NAME`` if left out. ``rrd``: also a stream for the Rerun viewer.
+    Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
+    """
+    given = [folders] if isinstance(folders, (str, OsPathLike)) else list(folders)
+    if not given:
+        raise ValueError("no folder of recordings given")
+    folder = answer_folder(out, "diagnose", given[0])
+    words: list[Word] = ["diagnose", *given, "--out", folder, "--seed", str(seed), *set_arguments(set)]
+    if scene is not None:
+        words += ["--scene", scene]
+    if threads is not None:
+        words += ["--threads", str(threads)]
+    if rrd:
+        words.append("--rrd")
+    call(words, also_fine=[1])
+    return _read(folder)
+
+
+def _read(folder: Path) -> Diagnosis:
+    raw = read_json(folder / "diagnosis.json")
+    fit = raw.get("fit", {})
+    channels = pd.DataFrame.from_dict(
+        fit.get("channels", {}), orient="index", columns=["rmse_baseline", "rmse_corrected", "noise_sd"]
+    )
+    return Diagnosis(
+        verdict=raw["verdict"],
+        summary=raw.get("summary", ""),
+        effects=_effects(raw.get("effects", [])),
+        channels=channels.rename_axis("channel"),
+        gap_closed=float(fit.get("gap_closed", 0.0)),
+        warnings=list(raw.get("warnings", [])),
+        folder=folder,
+        raw=raw,
+    )
+
+
+def _effects(found: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    rows = []
+    for effect in found:
+        for key, number in effect["parameters"].items():
+            low, high = number["ci95"]
+            rows.append(
+                {
+                    "name": effect["name"],
+                    "element": effect["element"],
+                    "channel": effect.get("channel", ""),
+                    "probability": effect["probability"],
+                    "parameter": key,
+                    "value": number["value"],
+                    "ci95_low": low,
+                    "ci95_high": high,
+                    "rivals": ", ".join(effect.get("rivals", [])),
+                    "law": effect.get("law", ""),
+                    "hypothetical": effect.get("hypothetical", False),
+                }
+            )
+    return pd.DataFrame(rows, columns=_EFFECT_COLUMNS)
