@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
-use smam::mechanism::{Forceps, NotchGeometry, NotchedTube, notched_tube_meshes, notched_tube_urdf};
+use smam::mechanism::{Forceps, MechanismError, NotchGeometry, NotchedTube, notched_tube_meshes, notched_tube_urdf};
 
 use smam::recording::write_whole_bytes;
 
@@ -62,6 +62,11 @@ struct TubeArguments {
 /// Generates the model; the numbers that the scene file needs go to stderr.
 pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     let Kind::NotchedTube(a) = &arguments.kind;
+    let modulus_pa = a.youngs_modulus_pa;
+    if !(modulus_pa > 0.0 && modulus_pa.is_finite()) {
+        let remedy = "give it in Pa, for example 0.5e9";
+        return Err(CliError::Usage(format!("--youngs-modulus-pa {modulus_pa}: must be > 0\n  remedy: {remedy}")));
+    }
     let notch = NotchGeometry {
         outer_radius_m: a.outer_diameter_m / 2.0,
         inner_radius_m: a.outer_diameter_m / 2.0 - a.wall_m,
@@ -78,7 +83,7 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     };
     match &a.output {
         Some(path) => write_with_meshes(&tube, path)?,
-        None => super::print_text(&notched_tube_urdf(&tube, None)?)?,
+        None => super::print_text(&notched_tube_urdf(&tube, None).map_err(of_option)?)?,
     }
     eprintln!("for the scene file, per notch:");
     eprintln!("  stiffness_n_m_rad = {:.6e}", notch.stiffness_n_m_rad(a.youngs_modulus_pa));
@@ -90,11 +95,27 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
 /// The URDF and, beside it, the meshes that it draws the tube with.
 fn write_with_meshes(tube: &NotchedTube, path: &Path) -> Result<(), CliError> {
     let name = path.file_stem().map_or_else(|| "tube".to_owned(), |n| n.to_string_lossy().into_owned());
-    let meshes = notched_tube_meshes(tube, &name)?.map(|(file, bytes)| (path.with_file_name(file), bytes));
-    let urdf = (path.to_owned(), notched_tube_urdf(tube, Some(&name))?.into_bytes());
+    let meshes =
+        notched_tube_meshes(tube, &name).map_err(of_option)?.map(|(file, bytes)| (path.with_file_name(file), bytes));
+    let urdf = (path.to_owned(), notched_tube_urdf(tube, Some(&name)).map_err(of_option)?.into_bytes());
     for (file, bytes) in meshes.into_iter().chain([urdf]) {
         write_whole_bytes(&file, &bytes).map_err(|source| CliError::Write { file: file.clone(), source })?;
         eprintln!("written: {}", file.display());
     }
     Ok(())
+}
+
+/// An error of the tube, told by the option that the number came from.
+fn of_option(error: MechanismError) -> CliError {
+    match error {
+        MechanismError::Spec { name, problem, remedy, .. } => {
+            let option = match name.as_str() {
+                "outer_radius_m" => "outer-diameter-m".to_owned(),
+                "inner_radius_m" => "wall-m".to_owned(),
+                other => other.replace('_', "-"),
+            };
+            CliError::Usage(format!("--{option}: {problem}\n  remedy: {remedy}"))
+        }
+        other => other.into(),
+    }
 }

@@ -29,7 +29,10 @@ pub(super) fn read(urdf: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, Me
     let found = if ending == "obj" { obj(&bytes) } else { stl::read(&bytes) };
     let found = found.map_err(|reason| fault(reason, convert))?;
     if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
-        return Err(fault("a vertex or the scale is not finite".to_owned(), "correct it"));
+        return Err(fault(
+            "a vertex or the scale is not finite".to_owned(),
+            "write finite vertices, in m, and a finite scale",
+        ));
     }
     let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
     Ok(Shape::Mesh { vertices_m: found.vertices.iter().map(scaled).collect(), triangles: found.triangles })

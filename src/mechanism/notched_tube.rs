@@ -99,6 +99,9 @@ pub fn notched_tube_urdf(tube: &NotchedTube, meshes: Option<&str>) -> Result<Str
     Ok(urdf.finish())
 }
 
+/// More joints than anybody simulates; without a limit a slip of the finger fills the memory.
+const MOST_NOTCHES: usize = 1000;
+
 fn check(tube: &NotchedTube) -> Result<(), MechanismError> {
     tube.notch.check()?;
     let lengths = [
@@ -107,12 +110,14 @@ fn check(tube: &NotchedTube) -> Result<(), MechanismError> {
         ("tip_m", tube.tip_m),
         ("density_kg_m3", tube.density_kg_m3),
     ];
-    let error = |key: &str, problem: String| Err(MechanismError::spec("notched_tube", key, problem, "correct it"));
-    if tube.notches == 0 {
-        return error("notches", "there must be one or more".into());
+    let error =
+        |key: &str, problem: String, remedy: &str| Err(MechanismError::spec("notched_tube", key, problem, remedy));
+    if !(1..=MOST_NOTCHES).contains(&tube.notches) {
+        let problem = format!("notches = {} must be 1 to {MOST_NOTCHES}", tube.notches);
+        return error("notches", problem, "each notch is a joint; the stock tube has ten or so");
     }
     if let Some((key, value)) = lengths.iter().find(|(_, v)| !(*v > 0.0 && v.is_finite())) {
-        return error(key, format!("{key} = {value} must be > 0"));
+        return error(key, format!("{key} = {value} must be > 0"), "give a number above zero, in SI units");
     }
     match tube.forceps {
         Some(forceps) => forceps.check(),

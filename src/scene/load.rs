@@ -39,7 +39,7 @@ impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| unreadable(&path, source))?;
         Self::parse(&text, &path, overrides)
     }
 
@@ -97,6 +97,20 @@ impl Scene {
     }
 }
 
+/// A file that is there but no text has another remedy than one that is not there.
+fn unreadable(path: &Path, source: std::io::Error) -> SceneError {
+    let file = path.to_owned();
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => SceneError::Value {
+            file,
+            table: "encoding".to_owned(),
+            message: "it is not UTF-8 text".to_owned(),
+            remedy: "save it as text in UTF-8".to_owned(),
+        },
+        _ => SceneError::Unreadable { file, source },
+    }
+}
+
 fn list_keys(prefix: &str, value: &toml::Value, keys: &mut Vec<(String, String)>) {
     let join = |segment: &str| if prefix.is_empty() { segment.to_owned() } else { format!("{prefix}.{segment}") };
     match value {
@@ -123,9 +137,12 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     }
     let file = format!("scenes/{path_or_name}.toml");
     let here = Some(PathBuf::from(&file)).filter(|path| path.is_file());
-    here.or_else(|| stock::builtin(&file)).ok_or_else(|| SceneError::UnknownName {
-        name: path_or_name.to_owned(),
-        nearest: did_you_mean(path_or_name, &STOCK_SCENES),
-        known: STOCK_SCENES.join(", "),
+    here.or_else(|| stock::builtin(&file)).ok_or_else(|| match direct.is_dir() {
+        true => SceneError::Unreadable { file: direct.to_owned(), source: std::io::ErrorKind::IsADirectory.into() },
+        false => SceneError::UnknownName {
+            name: path_or_name.to_owned(),
+            nearest: did_you_mean(path_or_name, &STOCK_SCENES),
+            known: STOCK_SCENES.join(", "),
+        },
     })
 }
