@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 const ALLOWED: &[(&str, &[&str])] = &[
     ("scalar", &[]),
     ("columns", &[]),
-    ("recording", &["columns"]),
+    ("bag", &[]),
+    ("recording", &["bag", "columns"]),
     ("mechanism", &[]),
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
@@ -62,6 +63,10 @@ const OWNED: &[(&str, &str)] = &[
     ("rerun", "view"),
     ("diffsol", "conceal"),
     ("parquet", "columns"),
+    ("mcap", "bag"),
+    ("lz4_flex", "bag"),
+    ("ruzstd", "bag"),
+    ("crc32fast", "bag"),
     ("pulp", "hysteresis"),
 ];
 

@@ -17,6 +17,7 @@ impl Simulation {
             tip_link: file.view.tip_link.as_ref().and_then(|t| links.iter().position(|l| l == t)),
             links,
             visuals: self.mechanism.as_ref().map_or(Vec::new(), |m| m.visuals().to_vec()),
+            joints: self.mechanism.iter().flat_map(|m| m.coordinates()).map(|c| c.name.clone()).collect(),
             cables: file.cable.iter().map(|c| c.name.clone()).collect(),
             muscles: self.muscle_graphs(),
             loops: file.view.loops.iter().filter_map(|(x, y)| Some((find(x)?, find(y)?))).collect(),

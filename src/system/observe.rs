@@ -14,6 +14,8 @@ pub struct SceneGraph {
     /// Links and free bodies; `Frame::link_poses` follows this order.
     pub links: Vec<String>,
     pub visuals: Vec<Visual>,
+    /// One name per joint coordinate; `Frame::joint_positions` follows this order.
+    pub joints: Vec<String>,
     /// One name per cable; `Frame::cables` follows this order.
     pub cables: Vec<String>,
     /// One per muscle: how to draw it.
