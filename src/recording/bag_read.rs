@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::Path;
 
 use super::one_clock::{Sampled, on_one_clock};
-use super::{Channel, ChannelSpec, LoadedRun, Recording, RecordingError, Unit, parse_column};
+use super::{Channel, ChannelSpec, LoadedRun, Recording, RecordingError, Role, Unit, parse_column};
 use crate::bag::{self, Clock, FLOAT64, Pick, Series, Topic};
 
 /// Absolute by definition, where the pressures of scenes are gauge pressures.
@@ -66,7 +66,7 @@ fn undeclared(bag: &bag::Bag) -> Result<Vec<Sampled>, String> {
             names(bag)
         ));
     }
-    bag.series.iter().map(|series| sampled(series, |v| v)).collect()
+    bag.series.iter().map(|series| sampled(series, true, |v| v)).collect()
 }
 
 /// A declared channel in its own unit.
@@ -82,7 +82,7 @@ fn one(spec: &ChannelSpec, bag: &bag::Bag) -> Result<Sampled, String> {
     let column = parse_column(&spec.column).map_err(|e| e.to_string())?.unit;
     let from = bag_unit(spec, series, column)?;
     let zero = spec.bag.as_ref().and_then(|source| source.zero).unwrap_or(0.0);
-    sampled(series, |value| match from.suffix == column.suffix {
+    sampled(series, spec.role == Role::Output, |value| match from.suffix == column.suffix {
         // No detour, so that the number stays the bag's to the last bit.
         true => value - zero,
         false => column.from_si(from.to_si(value - zero)),
@@ -108,7 +108,7 @@ fn bag_unit(spec: &ChannelSpec, series: &Series, column: Unit) -> Result<Unit, S
     }
 }
 
-fn sampled(series: &Series, convert: impl Fn(f64) -> f64) -> Result<Sampled, String> {
+fn sampled(series: &Series, is_output: bool, convert: impl Fn(f64) -> f64) -> Result<Sampled, String> {
     if series.time_s.is_empty() {
         return Err(format!(
             "topic {}: no message has the field and the joint of the column \"{}\"; mend its [[channel]]",
@@ -118,6 +118,7 @@ fn sampled(series: &Series, convert: impl Fn(f64) -> f64) -> Result<Sampled, Str
     Ok(Sampled {
         column: series.column.clone(),
         topic: series.topic.name.clone(),
+        is_output,
         time_s: series.time_s.clone(),
         // Drivers write infinity for «out of range»: no sample either.
         values: series.values.iter().map(|v| if v.is_finite() { convert(*v) } else { f64::NAN }).collect(),

@@ -1,6 +1,6 @@
 //! Channels of several clocks as one recording.
 //!
-//! The topic with the most samples is the clock. Another that keeps up with it is read at every instant of the clock, on the
+//! The topic with the most samples is the clock, of equals one that is compared rather than one that drives. Another that keeps up with it is read at every instant of the clock, on the
 //! straight line between its own samples. A slower one is read so at the instants nearest to its samples only, and is
 //! missing at the others: a sample counts once, however fast the clock is. Nothing is read across a gap.
 
@@ -14,6 +14,7 @@ const KEEPS_UP: f64 = 1.5;
 pub(super) struct Sampled {
     pub(super) column: String,
     pub(super) topic: String,
+    pub(super) is_output: bool,
     /// Increasing, s; at least one.
     pub(super) time_s: Vec<f64>,
     pub(super) values: Vec<f64>,
@@ -21,8 +22,8 @@ pub(super) struct Sampled {
 
 /// Instants (s), values of each column at them, and a note where the columns had several clocks.
 pub(super) fn on_one_clock(sampled: &[Sampled]) -> (Vec<f64>, Vec<Vec<f64>>, Option<String>) {
-    // The first of those with the most samples.
-    let Some(clock) = sampled.iter().rev().max_by_key(|s| s.time_s.len()) else {
+    // The first of the best: a driving input runs straight between its samples anyway.
+    let Some(clock) = sampled.iter().rev().max_by_key(|s| (s.time_s.len(), s.is_output)) else {
         return (Vec::new(), Vec::new(), None);
     };
     let values = sampled.iter().map(|s| if s.time_s == clock.time_s { s.values.clone() } else { at(&clock.time_s, s) });
@@ -84,7 +85,7 @@ mod tests {
 
     fn sampled(topic: &str, time_s: Vec<f64>, value: impl Fn(f64) -> f64) -> Sampled {
         let values = time_s.iter().map(|t| value(*t)).collect();
-        Sampled { column: format!("{topic}_n"), topic: topic.to_owned(), time_s, values }
+        Sampled { column: format!("{topic}_n"), topic: topic.to_owned(), is_output: true, time_s, values }
     }
 
     fn even(count: usize, from_s: f64, interval_s: f64) -> Vec<f64> {
