@@ -28,10 +28,7 @@ const REFUSED: [(&str, &str); 7] = [
          (a file saved with -v7.3: save it again with -v7 first)",
     ),
     ("db3", "SQLite bags are not read; convert it to MCAP with `ros2 bag convert`"),
-    (
-        "bag",
-        "ROS 1 bags are not read; convert it with `mcap convert RUN.bag RUN.mcap` and record Float64 topics in CSV",
-    ),
+    ("bag", "ROS 1 bags are not read; write its topics to CSV with `rostopic echo -b RUN.bag -p /TOPIC`"),
     ("xlsx", "spreadsheets are not read; save the sheet as CSV with commas and decimal points"),
     ("xls", "spreadsheets are not read; save the sheet as CSV with commas and decimal points"),
     ("h5", "HDF5 files are not read; write the columns to CSV or Parquet, with pandas for one"),
