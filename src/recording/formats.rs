@@ -21,7 +21,7 @@ pub enum FileFormat {
 const REFUSED: [(&str, &str); 7] = [
     (
         "mat",
-        "MATLAB files are not read; make a CSV file of it: in MATLAB \
+        "MATLAB files are neither read nor written; make a CSV file of it: in MATLAB \
          `load run.mat; writetable(table(time_s(:), force_n(:), 'VariableNames', {'time_s','force_n'}), 'run.csv')`, \
          in Python `m = scipy.io.loadmat('run.mat', squeeze_me=True); \
          pandas.DataFrame({k: m[k] for k in ['time_s', 'force_n']}).to_csv('run.csv', index=False)` \
@@ -124,7 +124,10 @@ mod tests {
     fn other_formats_are_refused_with_a_way_out() {
         let refusal = |name: &str| read_recording(Path::new(name)).expect_err("refused").to_string();
         let said = refusal("rig/run.MAT");
-        assert!(said.starts_with("rig/run.MAT: MATLAB files are not read; make a CSV file of it: "), "{said}");
+        assert!(
+            said.starts_with("rig/run.MAT: MATLAB files are neither read nor written; make a CSV file of it: "),
+            "{said}"
+        );
         assert!(said.contains("writetable(") && said.contains("scipy.io.loadmat(") && said.contains("-v7.3"), "{said}");
         assert!(refusal("run.db3").contains("ros2 bag convert"));
         let written = Recording::new(vec![0.0], vec![]).expect("one").write(Path::new("x.mat"), &Default::default());
