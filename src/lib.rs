@@ -3,6 +3,7 @@
 //! The chain is `plunger -> syringe -> line -> muscle -> cable -> mechanism`. Everything left of the
 //! mechanism is written here; the mechanism is a rapier multibody. See `ARCHITECTURE.md` for the map.
 
+pub mod bag;
 pub mod columns;
 pub mod conceal;
 pub mod diagnose;

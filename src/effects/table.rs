@@ -2,15 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
 use crate::scalar::Scalar;
 
 /// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffectTable {
+    /// Name in the catalogue (`smam effects`).
+    #[schemars(schema_with = "names")]
     pub name: String,
+    /// What has it: `muscle`, `cable 2`.
     pub element: String,
     /// Column of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -18,6 +22,11 @@ pub struct EffectTable {
     /// Whatever else stands in the table; must be the law's parameters.
     #[serde(flatten)]
     pub parameters: BTreeMap<String, f64>,
+}
+
+fn names(_: &mut SchemaGenerator) -> Schema {
+    let names: Vec<&str> = CATALOGUE.iter().map(|spec| spec.name).collect();
+    json_schema!({ "type": "string", "enum": names })
 }
 
 /// What is wrong with an [`EffectTable`].

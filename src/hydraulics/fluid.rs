@@ -1,9 +1,10 @@
 //! The working fluid.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Working fluid and the air outside it. Defaults: water at 20 °C at sea level.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Fluid {
     /// Mass density, kg/m³.

@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Fluid;
 
 /// A syringe: `A_s = pi d_s² / 4`, flow into the line `A_s dx_p/dt`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Syringe {
     /// Inner diameter of the barrel, m.
@@ -26,7 +27,7 @@ impl Syringe {
 /// Per length: resistance `128 mu / (pi d⁴)`, inertance `f rho / A`. The momentum factor `f` is 4/3 for the
 /// parabolic profile of slow laminar flow and 1 for the flat profile of a fast wave front. Valid while the flow is
 /// laminar (Re < 2300) and slow against `nu / d²` (here 1.6 1/s, so the factor is an approximation above ~1 Hz).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
     /// Length, m.

@@ -6,10 +6,11 @@ use super::{
     SymmetricBoucWen,
 };
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A displacement-form model of any kind: input and output in mm, one state or several.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "snake_case", bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub enum HysteresisModel<D> {
     Symmetric(SymmetricBoucWen<D>),

@@ -3,10 +3,11 @@
 use super::branch::Branch;
 use super::error::{HysteresisError, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the state enters the output at small inputs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gate {
     /// Times `tanh x`: the loop is closed at `x = 0` (our reading of the exponentials in eq. (3)).
@@ -37,7 +38,7 @@ impl Gate {
 /// Eq. (3) is misprinted: there is no `z` in it. `p = 2`, the sign of `az` and the gate are our reading. For
 /// `p = 2`: the printed parameters then give the printed mean speeds (a digit 4 in the text gives 4.54 mm/s
 /// for 5.34). For the sign: only so does unloading lie above loading. The gate is only moderately supported.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PaperModel<D> {
     pub alpha_x1: D,

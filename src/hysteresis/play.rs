@@ -2,6 +2,7 @@
 
 use super::error::{HysteresisError, all_of_one_sign, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Play (backlash): `w = max(x - r, min(x + r, w))`, `r` half the total width, >= 0.
@@ -32,7 +33,7 @@ fn between<D: Scalar>(value: D, least: D, most: D) -> D {
 }
 
 /// One play of a Prandtl-Ishlinskii sum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlayElement<D> {
     /// Output per play output.
@@ -52,19 +53,22 @@ pub struct PlayElement<D> {
 ///
 /// Sources: Krejčí and Kuhnen 2001 (the sum); Al Janaideh, Rakheja and Su 2009 (edges of two shapes);
 /// Al Janaideh and Krejčí 2013 (half widths that grow with speed).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct PrandtlIshlinskii<D> {
     /// Output per input past the hysteresis.
     pub gain: D,
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub curvature: D,
     /// `kappa`, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub asymmetry: D,
     /// `tau`, s: growth of every half width per input speed.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub rate_s: D,
     pub elements: Vec<PlayElement<D>>,
 }

@@ -3,10 +3,11 @@
 use super::Gate;
 use super::error::{HysteresisError, all_of_one_sign, not_negative, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One spring with a slider of a Maxwell-slip sum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlipElement<D> {
     /// Output per stretch of the spring.
@@ -23,22 +24,26 @@ pub struct SlipElement<D> {
 /// that of a muscle does with its pressure. With `k_i > 0` unloading lies below
 /// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
 /// generalized Maxwell-slip model); the gate is borrowed from Thai et al. 2021.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct MaxwellSlip<D> {
     /// `y0`, mm: where the output counts from.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub offset: D,
     /// Output per input beside the sliders.
     pub gain: D,
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub curvature: D,
     /// `s`, 1/mm².
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub cubic: D,
     /// `c`, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub growth: D,
     #[serde(default = "not_gated")]
     pub gate: Gate,

@@ -3,6 +3,7 @@
 use super::branch::Branch;
 use super::error::{HysteresisError, not_negative, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Symmetric Bouc-Wen model, Thai et al. 2021, eqs. (1)-(2):
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// `x`, `y`, `z` in mm; `gamma_x`, `gamma_z`, `K`, `n` dimensionless, `lambda`, `delta` in mm^-n. Range: `K > 0`,
 /// `lambda + delta > 0` (bounded state), `n > 0`; the loop loses energy while `lambda >= |delta|`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SymmetricBoucWen<D> {
     pub gamma_x: D,

@@ -2,13 +2,14 @@
 
 use super::error::{MuscleError, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Gent's limit is approached up to this share; beyond it the energy goes on as a parabola.
 const GENT_SHARE: f64 = 0.999;
 
 /// One term of Ogden's law. A term with `mu_pa = 0` adds nothing; `alpha` must not be zero.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OgdenTerm<D> {
     /// Modulus of the term, Pa (its share of the shear modulus is `mu alpha / 2`).
@@ -30,7 +31,7 @@ pub struct OgdenTerm<D> {
 ///
 /// The parabola keeps a simulation finite past the locking stretch; it is no physics there, and
 /// `Wall::valid_range` says where it begins.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Material<D> {
     NeoHookean { c1_pa: D },
