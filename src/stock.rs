@@ -28,6 +28,7 @@ pub const FILES: &[(&str, &[u8])] = carried![
     "scenes/pressure_muscle.toml",
     "scenes/tendon_sheath.toml",
     "scenes/driven_axis.toml",
+    "scenes/scene.schema.json",
     "models/antagonistic_pulley.urdf",
     "models/bending_catheter.urdf",
     "models/bending_catheter_strip.stl",

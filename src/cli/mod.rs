@@ -117,7 +117,7 @@ fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, CliError> {
 pub fn run() -> Result<ExitCode, CliError> {
     let code = run_command()?;
     if UNPRINTED.load(Ordering::Relaxed) {
-        return Err(CliError::Failed("standard output: cannot be written".to_owned()));
+        return Err(CliError::Failed("standard output: cannot be written\n  remedy: is the disk full that it goes to?".to_owned()));
     }
     Ok(code)
 }
@@ -164,7 +164,7 @@ fn print_text(text: &str) -> Result<(), CliError> {
     use std::io::{ErrorKind, Write};
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(CliError::Failed(format!("standard output: cannot be written: {e}")))
+            Err(CliError::Failed(format!("standard output: cannot be written: {e}\n  remedy: is the disk full that it goes to?")))
         }
         _ => Ok(()),
     }

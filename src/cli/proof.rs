@@ -46,6 +46,9 @@ pub struct ProofArguments {
 /// ambiguous answer, plays the experiment that it proposes. Rows that are there already, with their seals, are kept.
 pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let nothing = arguments.nothing.unwrap_or(arguments.cases);
+    if arguments.cases + nothing == 0 {
+        return Err(CliError::Usage("--cases 0: there is nothing to prove\n  remedy: ask for one case or more".to_owned()));
+    }
     let planned = Plan { hiding: arguments.cases, nothing, seed: arguments.seed }.cases();
     let folders = Folders::below(&arguments.out);
     let (folders, out) = match arguments.without.and_then(|s| s.to_possible_value()) {

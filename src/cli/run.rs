@@ -118,15 +118,34 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
             "--duration {d}: must be > 0\n  remedy: give the length of the run in seconds"
         )));
     }
+    if let Some(d) = limit.filter(|d| d / spec.output_interval_s > MOST_SAMPLES) {
+        return Err(CliError::Usage(format!(
+            "--duration {d}: more than {MOST_SAMPLES:e} samples of {} s\n  remedy: run shorter, or set simulation.output_interval_s",
+            spec.output_interval_s
+        )));
+    }
     let Some(path) = &arguments.input else {
         return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
     };
+    if arguments.output.as_ref().is_some_and(|output| is_same_file(output, path)) {
+        return Err(CliError::Usage(format!(
+            "--output {}: this is the recording that drives the run\n  remedy: name another file",
+            path.display()
+        )));
+    }
     let recording = read_recording(path)?;
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     drive(simulation, &recording, path)?;
     let first = recording.time_s().first().copied().unwrap_or(0.0);
     let within = recording.time_s().iter().copied().filter(|t| limit.is_none_or(|l| t - first <= l));
     Ok(Schedule(within.collect()))
+}
+
+/// As many as a scene may ask for.
+const MOST_SAMPLES: f64 = 1e8;
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
 /// Drives every input of the scene from the recording; columns that are no input are named in a note.
@@ -141,7 +160,7 @@ fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Res
                 inputs.join(", ")
             )));
         }
-        simulation.set_input(input, InputSource::Recorded(recording.piecewise_si(input)?));
+        simulation.set_input(input, InputSource::Recorded(recording.piecewise_si(input).map_err(|e| e.in_file(path.display().to_string()))?));
     }
     let others: Vec<&str> = recording.columns().into_iter().filter(|c| !inputs.iter().any(|i| i == c)).collect();
     if !others.is_empty() {

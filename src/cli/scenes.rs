@@ -56,14 +56,16 @@ fn carried(name: &str) -> Result<Scene, CliError> {
     Ok(Scene::load(&path.to_string_lossy(), &[])?)
 }
 
-/// Writes the scene, its model and the model's meshes; a file that is there with another content stays.
+/// Writes the scene, its schema, its model and the model's meshes; a file that is there with another content stays.
 fn copy(scene: &Scene, folder: &Path) -> Result<(), CliError> {
     let model = scene.file.mechanism.as_ref().map(|m| stock::join(scene.folder(), &m.urdf));
     let stem = model.as_deref().and_then(Path::file_stem).and_then(OsStr::to_str);
     let is_of_model = |name: &str| stem.is_some_and(|s| name.starts_with(&format!("models/{s}")));
     let own = scene.path.to_string_lossy();
     let own = own.trim_start_matches(stock::PREFIX);
-    for (name, content) in stock::FILES.iter().filter(|(name, _)| *name == own || is_of_model(name)) {
+    // The schema that the scene's first line points to goes with it.
+    let is_wanted = |name: &str| name == own || name == "scenes/scene.schema.json" || is_of_model(name);
+    for (name, content) in stock::FILES.iter().filter(|(name, _)| is_wanted(name)) {
         let to = folder.join(name);
         let there = std::fs::read(&to).ok();
         if there.as_ref().is_some_and(|t| t != content) {

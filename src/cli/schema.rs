@@ -10,6 +10,9 @@ use super::CliError;
 
 /// Arguments of `smam schema`.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  smam schema scene > scene.schema.json              a scene's first line then says  #:schema scene.schema.json
+  smam schema recordings > recordings.schema.json")]
 pub struct SchemaArguments {
     /// Which kind of file
     #[arg(value_enum)]

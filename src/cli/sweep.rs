@@ -129,6 +129,10 @@ fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCo
     let failed = table.failed().count();
     let missing = shard.points(plan.count()).filter(|i| !table.has(*i)).count();
     eprintln!("{} rows, {failed} of them failed: {}", table.rows.len(), out.join("table.csv").display());
+    if failed > 0 && failed == table.rows.len() {
+        eprintln!("every point failed: the first says why");
+        return Ok(ExitCode::from(1));
+    }
     if missing > 0 {
         eprintln!("{missing} points are not done: go on with --resume, or name the folders of all shards");
         return Ok(ExitCode::from(1));

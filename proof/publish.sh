@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Puts what `smam proof --out OUT` has made so far into this folder: proof/publish.sh OUT
+#
+# The other way round, a run is continued from here on any machine, without the recordings of the cases that are done:
+#   mkdir -p OUT/cases && cp proof/seals.txt OUT/cases/ && cp proof/rows.jsonl OUT/
+#   smam proof --cases N --nothing N --seed 2026 --out OUT
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+[ $# -eq 1 ] && [ -s "$1/rows.jsonl" ] || { echo "usage: proof/publish.sh OUT, the folder of a run of smam proof" >&2; exit 2; }
+out=${1%/}
+
+mkdir -p "$here/sealed" "$here/answers"
+cp "$out/cases/seals.txt" "$out/rows.jsonl" "$here/"
+for file in score.json table.md proof.svg; do
+    if [ -s "$out/$file" ]; then cp "$out/$file" "$here/"; fi
+done
+# Of the cases that are done; those of an earlier part stand here already.
+sed 's/^{"name":"\([^"]*\)".*/\1/' "$out/rows.jsonl" | while read -r name; do
+    if [ -s "$out/cases/sealed/$name.json" ]; then cp "$out/cases/sealed/$name.json" "$here/sealed/"; fi
+    if [ -s "$out/answers/$name/diagnosis.json" ]; then
+        # Where it was run is nobody's business.
+        sed "s#\"$out/cases/#\"cases/#" "$out/answers/$name/diagnosis.json" >"$here/answers/$name.json"
+    fi
+    [ -s "$here/sealed/$name.json" ] || { echo "$name: its sealed answer is neither here nor in $out" >&2; exit 1; }
+done
+echo "$(wc -l <"$here/rows.jsonl") cases"
