@@ -8,6 +8,20 @@ use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
 use crate::scalar::Scalar;
 
 /// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
+///
+/// ```
+/// use smam::effects::{EffectTable, Kind};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let table: EffectTable = toml::from_str("name = 'trapped_air'\nelement = 'line_2'\nfree_volume_m3 = 1e-9")?;
+/// let air = table.effect()?;
+/// assert_eq!((air.kind, air.element.index), (Kind::TrappedAir, 1));
+/// // The polytropic exponent is isothermal unless it is given.
+/// assert_eq!(air.values, [1e-9, 1.0]);
+/// assert_eq!(air.table().effect()?, air);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectTable {
     pub name: String,

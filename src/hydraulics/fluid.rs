@@ -3,6 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 /// Working fluid and the air outside it. Defaults: water at 20 °C at sea level.
+///
+/// ```
+/// use smam::hydraulics::Fluid;
+///
+/// // Water boils at 99 kPa below the surroundings.
+/// assert_eq!(Fluid::default().cavitation_gauge_pressure_pa(), -99_025.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Fluid {

@@ -23,6 +23,20 @@ pub struct SlipElement<D> {
 /// that of a muscle does with its pressure. With `k_i > 0` unloading lies below
 /// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
 /// generalized Maxwell-slip model); the gate is borrowed from Thai et al. 2021.
+///
+/// ```
+/// use smam::hysteresis::{Gate, MaxwellSlip, SlipElement};
+///
+/// let springs = vec![SlipElement { stiffness: -2.0_f64, reach: 0.1 }];
+/// let [offset, curvature, cubic, growth] = [0.0; 4];
+/// let model = MaxwellSlip { offset, gain: 9.0, curvature, cubic, growth, gate: Gate::None, elements: springs };
+/// let mut state = model.rest();
+/// model.advance(&mut state, 3.0);
+/// assert_eq!(state, [0.1]);
+/// // It slides at its reach; turned about, the spring gives way over twice that.
+/// model.advance(&mut state, -0.2);
+/// assert!((state[0] + 0.1).abs() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct MaxwellSlip<D> {

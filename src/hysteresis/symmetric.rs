@@ -11,6 +11,16 @@ use serde::{Deserialize, Serialize};
 ///
 /// `x`, `y`, `z` in mm; `gamma_x`, `gamma_z`, `K`, `n` dimensionless, `lambda`, `delta` in mm^-n. Range: `K > 0`,
 /// `lambda + delta > 0` (bounded state), `n > 0`; the loop loses energy while `lambda >= |delta|`.
+///
+/// ```
+/// use smam::hysteresis::SymmetricBoucWen;
+///
+/// let model = SymmetricBoucWen::from_array([1.0_f64, 1.0, 2.0, 0.9, 0.3, 1.5]);
+/// // Far along, the state stands at (K/(lambda + delta))^(1/n), and at its opposite the other way.
+/// let limit = (2.0_f64 / 1.2).powf(1.0 / 1.5);
+/// assert!((model.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-9);
+/// assert!((model.advance(0.3, 0.0, -40.0) + limit).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SymmetricBoucWen<D> {
