@@ -30,6 +30,15 @@ pub struct OgdenTerm<D> {
 ///
 /// The parabola keeps a simulation finite past the locking stretch; it is no physics there, and
 /// `Wall::valid_range` says where it begins.
+///
+/// ```
+/// use smam::muscle::Material;
+///
+/// let silicone = Material::Yeoh { c1_pa: 0.255e6_f64, c2_pa: 0.0155e6, c3_pa: 0.0 };
+/// assert_eq!(silicone.shear_modulus_pa(), 0.51e6);
+/// assert!(silicone.check().is_ok());
+/// assert!(Material::NeoHookean { c1_pa: -0.255e6_f64 }.check().is_err());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Material<D> {
