@@ -57,7 +57,7 @@ pub type Slopes<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // The spring, N/m, and preload, N, behind three pulls.
-/// let (elongation_m, pull_n) = ([0.0, 0.01, 0.02], [0.1, 0.383, 0.666]);
+/// let (elongation_m, pull_n) = ([0.0_f64, 0.01, 0.02], [0.1, 0.383, 0.666]);
 /// let residuals = |p: &[f64]| {
 ///     Some(DVector::from_iterator(3, elongation_m.iter().zip(&pull_n).map(|(e, f)| p[0] * e + p[1] - f)))
 /// };

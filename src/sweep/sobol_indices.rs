@@ -38,7 +38,7 @@ type Sample<'a> = &'a [f64];
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let key = |name: &str| VarySpec { key: name.to_owned(), from: Some(0.0), to: Some(1.0), ..VarySpec::default() };
 /// let design = Design::new(SamplingSpec::Saltelli { count: 1024, seed: 1 }, &[key("u"), key("v")])?;
-/// let value = |i: u64| design.point(i).iter().zip([3.0, 4.0]).map(|(x, weight)| weight * x).sum::<f64>();
+/// let value = |i: u64| design.point(i).iter().zip([3.0_f64, 4.0]).map(|(x, weight)| weight * x).sum::<f64>();
 /// let values: Vec<f64> = (0..design.count()).map(value).collect();
 /// // Of y = 3 u + 4 v the shares of the variance are 9/25 and 16/25, and nothing is in their interaction.
 /// let found = sobol_indices(2, &values, 1);
