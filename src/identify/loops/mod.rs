@@ -18,7 +18,7 @@
 //! let output_mm = muscle.follow(&time_s, &input_mm);
 //! let runs = [LoopRun { name: "made".to_owned(), time_s, input_mm, output_mm }];
 //! let found = identify(&runs, Form::Paper, &SearchOptions::default())?;
-//! // F: the hundredth of a millimetre squared, of 27 mm.
+//! // F below the square of a hundredth of a millimetre; the elongation goes over 27 mm.
 //! assert!(found.mean_square_mm2 < 1e-4 && mean_square_on(&found.model, &runs) < 1e-4);
 //! assert!((found.parameters[1].value - 9.886).abs() < 0.1);
 //! # Ok(())
