@@ -14,7 +14,7 @@ cargo fmt --check
 
 say "lints"
 if command -v shellcheck >/dev/null; then
-    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh
+    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh docs/*.sh docs/examples/*.sh
 else
     echo "skipped: shellcheck is not installed"
 fi
@@ -72,6 +72,46 @@ if [ -x "$venv/bin/rerun" ]; then
     echo "ok    rerun $rerun_version reads it"
 else
     echo "skipped: rerun-sdk $rerun_version could not be installed (no python3 venv, or no network)"
+fi
+
+say "and as a picture"
+# Pillow is for this alone.
+if [ -x "$venv/bin/rerun" ] && { [ -e "$venv/pillow" ] || { "$venv/bin/python" -m pip install --quiet --disable-pip-version-check pillow && touch "$venv/pillow"; }; }; then
+    "$venv/bin/python" tests/viewer/check.py --rrd out/bending_catheter.rrd --csv out/bending_catheter.csv ${SMAM_REQUIRE_PICTURE:+--require-picture}
+else
+    echo "skipped: the viewer's library or pillow could not be installed"
+fi
+
+say "the Python wheel"
+status=0
+python/test.sh || status=$?
+if [ "$status" -ne 77 ] || [ -n "${SMAM_REQUIRE_PYTHON:-}" ]; then
+    [ "$status" -eq 0 ] || { echo "python/test.sh failed (exit code $status)" >&2; exit 1; }
+fi
+
+say "other people's URDFs"
+status=0
+python3 tests/public_urdfs/check.py --smam "$smam" || status=$?
+if [ "$status" -ne 77 ] || [ -n "${SMAM_REQUIRE_URDFS:-}" ]; then
+    [ "$status" -eq 0 ] || { echo "tests/public_urdfs/check.py failed (exit code $status)" >&2; exit 1; }
+fi
+
+say "the book: links, data, commands, spelling"
+docs/examples/check.sh
+tools=$target/book-tools
+if [ ! -x "$tools/bin/mdbook" ]; then
+    { python3 -m venv "$tools" && "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r docs/requirements.txt; } ||
+        rm -rf "$tools"
+fi
+if [ -x "$tools/bin/mdbook" ]; then
+    TYPOS=$tools/bin/typos python3 -B -m unittest discover docs
+    python3 -B docs/check_docs.py --smam "$smam" --typos "$tools/bin/typos"
+    "$tools/bin/mdbook" build docs
+elif [ -n "${SMAM_REQUIRE_BOOK:-}" ]; then
+    echo "mdbook and typos could not be installed" >&2
+    exit 1
+else
+    echo "skipped: mdbook and typos could not be installed (no python3 venv, or no network)"
 fi
 
 say "documentation"

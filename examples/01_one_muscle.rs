@@ -1,4 +1,4 @@
-//! One muscle on the bench, played from code: its loop, with the stock line and with three times of it.
+//! One muscle on the bench, played from code: its loop, and what more friction between tube and coil makes of it.
 //!
 //! ```text
 //! cargo run --release --example one_muscle
@@ -10,19 +10,23 @@ use smam::recording::figures;
 use smam::scene::{Override, Scene};
 use smam::system::{Schedule, Simulation, record};
 
+const INTERVAL_S: f64 = 0.01;
+/// The stock programme is a sine of 0.1 Hz: from 10 s on, a round of it.
+const SECOND_ROUND: std::ops::Range<usize> = 1000..2000;
+
 fn main() -> Result<(), Box<dyn Error>> {
-    for line_m in [1.0, 3.0] {
+    for friction_n in [0.05, 0.106, 0.2] {
         // Any key that `smam check muscle_bench --keys` lists may be changed.
-        let scene = Scene::load("muscle_bench", &[Override::number("hydraulics.line.length_m", line_m)])?;
+        let scene = Scene::load("muscle_bench", &[Override::number("muscles.friction.m0_n", friction_n)])?;
         let mut simulation = Simulation::new(scene)?;
         simulation.keep_energy_book();
-        let recording = record(&mut simulation, &Schedule::even(30.0, 0.01))?;
-        let elongation_mm = &recording.channel("elongation_mm")?.values;
-        let pressure_kpa = &recording.channel("pressure_kpa")?.values;
+        let recording = record(&mut simulation, &Schedule::even(20.0, INTERVAL_S))?;
+        let plunger_mm = &recording.channel("plunger_mm")?.values[SECOND_ROUND];
+        let elongation_mm = &recording.channel("elongation_mm")?.values[SECOND_ROUND];
         println!(
-            "line of {line_m} m: elongation over {:.3} mm, pressure over {:.1} kPa",
+            "friction {friction_n:5.3} N: elongation over {:.3} mm, loop of {:.3} mm2",
             figures::range(elongation_mm),
-            figures::range(pressure_kpa)
+            figures::enclosed(plunger_mm, elongation_mm).abs()
         );
         if let Some(book) = simulation.energy_book() {
             println!("  energy unaccounted for: {:.1e} J of {:.3} J", book.unaccounted_j(), book.turnover_j());

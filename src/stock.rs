@@ -27,12 +27,12 @@ pub const PREFIX: &str = "builtin:";
 
 macro_rules! carried {
     ($($path:literal),* $(,)?) => {
-        &[$(($path, include_str!(concat!("../", $path)))),*]
+        &[$(($path, include_bytes!(concat!("../", $path)) as &[u8])),*]
     };
 }
 
-/// Path and text of every file that the program carries.
-pub const FILES: &[(&str, &str)] = carried![
+/// Path and content of every file that the program carries.
+pub const FILES: &[(&str, &[u8])] = carried![
     "scenes/muscle_bench.toml",
     "scenes/muscle_free.toml",
     "scenes/muscle_lift.toml",
@@ -46,6 +46,8 @@ pub const FILES: &[(&str, &str)] = carried![
     "scenes/driven_axis.toml",
     "models/antagonistic_pulley.urdf",
     "models/bending_catheter.urdf",
+    "models/bending_catheter_strip.stl",
+    "models/bending_catheter_tube.stl",
     "models/muscle_bench.urdf",
 ];
 
@@ -59,20 +61,29 @@ pub fn join(folder: &Path, file: &Path) -> PathBuf {
     if inside(file).is_some() { tidy(file) } else { tidy(&folder.join(file)) }
 }
 
-/// The text of a file, of this machine or carried.
+/// The content of a file, of this machine or carried.
 ///
 /// # Errors
 /// A file that cannot be read, or is not carried.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    let Some(name) = inside(path) else { return std::fs::read_to_string(path) };
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let Some(name) = inside(path) else { return std::fs::read(path) };
     let found = FILES.iter().find(|(known, _)| Path::new(known) == without_parents(&name));
-    found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| {
+    found.map(|(_, content)| content.to_vec()).ok_or_else(|| {
         let known: Vec<&str> = FILES.iter().map(|(known, _)| *known).collect();
         io::Error::new(
             io::ErrorKind::NotFound,
             format!("the program carries no such file; it has {}", known.join(", ")),
         )
     })
+}
+
+/// The text of a file, as [`read`].
+///
+/// # Errors
+/// As [`read`]; a file that is no UTF-8.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    String::from_utf8(read(path)?)
+        .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, format!("it is no UTF-8 text: {e}")))
 }
 
 /// What stands behind the prefix.
@@ -108,7 +119,7 @@ mod tests {
     #[test]
     fn every_file_of_scenes_and_models_is_carried() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for (folder, ending) in [("scenes", "toml"), ("models", "urdf")] {
+        for (folder, ending) in [("scenes", "toml"), ("models", "urdf"), ("models", "stl")] {
             for entry in std::fs::read_dir(root.join(folder)).expect("a folder of the project") {
                 let path = entry.expect("an entry").path();
                 if path.extension().is_some_and(|e| e == ending) {

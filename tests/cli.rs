@@ -382,6 +382,18 @@ fn a_reader_that_goes_and_a_full_output_do_not_panic() {
     drop(reader);
     let output = Command::new(env!("CARGO_BIN_EXE_smam")).arg("scenes").stdout(writer).output().expect("starts");
     assert!(output.status.success(), "{output:?}");
+    // The same of what is said beside (`2>&1 | head`).
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let here = folder();
+    let output = Command::new(env!("CARGO_BIN_EXE_smam"))
+        .args(["run", "muscle_bench", "--duration", "0.1", "--output", "run.csv"])
+        .current_dir(here.path())
+        .stderr(writer)
+        .output()
+        .expect("starts");
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(listing(here.path()), ["run.csv"]);
 }
 
 /// Commands whose help must show how they are used; `help` is clap's own.

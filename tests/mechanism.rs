@@ -490,9 +490,9 @@ fn what_cannot_be_simulated_is_refused_by_name() {
         (good.replace("0 0 1", "0 0 0"), "", "has no direction"),
         (good.replace("0 0 1", "0 0 nan"), "", "has no direction"),
         (good.replace("mass value=\"0.001\"", "mass value=\"-1\""), "", "mass = -1 must be > 0"),
-        (good.replace("mass value=\"0.001\"", "mass value=\"0\""), "", "mass = 0 must be > 0"),
-        (robot(&format!("{base}<link name=\"arm\"/>{hinge}")), "", "has no <inertial>"),
-        (good.clone(), "[[joint]]\njoints = [\"k\"]", "no such joint; known: \"j\""),
+        (good.replace("mass value=\"0.001\"", "mass value=\"0\""), "", "has no mass of its own"),
+        (robot(&format!("{base}<link name=\"arm\"/>{hinge}")), "", "has no mass of its own"),
+        (good.clone(), "[[joint]]\njoints = [\"k\"]", "no such joint\n  remedy: name one of \"j\""),
         (good.clone(), "[[joint]]\njoints = [\"j\"]\nstiffness_n_m = 1.0", "use stiffness_n_m_rad"),
         (good.clone(), "[[joint]]\njoints = [\"j\", \"j\"]", "appears twice"),
         (good.clone(), "[[joint]]\njoints = [\"j\"]\ndamping_n_m_s_rad = -1.0", "damping = -1 must be >= 0"),
@@ -536,7 +536,7 @@ fn mixed_up_routes_are_refused() {
     assert!(m.route(&RouteSpec::default()).is_err());
     let unknown = RouteSpec { lever: vec![LeverSpec { joint: "x".into(), lever_m: 1.0 }], ..RouteSpec::default() };
     let message = m.route(&unknown).unwrap_err().to_string();
-    assert!(message.contains("known: \"slide\""), "{message}");
+    assert!(message.contains("name one of \"slide\""), "{message}");
 }
 
 /// Every attribute of every model in turn becomes nonsense, and the text is cut at many places.

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::scene::{Override, Scene};
-use smam::system::Simulation;
+use smam::system::{Schedule, Simulation, record};
 
 use super::CliError;
 
@@ -34,7 +34,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
         return Ok(ExitCode::SUCCESS);
     }
     let path = scene.path.display().to_string();
-    let simulation = Simulation::new(scene)?;
+    let mut simulation = Simulation::new(scene)?;
+    // What an output names is looked up when a run begins: one without an instant.
+    record(&mut simulation, &Schedule(Vec::new()))?;
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
     let file = &simulation.scene().file;
     say!(

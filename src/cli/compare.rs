@@ -7,13 +7,13 @@ use std::process::ExitCode;
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use smam::identify::{FitReport, RecordedRun, fit_rig_parameters, load_runs, replay};
+use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, load_runs, replay};
 use smam::recording::{ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
-use super::files::write;
+use super::files::{make_folder, write};
 
 /// Arguments of `smam compare`.
 #[derive(Args)]
@@ -49,6 +49,9 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         None => declared.clone(),
     };
     let may_fit: Vec<RecordedRun> = declared.into_iter().filter(|r| r.run.run_use != Some(RunUse::Holdout)).collect();
+    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dir));
+    check_channels(&set, &scene)?;
+    make_folder(&out)?;
     let report = fit_rig_parameters(&set, &scene_name, &overrides, &may_fit)?;
     say_fit(&report);
     overrides.extend(report.overrides());
@@ -58,7 +61,6 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .zip(&simulated)
         .map(|(run, is)| compare_channels(&run.recording, is, &set.channels))
         .collect::<Result<_, _>>()?;
-    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dir));
     let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
     let picture = compare_svg(&heading, &remark(&report), &figure(&set, &shown, &simulated, &fits));
     write(&out.join("compare.svg"), &picture)?;

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use smam::conceal::{Hiding, Rig, draw, write_case};
 
 use super::CliError;
+use super::files::make_folder;
 use super::score::{read_seals, write_seals};
 
 /// Arguments of `smam conceal`.
@@ -20,7 +21,7 @@ pub struct ConcealArguments {
     #[arg(long)]
     seed: u64,
     /// Cases to draw, with seeds counting up from that one
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     count: u64,
     /// The rig
     #[arg(long, value_enum, default_value_t = RigName::MuscleBench)]
@@ -63,6 +64,7 @@ pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
         RigName::AntagonisticPulley => Rig::AntagonisticPulley,
         RigName::BendingCatheter => Rig::BendingCatheter,
     };
+    make_folder(&arguments.out)?;
     let path = arguments.out.join("seals.txt");
     // Seals of cases that lie there already stay.
     let mut seals = if path.is_file() { read_seals(&path)? } else { Vec::new() };

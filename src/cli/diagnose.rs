@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer};
 use smam::report::diagnosis_page;
@@ -10,7 +11,7 @@ use smam::scene::Override;
 
 use super::CliError;
 use super::diagnose_view::Shown;
-use super::files::write;
+use super::files::{make_folder, write};
 
 /// Arguments of `smam diagnose`.
 #[derive(Args)]
@@ -44,7 +45,7 @@ pub struct DiagnoseArguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores]; the answer does not depend on it
-    #[arg(long)]
+    #[arg(long, value_parser = threads())]
     threads: Option<usize>,
 }
 
@@ -77,18 +78,16 @@ impl StepName {
 pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     let shown = Shown { in_file: arguments.rrd, in_window: arguments.view };
     shown.check()?;
-    if let Some(threads) = arguments.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|e| CliError::Usage(format!("--threads {threads}: {e}")))?;
-    }
+    use_threads(arguments.threads)?;
     let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
     let folders: Vec<&Path> = arguments.dirs.iter().map(PathBuf::as_path).collect();
     let mut case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
     if let Some(step) = arguments.without {
         case.leave_out(step.step());
     }
-    let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
+    make_folder(&out)?;
+    let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
     write_answer(&outcome, &out)?;
     write(&out.join("report.html"), &diagnosis_page(&outcome))?;
     print_diagnosis(&outcome.diagnosis);
@@ -96,6 +95,19 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     shown.show(&outcome, &out)?;
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
     Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// What --threads takes: 0 would mean all cores, and a slip of the finger would start threads until the machine stands.
+pub fn threads() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=1024)
+}
+
+/// Works on so many threads from now on; on all cores if none is given.
+pub fn use_threads(threads: Option<usize>) -> Result<(), CliError> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|e| {
+        CliError::Usage(format!("--threads {threads}: {e}\n  remedy: give fewer threads, or leave --threads out"))
+    })
 }
 
 fn default_out(folder: &Path) -> PathBuf {

@@ -57,8 +57,14 @@ impl CliError {
         match self {
             Self::System(SystemError::Diverged { .. })
             | Self::Identify(IdentifyError::System(SystemError::Diverged { .. }))
+            | Self::Sweep(SweepError::System(SystemError::Diverged { .. }))
+            | Self::Diagnose(DiagnoseError::System(SystemError::Diverged { .. }) | DiagnoseError::Write { .. })
             | Self::Write { .. }
+            | Self::Recording(RecordingError::Write { .. })
             | Self::Sweep(SweepError::Write { .. })
+            | Self::Trial(TrialError::Write { .. })
+            | Self::Proof(ProofError::Write { .. } | ProofError::Conceal(ConcealError::Write { .. }))
+            | Self::Conceal(ConcealError::Write { .. })
             | Self::Failed(_) => ExitCode::from(1),
             #[cfg(feature = "viz")]
             Self::View(_) => ExitCode::from(1),

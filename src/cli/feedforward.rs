@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Deserialize;
 use smam::feedforward::{Limits, programme};
 use smam::hysteresis::HysteresisModel;
-use smam::recording::{Channel, Recording, read_recording};
+use smam::recording::{Channel, Recording, RecordingError, read_recording};
 
 use super::CliError;
 
@@ -60,15 +60,27 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let model = read_model(&a.model)?;
     let limits = limits(a)?;
     let recording = read_recording(&a.wanted)?;
-    let channel = recording.channel(&a.column)?;
-    if channel.unit()?.si_suffix != "m" {
+    refuse_same_file(a)?;
+    let in_file = |e: RecordingError| e.in_file(a.wanted.display().to_string());
+    let unit = recording.channel(&a.column).and_then(Channel::unit).map_err(in_file)?;
+    if unit.si_suffix != "m" {
         return Err(CliError::Usage(format!(
-            "{}: column {} is no length\n  remedy: name a column that ends in a unit of length with --column",
+            "{}: column \"{}\" is no length\n  remedy: name a column that ends in a unit of length with --column",
             a.wanted.display(),
             a.column
         )));
     }
     let wanted_mm: Vec<f64> = recording.si(&a.column)?.iter().map(|y| y * 1e3).collect();
+    let missing = wanted_mm.iter().filter(|y| !y.is_finite()).count();
+    if missing > 0 {
+        return Err(CliError::Usage(format!(
+            "{}: column \"{}\": {missing} of {} samples are missing\n  remedy: fill them in; a programme must know what is \
+             wanted at every time",
+            a.wanted.display(),
+            a.column,
+            wanted_mm.len()
+        )));
+    }
     let found = programme(&model, limits, 0.0f64.clamp(a.least, a.most), recording.time_s(), &wanted_mm);
     let expected = model.follow(recording.time_s(), &found.input_mm);
     let worst = expected.iter().zip(&wanted_mm).map(|(y, w)| (y - w).abs()).fold(0.0, f64::max);
@@ -81,6 +93,18 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The programme must not take the place of what was wanted.
+fn refuse_same_file(a: &FeedforwardArguments) -> Result<(), CliError> {
+    let place = |path: &Path| path.canonicalize().ok();
+    match place(&a.out).is_some_and(|out| [&a.model, &a.wanted].iter().any(|p| place(p).as_ref() == Some(&out))) {
+        true => Err(CliError::Usage(format!(
+            "--out {}: this file is read, it would be lost\n  remedy: give the programme a name of its own",
+            a.out.display()
+        ))),
+        false => Ok(()),
+    }
+}
+
 fn read_model(path: &Path) -> Result<HysteresisModel<f64>, CliError> {
     let refuse = |message: String| {
         CliError::Usage(format!(
@@ -89,9 +113,12 @@ fn read_model(path: &Path) -> Result<HysteresisModel<f64>, CliError> {
         ))
     };
     let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
-    let file: ModelFile = toml::from_str(&text).map_err(|e| refuse(e.message().to_owned()))?;
+    let file: ModelFile = toml::from_str(&text).map_err(|e| refuse(e.to_string().trim_end().to_owned()))?;
     let model = file.muscles.displacement;
-    model.check().map_err(|e| refuse(e.to_string()))?;
+    model.check().map_err(|e| {
+        let remedy = "choose numbers with which the state stays bounded";
+        CliError::Usage(format!("{}: [muscles.displacement]: {e}\n  remedy: {remedy}", path.display()))
+    })?;
     Ok(model)
 }
 
@@ -101,6 +128,12 @@ fn limits(a: &FeedforwardArguments) -> Result<Limits, CliError> {
         return refuse(format!(
             "--least {} must lie below --most {}\n  remedy: give the plunger's range in mm",
             a.least, a.most
+        ));
+    }
+    if !a.input.ends_with("_mm") {
+        return refuse(format!(
+            "--input {}: the programme is in mm\n  remedy: give a name that ends in _mm, such as plunger_mm",
+            a.input
         ));
     }
     if !(a.speed > 0.0 && a.speed.is_finite()) {

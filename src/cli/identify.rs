@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use serde_json::{Value, json};
 use smam::identify::load_runs;
 use smam::identify::loops::{
@@ -12,7 +13,7 @@ use smam::identify::loops::{
 use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 
 use super::CliError;
-use super::files::write;
+use super::files::{make_folder, write};
 use super::identify_page::page;
 
 /// Arguments of `smam identify`.
@@ -33,7 +34,7 @@ pub struct IdentifyArguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Descents from places of their own, or repetitions of a swarm
-    #[arg(long, default_value_t = SearchOptions::default().starts)]
+    #[arg(long, default_value_t = SearchOptions::default().starts, value_parser = starts())]
     starts: usize,
     /// Column of the input, a length [default: the first declared one, or plunger_mm]
     #[arg(long, value_name = "COLUMN")]
@@ -49,6 +50,11 @@ pub struct IdentifyArguments {
     out: Option<PathBuf>,
 }
 
+/// What --starts takes: none would be a search that begins nowhere, millions one that never ends.
+fn starts() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=10_000)
+}
+
 /// Runs to fit and runs held out.
 pub struct Loops {
     pub name: String,
@@ -58,7 +64,13 @@ pub struct Loops {
 
 /// Runs the command.
 pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
+    if !(arguments.skip >= 0.0 && arguments.skip.is_finite()) {
+        let message = format!("--skip {}: must be 0 or more, and finite", arguments.skip);
+        return Err(CliError::Usage(format!("{message}\n  remedy: give seconds, or leave --skip out")));
+    }
     let loops = load(arguments)?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("identify_{}", loops.name)));
+    make_folder(&out)?;
     let options = SearchOptions {
         method: arguments.method,
         seed: arguments.seed,
@@ -67,7 +79,6 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
     };
     let found: Vec<Identification> =
         arguments.model.iter().map(|&form| identify_loops(&loops.fit, form, &options)).collect::<Result<_, _>>()?;
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("identify_{}", loops.name)));
     let answers: Vec<Value> = found.iter().map(|f| answer(f, &loops)).collect();
     let whole = json!({ "format": 1, "recordings": loops.name, "seed": arguments.seed, "identified": answers });
     write(&out.join("identify.json"), &format!("{whole:#}\n"))?;
@@ -87,7 +98,8 @@ fn load(arguments: &IdentifyArguments) -> Result<Loops, CliError> {
     let column = |given: &Option<String>, else_: &str| given.clone().unwrap_or_else(|| else_.to_owned());
     if path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known))) {
         let columns = [column(&arguments.input, "plunger_mm"), column(&arguments.output, "elongation_mm")];
-        let run = LoopRun::of(&name, &read_recording(path)?, [&columns[0], &columns[1]], arguments.skip)?;
+        let file = path.display().to_string();
+        let run = LoopRun::of(&file, &read_recording(path)?, [&columns[0], &columns[1]], arguments.skip)?;
         return Ok(Loops { name, fit: vec![run], holdout: Vec::new() });
     }
     let set = RecordingSet::load(path)?;

@@ -1,12 +1,12 @@
 //! `smam model`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
-use smam::mechanism::{Forceps, NotchGeometry, NotchedTube, notched_tube_urdf};
+use smam::mechanism::{Forceps, MechanismError, NotchGeometry, NotchedTube, notched_tube_meshes, notched_tube_urdf};
 
-use smam::recording::write_whole;
+use smam::recording::write_whole_bytes;
 
 use super::CliError;
 
@@ -54,7 +54,7 @@ struct TubeArguments {
     /// Leave the forceps away
     #[arg(long)]
     no_forceps: bool,
-    /// Write the URDF here instead of on the standard output
+    /// Write the URDF here, with meshes of the tube beside it, instead of on the standard output
     #[arg(long, value_name = "URDF")]
     output: Option<PathBuf>,
 }
@@ -62,6 +62,11 @@ struct TubeArguments {
 /// Generates the model; the numbers that the scene file needs go to stderr.
 pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
     let Kind::NotchedTube(a) = &arguments.kind;
+    let modulus_pa = a.youngs_modulus_pa;
+    if !(modulus_pa > 0.0 && modulus_pa.is_finite()) {
+        let remedy = "give it in Pa, for example 0.5e9";
+        return Err(CliError::Usage(format!("--youngs-modulus-pa {modulus_pa}: must be > 0\n  remedy: {remedy}")));
+    }
     let notch = NotchGeometry {
         outer_radius_m: a.outer_diameter_m / 2.0,
         inner_radius_m: a.outer_diameter_m / 2.0 - a.wall_m,
@@ -76,14 +81,41 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
         forceps: (!a.no_forceps).then_some(Forceps::STOCK),
         ..NotchedTube::STOCK
     };
-    let text = notched_tube_urdf(&tube)?;
     match &a.output {
-        Some(path) => write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?,
-        None => super::print_text(&text)?,
+        Some(path) => write_with_meshes(&tube, path)?,
+        None => super::print_text(&notched_tube_urdf(&tube, None).map_err(of_option)?)?,
     }
     eprintln!("for the scene file, per notch:");
     eprintln!("  stiffness_n_m_rad = {:.6e}", notch.stiffness_n_m_rad(a.youngs_modulus_pa));
     eprintln!("  lever_m = {:.6e}", notch.lever_m());
     eprintln!("  closes at {:.4} rad", notch.closing_angle_rad());
     Ok(ExitCode::SUCCESS)
+}
+
+/// The URDF and, beside it, the meshes that it draws the tube with.
+fn write_with_meshes(tube: &NotchedTube, path: &Path) -> Result<(), CliError> {
+    let name = path.file_stem().map_or_else(|| "tube".to_owned(), |n| n.to_string_lossy().into_owned());
+    let meshes =
+        notched_tube_meshes(tube, &name).map_err(of_option)?.map(|(file, bytes)| (path.with_file_name(file), bytes));
+    let urdf = (path.to_owned(), notched_tube_urdf(tube, Some(&name)).map_err(of_option)?.into_bytes());
+    for (file, bytes) in meshes.into_iter().chain([urdf]) {
+        write_whole_bytes(&file, &bytes).map_err(|source| CliError::Write { file: file.clone(), source })?;
+        eprintln!("written: {}", file.display());
+    }
+    Ok(())
+}
+
+/// An error of the tube, told by the option that the number came from.
+fn of_option(error: MechanismError) -> CliError {
+    match error {
+        MechanismError::Spec { name, problem, remedy, .. } => {
+            let option = match name.as_str() {
+                "outer_radius_m" => "outer-diameter-m".to_owned(),
+                "inner_radius_m" => "wall-m".to_owned(),
+                other => other.replace('_', "-"),
+            };
+            CliError::Usage(format!("--{option}: {problem}\n  remedy: {remedy}"))
+        }
+        other => other.into(),
+    }
 }

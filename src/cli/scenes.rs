@@ -1,15 +1,15 @@
 //! `smam scenes`.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::recording::did_you_mean;
+use smam::recording::{did_you_mean, write_whole_bytes};
 use smam::scene::{STOCK_SCENES, Scene};
 use smam::stock;
 
 use super::CliError;
-use super::files::write;
 
 /// Arguments of `smam scenes`.
 #[derive(Args)]
@@ -56,21 +56,24 @@ fn carried(name: &str) -> Result<Scene, CliError> {
     Ok(Scene::load(&path.to_string_lossy(), &[])?)
 }
 
-/// Writes the scene and its model; a file that is there with another content stays.
+/// Writes the scene, its model and the model's meshes; a file that is there with another content stays.
 fn copy(scene: &Scene, folder: &Path) -> Result<(), CliError> {
     let model = scene.file.mechanism.as_ref().map(|m| stock::join(scene.folder(), &m.urdf));
-    for path in std::iter::once(scene.path.clone()).chain(model) {
-        let text = stock::read_text(&path).map_err(|e| CliError::Failed(format!("{}: {e}", path.display())))?;
-        let to = folder.join(path.to_string_lossy().trim_start_matches(stock::PREFIX));
-        let there = std::fs::read_to_string(&to).ok();
-        if there.as_ref().is_some_and(|t| *t != text) {
+    let stem = model.as_deref().and_then(Path::file_stem).and_then(OsStr::to_str);
+    let is_of_model = |name: &str| stem.is_some_and(|s| name.starts_with(&format!("models/{s}")));
+    let own = scene.path.to_string_lossy();
+    let own = own.trim_start_matches(stock::PREFIX);
+    for (name, content) in stock::FILES.iter().filter(|(name, _)| *name == own || is_of_model(name)) {
+        let to = folder.join(name);
+        let there = std::fs::read(&to).ok();
+        if there.as_ref().is_some_and(|t| t != content) {
             return Err(CliError::Usage(format!(
                 "{}: is there already, with other content\n  remedy: name another folder, or move it away",
                 to.display()
             )));
         }
         if there.is_none() {
-            write(&to, &text)?;
+            write_whole_bytes(&to, content).map_err(|source| CliError::Write { file: to.clone(), source })?;
         }
         say!("{}", to.display());
     }

@@ -33,6 +33,14 @@ pub fn score(arguments: &ScoreArguments) -> Result<ExitCode, CliError> {
     let seals = read_seals(&arguments.cases.join("seals.txt"))?;
     let is_answered = |name: &str| arguments.answers.join(name).join("diagnosis.json").is_file();
     let answered: Vec<_> = seals.iter().filter(|(name, _)| is_answered(name)).collect();
+    if answered.is_empty() {
+        let (cases, answers) = (arguments.cases.display(), arguments.answers.display());
+        return Err(CliError::Usage(format!(
+            "{answers}: there is no answer to any of the {} cases of {cases}\n  \
+             remedy: smam diagnose {cases}/NAME --out {answers}/NAME, for each NAME in {cases}/seals.txt",
+            seals.len()
+        )));
+    }
     let rows = open_all(answered, &folders)?;
     eprintln!("{} of {} cases were answered", rows.len(), seals.len());
     write_score(&rows, &arguments.out)?;

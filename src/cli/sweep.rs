@@ -6,10 +6,12 @@ use std::process::ExitCode;
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use smam::sweep::{
-    Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepFile, Table, VarySpec, Watch, sensitivity, write_best,
+    Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepFile, Table, VarySpec, Watch, check_shard, sensitivity,
+    write_best,
 };
 
 use super::CliError;
+use super::diagnose::{threads, use_threads};
 use super::interrupt::stop_flag;
 use super::sweep_page::write_page;
 
@@ -76,7 +78,7 @@ struct RunSweep {
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
     /// Threads [default: all cores]; the table does not depend on it
-    #[arg(long)]
+    #[arg(long, value_parser = threads())]
     threads: Option<usize>,
 }
 
@@ -90,14 +92,12 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, CliError> {
 }
 
 fn run(arguments: &RunSweep) -> Result<ExitCode, CliError> {
-    if let Some(threads) = arguments.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|e| CliError::Usage(format!("--threads {threads}: {e}")))?;
-    }
+    use_threads(arguments.threads)?;
     let plan = Plan::new(file(arguments)?)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep_{}", plan.file.name)));
-    let journal = Journal::open(&out, &plan, arguments.resume)?;
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    check_shard(&plan, shard)?;
+    let journal = Journal::open(&out, &plan, arguments.resume)?;
     run_points(&plan, &journal, shard)?;
     let table = Table::of_folders(&plan, &[&out])?;
     finish(&plan, &table, &out, shard)
@@ -125,6 +125,7 @@ fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCo
     for (index, error) in table.failed().take(5) {
         eprintln!("point {index} failed: {}", error.lines().next().unwrap_or(""));
     }
+    say_without_number(plan, table);
     let failed = table.failed().count();
     let missing = shard.points(plan.count()).filter(|i| !table.has(*i)).count();
     eprintln!("{} rows, {failed} of them failed: {}", table.rows.len(), out.join("table.csv").display());
@@ -133,6 +134,17 @@ fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCo
         return Ok(ExitCode::from(1));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// A measure that is no number leaves its cell empty: said, because the run itself did not fail.
+fn say_without_number(plan: &Plan, table: &Table) {
+    for measure in &plan.measures {
+        let ran = table.rows.iter().filter(|r| r.outcome.is_ok());
+        let missing = ran.filter(|r| !plan.measured(r, &measure.name).is_finite()).count();
+        if missing > 0 {
+            eprintln!("warning: {} is no number at {missing} of {} points", measure.name, table.rows.len());
+        }
+    }
 }
 
 fn merge(sweep: &Path, folders: &[PathBuf], out: &Path) -> Result<ExitCode, CliError> {
@@ -185,20 +197,23 @@ fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
 
 /// Reads `KEY=0.2:0.8:25` or `KEY=0.2,0.5,0.8`.
 fn vary(text: &str) -> Result<VarySpec, CliError> {
-    let wrong = || CliError::Usage(format!("--vary {text}\n  remedy: write KEY=FROM:TO:COUNT or KEY=A,B,C"));
-    let (key, range) = text.split_once('=').ok_or_else(wrong)?;
+    let wrong =
+        |what: &str| CliError::Usage(format!("--vary {text}: {what}\n  remedy: write KEY=FROM:TO:COUNT or KEY=A,B,C"));
+    let (key, range) = text.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
     let key = key.trim().to_owned();
     let numbers =
         |separator: char| -> Option<Vec<f64>> { range.split(separator).map(|n| n.trim().parse().ok()).collect() };
     if !range.contains(':') {
-        let values = numbers(',').ok_or_else(wrong)?;
+        let values = numbers(',').ok_or_else(|| wrong("not all of its values are numbers"))?;
         return Ok(VarySpec { key, values, ..VarySpec::default() });
     }
     match numbers(':').as_deref() {
-        Some([from, to, count]) if *count >= 1.0 && count.fract() == 0.0 => {
+        Some([from, to, count]) if (1.0..=1e8).contains(count) && count.fract() == 0.0 => {
             Ok(VarySpec { key, from: Some(*from), to: Some(*to), count: Some(*count as u64), ..VarySpec::default() })
         }
-        _ => Err(wrong()),
+        Some([_, _, count]) => Err(wrong(&format!("COUNT = {count:?} must be a whole number, 1 to 1e8"))),
+        Some(_) => Err(wrong("a range takes three numbers")),
+        None => Err(wrong("not all of FROM, TO and COUNT are numbers")),
     }
 }
 

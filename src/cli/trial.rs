@@ -8,6 +8,8 @@ use std::sync::Mutex;
 
 use clap::Args;
 use rayon::prelude::*;
+use smam::effects::CATALOGUE;
+use smam::recording::did_you_mean;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case};
 
 use super::CliError;
@@ -41,6 +43,10 @@ pub struct TrialArguments {
 
 /// Runs the command; cases that a former run has finished are not tried again.
 pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
+    check_effect(arguments.effect.as_deref())?;
+    if arguments.only_nulls && arguments.nulls == 0 {
+        return Err(no_case("--nulls 0 with --only-nulls"));
+    }
     let path = arguments.out.join("trial.jsonl");
     let done = read_rows(&path)?;
     let mut cases = Vec::new();
@@ -50,10 +56,13 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
         own.retain(|c| !arguments.only_nulls || c.effect.is_none());
         cases.extend(own);
     }
+    if cases.is_empty() {
+        return Err(no_case(&arguments.scenes.join(", ")));
+    }
     let missing: Vec<&TrialCase> = cases.iter().filter(|c| !done.iter().any(|r| r.name == c.name)).collect();
     eprintln!("{} cases, {} of them known already", cases.len(), cases.len() - missing.len());
     let file = Mutex::new(open(&path)?);
-    let failed = |e: std::io::Error| CliError::Failed(format!("{}: cannot be written: {e}", path.display()));
+    let failed = |source: std::io::Error| CliError::Write { file: path.clone(), source };
     missing.par_iter().try_for_each(|case| -> Result<(), CliError> {
         let row = try_case(case)?;
         eprintln!("{:<70} {:?} {:?} {:.0} s", row.name, row.judgement, row.answer, row.seconds);
@@ -71,18 +80,37 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
+fn no_case(place: &str) -> CliError {
+    let remedy = "give --nulls 1 or more, or an --effect that the scene can have";
+    CliError::Usage(format!("{place}: there is no case to try\n  remedy: {remedy}"))
+}
+
+fn check_effect(name: Option<&str>) -> Result<(), CliError> {
+    let known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
+    match name.filter(|n| !known.contains(n)) {
+        Some(odd) => {
+            let near = did_you_mean(odd, &known);
+            Err(CliError::Usage(format!("--effect {odd}: no such effect{near}\n  remedy: `smam effects` lists them")))
+        }
+        None => Ok(()),
+    }
+}
+
 fn read_rows(path: &Path) -> Result<Vec<Row>, CliError> {
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(e) => return Err(CliError::Failed(format!("{}: cannot be read: {e}", path.display()))),
+        Err(e) => {
+            let remedy = "give another folder with --out";
+            return Err(CliError::Failed(format!("{}: cannot be read: {e}\n  remedy: {remedy}", path.display())));
+        }
     };
     // The last line of a run that was killed may be half a line: that case is tried again.
     Ok(text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect())
 }
 
 fn open(path: &Path) -> Result<fs::File, CliError> {
-    let failed = |e: std::io::Error| CliError::Failed(format!("{}: cannot be written: {e}", path.display()));
+    let failed = |source: std::io::Error| CliError::Write { file: path.to_owned(), source };
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(failed)?;
     }

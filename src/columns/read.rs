@@ -30,7 +30,7 @@ fn said(error: &ParquetError) -> String {
     let text = error.to_string();
     // Codecs that are not built in are named in the message: "Disabled feature at compile time: zstd".
     match text.contains("eature") || text.contains("codec") {
-        true => format!("{text}; write it uncompressed or with Snappy"),
+        true => format!("{text}\n  remedy: write it uncompressed or with Snappy"),
         false => text,
     }
 }
@@ -49,7 +49,8 @@ fn column(name: &str, cells: Vec<Field>) -> Result<Column, String> {
         };
         return Ok(Column::Texts(cells.into_iter().map(text).collect::<Result<_, _>>()?));
     }
-    let number = |c| number(&c).ok_or_else(|| format!("column \"{name}\": {c} is no number; leave the column out"));
+    let number =
+        |c| number(&c).ok_or_else(|| format!("column \"{name}\": {c} is no number\n  remedy: leave the column out"));
     Ok(Column::Numbers(cells.into_iter().map(number).collect::<Result<_, _>>()?))
 }
 

@@ -129,6 +129,7 @@ impl Case {
     pub fn load(folders: &[&Path], scene: Option<&str>, overrides: &[Override]) -> Result<Self, DiagnoseError> {
         let sets = folders.iter().map(|f| RecordingSet::load(f)).collect::<Result<Vec<_>, _>>()?;
         let Some(first) = sets.first() else { return Err(DiagnoseError::Nothing) };
+        refuse_repeated(&sets)?;
         if let Some(odd) = sets.iter().find(|s| s.scene != first.scene || columns(s) != columns(first)) {
             return Err(DiagnoseError::Mixed { first: first.dir.clone(), other: odd.dir.clone() });
         }
@@ -179,7 +180,7 @@ impl Case {
         let recording = &self.thinned(run)?;
         let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
         for input in &self.scene.file.input {
-            let line = recording.piecewise_si(&input.channel)?;
+            let line = recording.piecewise_si(&input.channel).map_err(|e| e.in_file(&run.run.file))?;
             drive.inputs.push(recording.time_s().iter().map(|&t| line.value(t)).collect());
         }
         let lead_in = if self.scene.file.hydraulics.is_some() { lead_in(&mut drive) } else { 0 };
@@ -317,6 +318,15 @@ fn leave_out(measured: &mut [f64], unheld: &[bool]) -> usize {
     }
     blank.iter().for_each(|&i| measured[i] = f64::NAN);
     blank.len()
+}
+
+/// The same runs twice would be fitted and held back at once.
+fn refuse_repeated(sets: &[RecordingSet]) -> Result<(), DiagnoseError> {
+    let places: Vec<_> = sets.iter().map(|s| s.dir.canonicalize().unwrap_or_else(|_| s.dir.clone())).collect();
+    match (1..places.len()).find(|&i| places[..i].contains(&places[i])) {
+        Some(i) => Err(DiagnoseError::Repeated { folder: sets[i].dir.clone() }),
+        None => Ok(()),
+    }
 }
 
 /// The scene has been checked: every table is an effect.

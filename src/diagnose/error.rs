@@ -21,6 +21,10 @@ pub enum DiagnoseError {
     #[error("there is no run to look at\n  remedy: list runs as [[run]] file = \"...\" in recordings.toml")]
     Nothing,
     #[error(
+        "{folder} is named twice\n  remedy: name each folder once: the runs that are held back must not be fitted too"
+    )]
+    Repeated { folder: PathBuf },
+    #[error(
         "{first} and {other} are not of one rig: scene or channels differ\n  remedy: diagnose them one after the other"
     )]
     Mixed { first: PathBuf, other: PathBuf },

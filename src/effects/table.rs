@@ -120,14 +120,14 @@ impl EffectTable {
 
     fn value(&self, p: &super::ParameterSpec) -> Result<f64, EffectError> {
         let value = self.parameters.get(p.key).copied().or(p.default).ok_or_else(|| {
-            refuse(format!("key `{}` is missing", p.key), format!("give it a number, for example {}", p.typical))
+            refuse(format!("key `{}` is missing", p.key), format!("give it a number, for example {:?}", p.typical))
         })?;
         if value >= p.range.min && value <= p.range.max {
             return Ok(value);
         }
         Err(refuse(
             format!("{} = {value} is out of range", p.key),
-            format!("use {} to {} (SI units)", p.range.min, p.range.max),
+            format!("use {:?} to {:?} (SI units)", p.range.min, p.range.max),
         ))
     }
 }

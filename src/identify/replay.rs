@@ -1,6 +1,6 @@
 //! Simulating what was recorded.
 
-use crate::recording::{Channel, Recording, RecordingError, RecordingSet, Role, Run, parse_column};
+use crate::recording::{Channel, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column};
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
@@ -47,12 +47,12 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
         let Some(spec) = scene.file.condition.iter().find(|c| c.name == *name) else {
             let known: Vec<&str> = scene.file.condition.iter().map(|c| c.name.as_str()).collect();
             return Err(IdentifyError::Mismatch {
-                file: run.file.clone(),
+                file: format!("{SET_FILE_NAME}: [[run]] \"{}\"", run.file),
                 message: format!("the condition `{name}` is unknown to the scene {}", scene.file.name),
-                remedy: format!(
-                    "the scene knows: {}",
-                    if known.is_empty() { "none".to_owned() } else { known.join(", ") }
-                ),
+                remedy: match known.is_empty() {
+                    true => "remove it: the scene has no [[condition]]".to_owned(),
+                    false => format!("the scene knows {}", known.join(", ")),
+                },
             });
         };
         let si = parse_column(name)?.unit.to_si(*value);
@@ -97,7 +97,8 @@ pub fn replay(
     let mut simulation = Simulation::new(scene)?;
     let inputs: Vec<String> = simulation.scene().file.input.iter().map(|i| i.channel.clone()).collect();
     for input in &inputs {
-        simulation.set_input(input, InputSource::Recorded(run.recording.piecewise_si(input)?));
+        let line = run.recording.piecewise_si(input).map_err(|e| e.in_file(&run.run.file))?;
+        simulation.set_input(input, InputSource::Recorded(line));
     }
     let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
     let recorded = record(&mut simulation, &Schedule(times))?;
@@ -126,7 +127,7 @@ fn begin_where_recorded(
 pub fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
     let outputs: Vec<&str> = scene.file.output.iter().map(|o| o.channel.as_str()).collect();
     let refuse = |message: String, remedy: String| IdentifyError::Mismatch {
-        file: "recordings.toml".to_owned(),
+        file: set.dir.join(SET_FILE_NAME).display().to_string(),
         message,
         remedy,
     };

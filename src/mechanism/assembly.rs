@@ -121,7 +121,10 @@ impl Source<'_> {
             |problem: String, remedy: &str| Err(MechanismError::urdf(self.file, "link", &link.name, problem, remedy));
         let finite = inertial.inertia_kg_m2.iter().chain(inertial.com_m.iter()).all(|v| v.is_finite());
         if !finite {
-            return error("<inertial> holds a value that is not finite".into(), "correct it");
+            return error(
+                "<inertial> holds a value that is not finite".into(),
+                "give finite mass, inertia and origin, in SI units",
+            );
         }
         if !(inertial.mass_kg > 0.0 && inertial.mass_kg.is_finite()) {
             let remedy = "give the real mass, or leave <inertial> out of a massless frame";
@@ -138,7 +141,7 @@ impl Source<'_> {
             return error("the URDF has no such link".into(), known);
         };
         if !(mass_kg > 0.0 && mass_kg.is_finite()) {
-            return error(format!("mass_kg = {mass_kg} must be > 0"), "correct it".into());
+            return error(format!("mass_kg = {mass_kg} must be > 0"), "give the mass in kg, above zero".into());
         }
         let (body, pose) = made.placement[link];
         // A link without <inertial> has its default, the origin.

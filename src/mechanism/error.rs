@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MechanismError {
     /// A file named by the scene or the URDF cannot be read.
-    #[error("{}: cannot be read: {reason}; {remedy}", file.display())]
+    #[error("{}: cannot be read: {reason}\n  remedy: {remedy}", file.display())]
     Read { file: PathBuf, reason: String, remedy: String },
     /// The file is not a URDF.
-    #[error("{}: not a valid URDF: {reason}", file.display())]
+    #[error("{}: not a valid URDF: {reason}\n  remedy: correct the XML there; a URDF is one <robot> with links and joints", file.display())]
     Parse { file: PathBuf, reason: String },
     /// One element of the URDF cannot be simulated as written.
-    #[error("{}: {element} \"{name}\": {problem}; {remedy}", file.display())]
+    #[error("{}: {element} \"{name}\": {problem}\n  remedy: {remedy}", file.display())]
     Urdf {
         file: PathBuf,
         element: &'static str,
@@ -22,7 +22,7 @@ pub enum MechanismError {
         remedy: String,
     },
     /// One entry of the scene's `[mechanism]` table is wrong.
-    #[error("[mechanism] {table} \"{name}\": {problem}; {remedy}")]
+    #[error("[mechanism] {table} \"{name}\": {problem}\n  remedy: {remedy}")]
     Spec {
         table: &'static str,
         name: String,
@@ -54,8 +54,8 @@ impl MechanismError {
     }
 }
 
-/// `known: "a", "b"` for a remedy that lists what could have been meant.
+/// `name one of "a", "b"` for a remedy that lists what could have been meant.
 pub(super) fn known_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = names.map(|n| format!("\"{n}\"")).collect();
-    format!("known: {}", quoted.join(", "))
+    format!("name one of {}", quoted.join(", "))
 }

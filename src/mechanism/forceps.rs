@@ -42,7 +42,8 @@ impl Forceps {
     /// # Errors
     /// Sizes that make no jaw, or an inertia about the pin below that of the mass alone.
     pub fn check(&self) -> Result<(), MechanismError> {
-        let error = |key: &str, problem: String| Err(MechanismError::spec("forceps", key, problem, "correct it"));
+        let remedy = "give a larger number, in SI units";
+        let error = |key: &str, problem: String| Err(MechanismError::spec("forceps", key, problem, remedy));
         let values = [
             ("jaw_length_m", self.jaw_length_m),
             ("jaw_width_m", self.jaw_width_m),

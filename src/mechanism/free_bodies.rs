@@ -66,13 +66,13 @@ fn check(body: &FreeBodySpec, taken: &[String]) -> Result<(), MechanismError> {
         BodyShapeSpec::Cylinder { radius_m, length_m } => vec![radius_m, length_m],
     };
     if !sizes.iter().all(|s| *s > 0.0 && s.is_finite()) {
-        return error(format!("shape sizes {sizes:?} must be > 0"), "correct them");
+        return error(format!("shape sizes {sizes:?} must be > 0"), "give sizes above zero, in m");
     }
     if !body.position_m.iter().chain(&body.rpy_rad).all(|v| v.is_finite()) {
-        return error("its position or rpy_rad is not finite".into(), "correct it");
+        return error("its position or rpy_rad is not finite".into(), "give finite numbers, in m and rad");
     }
     if body.friction_coefficient.is_some_and(|f| !(f >= 0.0 && f.is_finite())) {
-        return error("friction_coefficient must be >= 0".into(), "correct it");
+        return error("friction_coefficient must be >= 0".into(), "give 0 for none");
     }
     match body.motion {
         BodyMotion::Free if !(body.mass_kg > 0.0 && body.mass_kg.is_finite()) => {

@@ -81,7 +81,7 @@ fn not_negative(name: &str, what: &str, value: f64) -> Result<f64, MechanismErro
     if value >= 0.0 {
         return Ok(value);
     }
-    Err(error(name, format!("{what} = {value} must be >= 0"), "correct it"))
+    Err(error(name, format!("{what} = {value} must be >= 0"), "give a number that is not negative, in SI units"))
 }
 
 fn error(name: &str, problem: String, remedy: &str) -> MechanismError {

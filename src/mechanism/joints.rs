@@ -107,8 +107,10 @@ fn kind_of(file: &Path, joint: &Joint) -> Result<(CoordinateKind, bool), Mechani
     })
 }
 
+const FINITE: &str = "give finite numbers, in m and rad, and a damping of 0 or more";
+
 fn check_numbers(file: &Path, joint: &Joint) -> Result<(), MechanismError> {
-    let error = |problem: String| MechanismError::urdf(file, "joint", &joint.name, problem, "correct it");
+    let error = |problem: String| MechanismError::urdf(file, "joint", &joint.name, problem, FINITE);
     let origin = [joint.origin.xyz.0, joint.origin.rpy.0].concat();
     if !origin.iter().all(|v| v.is_finite()) {
         return Err(error(format!("origin = {origin:?} is not finite")));

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::geometry::Shape;
 use super::stl::{self, Triangles};
+use crate::stock;
 
 /// Why a mesh cannot be had: what is wrong, and with which file.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,11 +25,14 @@ pub(super) fn read(urdf: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, Me
         return Err(fault(format!("*.{ending} meshes are not read"), convert));
     }
     let wanted = "give the file relative to the URDF, or keep the package's folder above the URDF";
-    let bytes = std::fs::read(&file).map_err(|e| fault(e.to_string(), wanted))?;
+    let bytes = stock::read(&file).map_err(|e| fault(e.to_string(), wanted))?;
     let found = if ending == "obj" { obj(&bytes) } else { stl::read(&bytes) };
     let found = found.map_err(|reason| fault(reason, convert))?;
     if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
-        return Err(fault("a vertex or the scale is not finite".to_owned(), "correct it"));
+        return Err(fault(
+            "a vertex or the scale is not finite".to_owned(),
+            "write finite vertices, in m, and a finite scale",
+        ));
     }
     let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
     Ok(Shape::Mesh { vertices_m: found.vertices.iter().map(scaled).collect(), triangles: found.triangles })
@@ -52,7 +56,7 @@ fn obj(bytes: &[u8]) -> Result<Triangles, String> {
 /// `ROS_PACKAGE_PATH`, and last below the URDF's folder.
 fn find(folder: &Path, name: &str) -> PathBuf {
     let name = name.strip_prefix("file://").unwrap_or(name);
-    let Some(packaged) = name.strip_prefix("package://") else { return folder.join(name) };
+    let Some(packaged) = name.strip_prefix("package://") else { return stock::join(folder, Path::new(name)) };
     let inner = packaged.split_once('/').map_or(packaged, |(_, inner)| inner);
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let above = folder.ancestors().map(|up| up.join(packaged));

@@ -20,6 +20,7 @@ mod kinematics;
 mod mesh;
 mod model;
 mod notch;
+mod notch_mesh;
 mod notched_tube;
 mod place;
 mod reduce;
@@ -41,7 +42,7 @@ pub use forceps::Forceps;
 pub use geometry::{Contact, Pose, Shape, Visual};
 pub use model::{Mechanism, Moved};
 pub use notch::NotchGeometry;
-pub use notched_tube::{NotchedTube, notched_tube_urdf};
+pub use notched_tube::{NotchedTube, notched_tube_meshes, notched_tube_urdf};
 pub use route::{Arm, LinkPoint, Route};
 pub use snapshot::Snapshot;
 pub use spec::{

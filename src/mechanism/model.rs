@@ -259,7 +259,7 @@ fn projection(dofs: &[Dof], coordinates: usize) -> DMatrix<f64> {
 fn check_spec(spec: &MechanismSpec) -> Result<(), MechanismError> {
     if !spec.gravity_m_s2.iter().all(|g| g.is_finite()) {
         let problem = format!("gravity_m_s2 = {:?} is not finite", spec.gravity_m_s2);
-        return Err(MechanismError::spec("gravity", "gravity_m_s2", problem, "correct it"));
+        return Err(MechanismError::spec("gravity", "gravity_m_s2", problem, "give [0.0, 0.0, -9.81], or what it is"));
     }
     let Some(contact) = &spec.contact else {
         return Ok(());

@@ -71,7 +71,7 @@ impl NotchGeometry {
         match rules.iter().find(|(_, _, ok, _)| !ok) {
             Some((key, value, _, rule)) => {
                 let problem = format!("{key} = {value} must be {rule}");
-                Err(MechanismError::spec("notch", key, problem, "correct it"))
+                Err(MechanismError::spec("notch", key, problem, "give a number in that range, in m"))
             }
             None => Ok(()),
         }

@@ -53,7 +53,7 @@ impl Mechanism {
             (true, false) if spec.via.len() >= 2 && spec.draw.is_empty() => Ok(Route::Via(self.points(&spec.via)?)),
             (true, false) => {
                 let problem = "needs two points or more, and no `draw`";
-                Err(MechanismError::spec("route", "via", problem, "complete it"))
+                Err(MechanismError::spec("route", "via", problem, "give via two points or more, and leave draw out"))
             }
             _ => {
                 let problem = "needs exactly one of them";
@@ -125,7 +125,7 @@ impl Mechanism {
                 error("the URDF has no such joint".into(), known)
             })?;
             if !lever.lever_m.is_finite() {
-                return Err(error(format!("lever_m = {}", lever.lever_m), "correct it".into()));
+                return Err(error(format!("lever_m = {} is not finite", lever.lever_m), "give the lever in m".into()));
             }
             match self.shares[joint] {
                 Some(share) => {
@@ -143,7 +143,7 @@ impl Mechanism {
         let resolve = |spec: &PointSpec| {
             let error = |problem: &str, remedy: String| MechanismError::spec("route", &spec.link, problem, remedy);
             if !spec.point_m.iter().all(|v| v.is_finite()) {
-                return Err(error("point_m is not finite", "correct it".into()));
+                return Err(error("point_m is not finite", "give x, y and z in m".into()));
             }
             let link = links.iter().position(|l| *l == spec.link).ok_or_else(|| {
                 let known = known_names(links.iter().map(String::as_str));

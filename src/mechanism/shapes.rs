@@ -57,7 +57,7 @@ pub(super) fn placed_shape(
     let pose = pose_from_urdf(origin.xyz.0, origin.rpy.0);
     if !pose.is_finite() {
         let problem = "the origin of a visual or collision is not finite";
-        return Err(MechanismError::urdf(file, "link", link, problem, "correct it"));
+        return Err(MechanismError::urdf(file, "link", link, problem, "give xyz in m and rpy in rad, finite"));
     }
     Ok((pose, shape(file, link, geometry)?))
 }
@@ -68,7 +68,7 @@ fn shape(file: &Path, link: &str, geometry: &Geometry) -> Result<Shape, Mechanis
             return Ok(());
         }
         let problem = format!("{what} = {values:?} must be > 0");
-        Err(MechanismError::urdf(file, "link", link, problem, "correct the geometry"))
+        Err(MechanismError::urdf(file, "link", link, problem, "give sizes above zero, in m"))
     };
     match geometry {
         Geometry::Box { size } => {

@@ -11,7 +11,7 @@ pub(super) struct Triangles {
 pub(super) fn read(bytes: &[u8]) -> Result<Triangles, String> {
     // Some binary files open with "solid" too, so the length decides.
     match binary_count(bytes) {
-        Some(count) if bytes.len() >= 84 + 50 * count && count > 0 => Ok(binary(bytes, count)),
+        Some(count) if bytes.len() >= 84 + 50 * count && count > 0 => Ok(from_binary(bytes, count)),
         _ => text(bytes),
     }
 }
@@ -21,7 +21,7 @@ fn binary_count(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(count) as usize)
 }
 
-fn binary(bytes: &[u8], count: usize) -> Triangles {
+fn from_binary(bytes: &[u8], count: usize) -> Triangles {
     let mut mesh = Triangles::default();
     for facet in bytes[84..84 + 50 * count].chunks_exact(50) {
         // 12 bytes of normal come first, 2 of attributes last.
@@ -59,8 +59,21 @@ fn text(bytes: &[u8]) -> Result<Triangles, String> {
     Ok(mesh)
 }
 
+/// Triangles as a binary file; normals are left to the reader.
+pub(super) fn binary(mesh: &Triangles) -> Vec<u8> {
+    let mut bytes = vec![0u8; 80];
+    bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
+    for triangle in &mesh.triangles {
+        bytes.extend([0u8; 12]);
+        let corners = triangle.iter().flat_map(|&i| mesh.vertices[i as usize]);
+        bytes.extend(corners.flat_map(|x| (x as f32).to_le_bytes()));
+        bytes.extend([0u8; 2]);
+    }
+    bytes
+}
+
 impl Triangles {
-    fn push(&mut self, corners: impl Iterator<Item = [f64; 3]>) {
+    pub(super) fn push(&mut self, corners: impl Iterator<Item = [f64; 3]>) {
         let first = self.vertices.len() as u32;
         self.vertices.extend(corners);
         self.triangles.push([first, first + 1, first + 2]);
@@ -85,6 +98,7 @@ mod tests {
         bytes.extend([0u8; 2]);
         assert_eq!(read(&bytes), read(TEXT.as_bytes()));
         assert_eq!(read(TEXT.as_bytes()).map(|m| m.triangles.len()), Ok(1));
+        assert_eq!(read(TEXT.as_bytes()).map(|m| binary(&m)), Ok(bytes));
     }
 
     #[test]

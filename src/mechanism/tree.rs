@@ -73,8 +73,8 @@ fn order_from_root(
 ) -> Result<Vec<usize>, MechanismError> {
     let roots: Vec<usize> = (0..carrier.len()).filter(|&l| carrier[l].is_none()).collect();
     let [root] = roots[..] else {
-        let names = known_names(roots.iter().map(|&l| robot.links[l].name.as_str()));
-        let problem = format!("has {} root links ({names})", roots.len());
+        let names: Vec<&str> = roots.iter().map(|&l| robot.links[l].name.as_str()).collect();
+        let problem = format!("has {} root links ({})", roots.len(), names.join(", "));
         let remedy = "exactly one link must be carried by no joint";
         return Err(MechanismError::urdf(file, "robot", &robot.name, problem, remedy));
     };

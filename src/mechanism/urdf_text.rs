@@ -100,6 +100,11 @@ pub(super) fn cylinder(radius_m: f64, length_m: f64) -> String {
     format!("<cylinder radius=\"{}\" length=\"{}\"/>", number(radius_m), number(length_m))
 }
 
+/// A mesh file, scaled along x, y, z.
+pub(super) fn mesh(file: &str, scale: [f64; 3]) -> String {
+    format!("<mesh filename=\"{file}\" scale=\"{}\"/>", numbers(&scale))
+}
+
 pub(super) fn cuboid(size_m: [f64; 3]) -> String {
     format!("<box size=\"{}\"/>", numbers(&size_m))
 }

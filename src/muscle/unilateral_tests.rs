@@ -99,7 +99,9 @@ proptest! {
             let volume = (pi(e, p - hp) - pi(e, p + hp)) / (2.0 * hp);
             prop_assert!((volume - state.volume_m3).abs() < 1e-4 * volume.abs());
             let area = (right.volume_m3 - left.volume_m3) / (2.0 * he);
-            prop_assert!((area + state.dpull_dp).abs() < 1e-5 * area.abs());
+            // The area passes through zero where a longer tube holds no more: there the bore's is the measure.
+            const BORE_AREA_M2: f64 = 2.0e-7;
+            prop_assert!((area + state.dpull_dp).abs() < 1e-5 * (area.abs() + BORE_AREA_M2));
             let stiffness = (right.pull_n - left.pull_n) / (2.0 * he);
             prop_assert!((stiffness - state.dpull_de).abs() < 1e-5 * (10.0 + stiffness.abs()));
             let swell = (over.volume_m3 - under.volume_m3) / (2.0 * hp);

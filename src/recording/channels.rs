@@ -214,19 +214,19 @@ mod tests {
         let says = |result: Result<(), RecordingError>| result.unwrap_err().to_string();
         assert_eq!(
             says(recording.push(Channel::new("force_n", vec![1.0]))),
-            "column \"force_n\": 1 values for 2 times; give one value per time"
+            "column \"force_n\": 1 values for 2 times\n  remedy: give one value per time"
         );
         assert_eq!(
             says(recording.push(Channel::new("plunger_mm", vec![1.0, 2.0]))),
-            "column \"plunger_mm\" occurs twice; rename or remove one"
+            "column \"plunger_mm\" occurs twice\n  remedy: rename or remove one"
         );
         assert_eq!(
             says(Recording::new(vec![0.0, 0.0], vec![]).map(drop)),
-            "sample 1: time_s = 0 is not after 0; times must be finite and increase"
+            "sample 1: time_s = 0 is not after 0\n  remedy: give finite times that increase from sample to sample"
         );
         assert_eq!(
             says(recording.channel("force_n").map(drop)),
-            "no column \"force_n\" (found: plunger_mm); check the name and its unit"
+            "no column \"force_n\" (found: plunger_mm)\n  remedy: name one of those; the unit belongs to the name"
         );
         let empty = Channel::new("force_n", vec![f64::NAN; 2]);
         recording.push(empty).unwrap();

@@ -49,6 +49,7 @@ pub fn read_csv_from(mut source: impl Read, name: &str) -> Result<Recording, Rec
     let read = source.read_to_end(&mut bytes);
     read.map_err(|source| RecordingError::Read { file: name.into(), source })?;
     let text = Text { file: name, bytes: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes) };
+    text.check_bytes()?;
     let mut reader = ReaderBuilder::new()
         // Ragged rows are found here, to say what to do.
         .flexible(true)
@@ -83,6 +84,16 @@ impl Text<'_> {
         1 + before.iter().filter(|byte| **byte == b'\n').count() as u64
     }
 
+    /// UTF-16 and binary files hold zero bytes, text in UTF-8 never does.
+    fn check_bytes(&self) -> Result<(), RecordingError> {
+        let is_utf16 = self.bytes.starts_with(b"\xff\xfe") || self.bytes.starts_with(b"\xfe\xff");
+        let zero = self.bytes.iter().position(|byte| *byte == 0);
+        let Some(at) = zero.or(is_utf16.then_some(0)) else { return Ok(()) };
+        let line = 1 + self.bytes[..at].iter().filter(|byte| **byte == b'\n').count() as u64;
+        let problem = "is not UTF-8 text but UTF-16 or no text at all\n  remedy: save the file as CSV in UTF-8";
+        Err(self.line_error(line, problem.to_owned()))
+    }
+
     fn line_error(&self, line: u64, problem: String) -> RecordingError {
         RecordingError::Line { file: self.file.to_owned(), line, problem }
     }
@@ -93,8 +104,8 @@ impl Text<'_> {
 
     fn error(&self, error: ::csv::Error) -> RecordingError {
         let problem = match error.kind() {
-            ErrorKind::Utf8 { .. } => "is not UTF-8 text; save the file as CSV in UTF-8".to_owned(),
-            other => format!("is not CSV: {other:?}; save the file as comma separated values"),
+            ErrorKind::Utf8 { .. } => "is not UTF-8 text\n  remedy: save the file as CSV in UTF-8".to_owned(),
+            other => format!("is not CSV: {other:?}\n  remedy: save the file as comma separated values"),
         };
         self.line_error(self.line(error.position()), problem)
     }
@@ -123,7 +134,7 @@ impl<'a> Header<'a> {
         if row.len() != self.columns.len() {
             let (cells, names) = (row.len(), self.columns.len());
             let problem = format!(
-                "{cells} cells where the header names {names} columns; fill up the row, leaving missing cells \
+                "{cells} cells where the header names {names} columns\n  remedy: fill up the row, leaving missing cells \
                  empty between commas, and write decimals with a point"
             );
             return Err(self.text.line_error(self.text.line(row.position()), problem));
@@ -165,21 +176,27 @@ fn check_names(columns: &[String]) -> Result<usize, String> {
     for (separator, called) in [(';', "semicolons"), ('\t', "tabs")] {
         if columns.len() == 1 && columns[0].contains(separator) {
             return Err(format!(
-                "the columns are separated by {called}; save the file with commas between the columns and \
+                "the columns are separated by {called}\n  remedy: save the file with commas between the columns and \
                  points as decimal marks"
             ));
         }
     }
+    if columns.iter().all(|name| name.parse::<f64>().is_ok()) {
+        return Err(format!(
+            "there are numbers where the names of the columns should be\n  remedy: put a header line above them, such as \
+             {TIME_COLUMN},plunger_mm"
+        ));
+    }
     if let Some(unnamed) = columns.iter().position(String::is_empty) {
-        return Err(format!("column {} has no name; name it, or remove it and its comma", unnamed + 1));
+        return Err(format!("column {} has no name\n  remedy: name it, or remove it and its comma", unnamed + 1));
     }
     let mut seen = HashSet::new();
     if let Some(twice) = columns.iter().find(|name| !seen.insert(name.as_str())) {
-        return Err(format!("column \"{twice}\" occurs twice; rename or remove one"));
+        return Err(format!("column \"{twice}\" occurs twice\n  remedy: rename or remove one"));
     }
     columns.iter().position(|name| name == TIME_COLUMN).ok_or_else(|| {
         format!(
-            "no column \"{TIME_COLUMN}\" (found: {}); name the time column \"{TIME_COLUMN}\" and give it \
+            "no column \"{TIME_COLUMN}\" (found: {})\n  remedy: name the time column \"{TIME_COLUMN}\" and give it \
                  in seconds",
             columns.join(", ")
         )
@@ -193,18 +210,36 @@ fn number(cell: &str) -> Result<f64, String> {
     match cell.parse::<f64>() {
         Ok(value) if !value.is_infinite() => Ok(value),
         _ => Err(format!(
-            "\"{cell}\" is not a finite number; write a number with a point as decimal mark, or leave the \
-             cell empty where the sample is missing"
+            "{} is not a finite number\n  remedy: write a number with a point as decimal mark, or leave the \
+             cell empty where the sample is missing",
+            shown(cell)
         )),
     }
 }
 
+/// A cell as an error shows it: its beginning (an open quote takes in the rest of the file), with what cannot be seen escaped.
+fn shown(cell: &str) -> String {
+    const LONGEST: usize = 40;
+    let beginning: String = cell.chars().take(LONGEST).collect();
+    let more = if beginning.len() < cell.len() { "..." } else { "" };
+    format!("{beginning:?}{more}")
+}
+
+/// Eleven days without a sample: a simulation would run across them, so it is rather the unit that is wrong.
+const LONGEST_GAP_S: f64 = 1e6;
+
 fn check_time(time_s: f64, previous_s: Option<f64>) -> Result<(), String> {
     match previous_s {
-        _ if time_s.is_nan() => Err("the time is missing; give every row its time, or remove the row".to_owned()),
+        _ if time_s.is_nan() => {
+            Err("the time is missing\n  remedy: give every row its time, or remove the row".to_owned())
+        }
         Some(previous_s) if time_s <= previous_s => Err(format!(
-            "{time_s} is not after {previous_s}; remove repeated rows, sort the rows by time, or split the \
+            "{time_s} is not after {previous_s}\n  remedy: remove repeated rows, sort the rows by time, or split the \
              file where its clock starts anew"
+        )),
+        Some(previous_s) if time_s - previous_s > LONGEST_GAP_S => Err(format!(
+            "{time_s:e} is more than {LONGEST_GAP_S:e} s after {previous_s}\n  remedy: give the time in seconds, or split the \
+             file where nothing was recorded"
         )),
         _ => Ok(()),
     }

@@ -29,21 +29,24 @@ fn missing_cells_are_kept_as_nan() {
 #[test]
 fn header_errors() {
     let needs = "a recording needs a header line with \"time_s\" and at least one line of numbers";
-    assert_eq!(refusal(""), format!("a.csv: the file is empty; {needs}"));
-    assert_eq!(refusal("time_s,a_n\n"), format!("a.csv: there is no row below the header; {needs}"));
+    assert_eq!(refusal(""), format!("a.csv: the file is empty\n  remedy: {needs}"));
+    assert_eq!(refusal("time_s,a_n\n"), format!("a.csv: there is no row below the header\n  remedy: {needs}"));
     assert_eq!(
         refusal("t,a_n\n0,1\n"),
-        "a.csv: line 1: no column \"time_s\" (found: t, a_n); name the time column \"time_s\" and give \
+        "a.csv: line 1: no column \"time_s\" (found: t, a_n)\n  remedy: name the time column \"time_s\" and give \
              it in seconds"
     );
-    assert_eq!(refusal("time_s,a_n,a_n\n0,1,2\n"), "a.csv: line 1: column \"a_n\" occurs twice; rename or remove one");
+    assert_eq!(
+        refusal("time_s,a_n,a_n\n0,1,2\n"),
+        "a.csv: line 1: column \"a_n\" occurs twice\n  remedy: rename or remove one"
+    );
     assert_eq!(
         refusal("time_s,a_n,\n0,1,\n"),
-        "a.csv: line 1: column 3 has no name; name it, or remove it and its comma"
+        "a.csv: line 1: column 3 has no name\n  remedy: name it, or remove it and its comma"
     );
     assert_eq!(
         refusal("time_s;a_n\n0,0;1,5\n"),
-        "a.csv: line 1: the columns are separated by semicolons; save the file with commas between the \
+        "a.csv: line 1: the columns are separated by semicolons\n  remedy: save the file with commas between the \
              columns and points as decimal marks"
     );
 }
@@ -52,23 +55,23 @@ fn header_errors() {
 fn row_errors() {
     assert_eq!(
         refusal("time_s,a_n\n0,1\n1,1,5\n"),
-        "a.csv: line 3: 3 cells where the header names 2 columns; fill up the row, leaving missing cells \
+        "a.csv: line 3: 3 cells where the header names 2 columns\n  remedy: fill up the row, leaving missing cells \
              empty between commas, and write decimals with a point"
     );
     assert_eq!(
         refusal("time_s,a_n\n0,1\n1,off\n"),
-        "a.csv: line 3, column \"a_n\": \"off\" is not a finite number; write a number with a point as \
+        "a.csv: line 3, column \"a_n\": \"off\" is not a finite number\n  remedy: write a number with a point as \
              decimal mark, or leave the cell empty where the sample is missing"
     );
     assert!(refusal("time_s,a_n\n0,inf\n").contains("not a finite number"));
     assert_eq!(
         refusal("time_s,a_n\n0,1\n0.1,1\n0.1,1\n"),
-        "a.csv: line 4, column \"time_s\": 0.1 is not after 0.1; remove repeated rows, sort the rows by \
+        "a.csv: line 4, column \"time_s\": 0.1 is not after 0.1\n  remedy: remove repeated rows, sort the rows by \
              time, or split the file where its clock starts anew"
     );
     assert_eq!(
         refusal("time_s,a_n\n,1\n"),
-        "a.csv: line 2, column \"time_s\": the time is missing; give every row its time, or remove the row"
+        "a.csv: line 2, column \"time_s\": the time is missing\n  remedy: give every row its time, or remove the row"
     );
 }
 
@@ -77,7 +80,19 @@ fn lines_count_blank_ones_and_text_must_be_utf8() {
     assert!(refusal("time_s,a_n\n0,1\n\n1,x\n").starts_with("a.csv: line 4, "));
     assert!(refusal("\u{feff}time_s,a_n\r\n0,1\r\n1,x\r\n").starts_with("a.csv: line 3, "));
     let error = read_csv_from(&b"time_s,a_n\n0,\xff\n"[..], "a.csv").unwrap_err();
-    assert_eq!(error.to_string(), "a.csv: line 2: is not UTF-8 text; save the file as CSV in UTF-8");
+    assert_eq!(error.to_string(), "a.csv: line 2: is not UTF-8 text\n  remedy: save the file as CSV in UTF-8");
+}
+
+#[test]
+fn what_is_no_csv_is_said_with_its_cause() {
+    assert!(refusal("0,0\n0.1,0.1\n").starts_with("a.csv: line 1: there are numbers where the names"));
+    let utf16: Vec<u8> = "time_s,a_n\n0,1\n".bytes().flat_map(|byte| [byte, 0]).collect();
+    let error = read_csv_from(&utf16[..], "a.csv").unwrap_err().to_string();
+    assert!(error.starts_with("a.csv: line 1: is not UTF-8 text but UTF-16"), "{error}");
+    // An open quote takes in all that follows: only its beginning is shown.
+    let open = refusal(&format!("time_s,a_n\n0,\"1\n{}", "0.1,2\n".repeat(1000)));
+    assert!(open.contains("\"1\\n0.1,2\\n") && open.len() < 300, "{open}");
+    assert!(refusal("time_s,a_n\n0,1\n1e300,2\n").contains("1e6 s after 0"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum RecordingError {
     /// A file cannot be opened or read.
-    #[error("{}: cannot be read: {source}; check the path and its permissions", file.display())]
+    #[error("{}: cannot be read: {source}\n  remedy: check the path and its permissions", file.display())]
     Read {
         /// The file.
         file: PathBuf,
@@ -17,7 +17,7 @@ pub enum RecordingError {
     },
     /// A file cannot be written.
     #[error(
-        "{}: cannot be written: {source}; check that its folder exists, is writable and has space left",
+        "{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room",
         file.display()
     )]
     Write {
@@ -27,7 +27,10 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// A column name without a known unit.
-    #[error("column \"{column}\": its name ends in no known unit; rename it to end in one of {}", known_suffixes())]
+    #[error(
+        "column \"{column}\": its name ends in no known unit\n  remedy: rename it to end in one of {}",
+        known_suffixes()
+    )]
     UnknownUnit {
         /// The column.
         column: String,
@@ -63,15 +66,25 @@ pub enum RecordingError {
         problem: String,
     },
     /// A CSV file without data.
-    #[error("{file}: {what}; a recording needs a header line with \"time_s\" and at least one line of numbers")]
+    #[error(
+        "{file}: {what}\n  remedy: a recording needs a header line with \"time_s\" and at least one line of numbers"
+    )]
     NoData {
         /// The file.
         file: String,
         /// What is missing.
         what: &'static str,
     },
+    /// Something wrong with a recording whose file is known only to whoever read it.
+    #[error("{file}: {source}")]
+    In {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        source: Box<RecordingError>,
+    },
     /// A channel that a recording does not have.
-    #[error("no column \"{column}\" (found: {found}); check the name and its unit")]
+    #[error("no column \"{column}\" (found: {found})\n  remedy: name one of those; the unit belongs to the name")]
     NoChannel {
         /// The column asked for.
         column: String,
@@ -80,7 +93,7 @@ pub enum RecordingError {
     },
     /// A run's file lacks a column its set declares.
     #[error(
-        "{}: no column \"{column}\", which recordings.toml declares (found: {found}); rename the column or the [[channel]]",
+        "{}: no column \"{column}\", which recordings.toml declares (found: {found})\n  remedy: rename the column or the [[channel]]",
         file.display()
     )]
     MissingInRun {
@@ -92,7 +105,7 @@ pub enum RecordingError {
         found: String,
     },
     /// A channel with another number of samples than the time has.
-    #[error("column \"{column}\": {values} values for {times} times; give one value per time")]
+    #[error("column \"{column}\": {values} values for {times} times\n  remedy: give one value per time")]
     Length {
         /// The column.
         column: String,
@@ -102,13 +115,15 @@ pub enum RecordingError {
         times: usize,
     },
     /// The same column twice.
-    #[error("column \"{column}\" occurs twice; rename or remove one")]
+    #[error("column \"{column}\" occurs twice\n  remedy: rename or remove one")]
     DuplicateChannel {
         /// The column.
         column: String,
     },
     /// A time that is not after the one before, or not finite.
-    #[error("sample {index}: time_s = {time_s} is not after {previous_s}; times must be finite and increase")]
+    #[error(
+        "sample {index}: time_s = {time_s} is not after {previous_s}\n  remedy: give finite times that increase from sample to sample"
+    )]
     Time {
         /// Index of the sample, from 0.
         index: usize,
@@ -118,19 +133,21 @@ pub enum RecordingError {
         previous_s: f64,
     },
     /// A channel with no usable value.
-    #[error("column \"{column}\": every sample is missing; record it, or leave the channel out")]
+    #[error("column \"{column}\": every sample is missing\n  remedy: record it, or leave the channel out")]
     AllMissing {
         /// The column.
         column: String,
     },
     /// Measured and simulated samples do not belong together.
-    #[error("measured and simulated times differ at sample {index}; simulate at the recording's sample times")]
+    #[error(
+        "measured and simulated times differ at sample {index}\n  remedy: simulate at the recording's sample times"
+    )]
     TimesDiffer {
         /// First sample that differs, from 0.
         index: usize,
     },
     /// `recordings.toml` is no TOML.
-    #[error("{}: is not valid TOML: {problem}; mend that line", file.display())]
+    #[error("{}: is not valid TOML: {problem}\n  remedy: mend that line", file.display())]
     Toml {
         /// The file.
         file: PathBuf,
@@ -147,4 +164,12 @@ pub enum RecordingError {
         /// Key, cause and remedy.
         problem: String,
     },
+}
+
+impl RecordingError {
+    /// The same error with its file in front.
+    #[must_use]
+    pub fn in_file(self, file: impl Into<String>) -> Self {
+        Self::In { file: file.into(), source: Box::new(self) }
+    }
 }

@@ -1,6 +1,6 @@
 //! A folder of recordings: `recordings.toml` and one CSV file per run.
 
-use super::folder_keys::Keys;
+use super::folder_keys::{Keys, did_you_mean};
 use super::{Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -107,8 +107,7 @@ impl RecordingSet {
             true => path.to_owned(),
             false => path.join(SET_FILE_NAME),
         };
-        let text =
-            std::fs::read_to_string(&file).map_err(|source| RecordingError::Read { file: file.clone(), source })?;
+        let text = std::fs::read_to_string(&file).map_err(|source| unreadable(&file, source))?;
         Self::parse(&text, &file)
     }
 
@@ -167,11 +166,25 @@ impl RecordingSet {
     }
 }
 
+/// A file that is there but no text has another remedy than one that is not there.
+fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
+    let file = file.to_owned();
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => {
+            let problem = "it is not UTF-8 text\n  remedy: save it as text in UTF-8".to_owned();
+            RecordingError::Key { file, table: "encoding".to_owned(), problem }
+        }
+        _ => RecordingError::Read { file, source },
+    }
+}
+
 fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
     match top.number("format")? {
         Some(format) if format == FORMAT as f64 => Ok(()),
-        Some(format) => Err(top.error(format!("format = {format} is not known; this version reads format = {FORMAT}"))),
-        None => Err(top.error(format!("key \"format\" is missing; add format = {FORMAT}"))),
+        Some(format) => {
+            Err(top.error(format!("format = {format} is not known\n  remedy: this version reads format = {FORMAT}")))
+        }
+        None => Err(top.error(format!("key \"format\" is missing\n  remedy: add format = {FORMAT}"))),
     }
 }
 
@@ -181,12 +194,12 @@ fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingEr
         let keys = Keys::new(file, label("channel", index, table.get("column")), table);
         let spec = channel(&keys)?;
         if channels.iter().any(|other| other.column == spec.column) {
-            return Err(keys.error("the column is declared twice; remove one [[channel]]"));
+            return Err(keys.error("the column is declared twice\n  remedy: remove one [[channel]]"));
         }
         channels.push(spec);
     }
     if channels.iter().all(|spec| spec.role == Role::Input) {
-        return Err(top.error("no channel has role = \"output\"; declare one that was measured"));
+        return Err(top.error("no channel has role = \"output\"\n  remedy: declare one that was measured"));
     }
     Ok(channels)
 }
@@ -195,15 +208,15 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     keys.refuse_unknown(&["column", "role", "noise_sd"])?;
     let column = keys.required_text("column", "plunger_mm")?;
     if column == TIME_COLUMN {
-        return Err(keys.error("the time is no channel; remove this [[channel]]"));
+        return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
     }
     parse_column(column).map_err(|error| keys.error(error.to_string()))?;
     let role = keys
         .word("role", &[("input", Role::Input), ("output", Role::Output)])?
-        .ok_or_else(|| keys.error("key \"role\" is missing; add role = \"input\" or role = \"output\""))?;
+        .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
     let noise_sd = keys.number("noise_sd")?;
     if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
-        return Err(keys.error(format!("noise_sd = {sd} must be > 0; leave it out to have it estimated")));
+        return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
     }
     Ok(ChannelSpec { column: column.to_owned(), role, noise_sd })
 }
@@ -215,7 +228,7 @@ fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {
         let keys = Keys::new(file, label("run", index, table.get("file")), table);
         let run = run(&keys)?;
         if !seen.insert(run.file.clone()) {
-            return Err(keys.error("the file is listed twice; remove one [[run]]"));
+            return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
         }
         runs.push(run);
     }
@@ -225,6 +238,13 @@ fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {
 fn run(keys: &Keys<'_>) -> Result<Run, RecordingError> {
     let mut conditions = BTreeMap::new();
     for key in keys.others(&RUN_KEYS) {
+        let nearest = did_you_mean(key, &RUN_KEYS);
+        if !nearest.is_empty() {
+            let known = RUN_KEYS.join(", ");
+            return Err(keys.error(format!(
+                "unknown key \"{key}\"{nearest}\n  remedy: the keys here are {known} and the scene's conditions"
+            )));
+        }
         if let Some(value) = keys.number(key)? {
             conditions.insert(key.to_owned(), value);
         }

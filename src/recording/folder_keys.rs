@@ -26,7 +26,7 @@ impl<'a> Keys<'a> {
         match self.table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
             Some(key) => Err(self.error(format!(
-                "unknown key \"{key}\"{}; the keys here are {}",
+                "unknown key \"{key}\"{}\n  remedy: the keys here are {}",
                 did_you_mean(key, known),
                 known.join(", ")
             ))),
@@ -37,12 +37,14 @@ impl<'a> Keys<'a> {
         match self.table.get(key) {
             None => Ok(None),
             Some(Value::String(text)) if !text.is_empty() => Ok(Some(text)),
-            Some(other) => Err(self.error(format!("{key} = {other} must be a text between quotes, not empty"))),
+            Some(other) => Err(self
+                .error(format!("{key} = {other} must be a text that is not empty\n  remedy: write it between quotes"))),
         }
     }
 
     pub(super) fn required_text(&self, key: &str, example: &str) -> Result<&'a str, RecordingError> {
-        self.text(key)?.ok_or_else(|| self.error(format!("key \"{key}\" is missing; add {key} = \"{example}\"")))
+        self.text(key)?
+            .ok_or_else(|| self.error(format!("key \"{key}\" is missing\n  remedy: add {key} = \"{example}\"")))
     }
 
     /// A text that is one of a few words.
@@ -55,7 +57,7 @@ impl<'a> Keys<'a> {
         }
         let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
         Err(self.error(format!(
-            "{key} = \"{text}\" is not known{}; write one of \"{}\"",
+            "{key} = \"{text}\" is not known{}\n  remedy: write one of \"{}\"",
             did_you_mean(text, &known),
             known.join("\", \"")
         )))
@@ -66,13 +68,15 @@ impl<'a> Keys<'a> {
             None => Ok(None),
             Some(Value::Integer(whole)) => Ok(Some(*whole as f64)),
             Some(Value::Float(number)) if number.is_finite() => Ok(Some(*number)),
-            Some(other) => Err(self.error(format!("{key} = {other} must be a finite number"))),
+            Some(other) => Err(self.error(format!(
+                "{key} = {other} must be a finite number\n  remedy: write {key} = 0.5, or whatever it is"
+            ))),
         }
     }
 
     /// The tables of `[[key]]`; at least one.
     pub(super) fn tables(&self, key: &str) -> Result<Vec<&'a Table>, RecordingError> {
-        let wrong = || self.error(format!("no [[{key}]] table; add one per {key}"));
+        let wrong = || self.error(format!("no [[{key}]] table\n  remedy: add one per {key}"));
         let list = self.table.get(key).and_then(Value::as_array);
         let tables: Option<Vec<&Table>> =
             list.filter(|list| !list.is_empty()).and_then(|list| list.iter().map(Value::as_table).collect());

@@ -47,17 +47,20 @@ fn good_file_is_read_whole() {
 fn top_level_mistakes() {
     assert_eq!(
         refusal("format = 1", "format = 2"),
-        "rig/recordings.toml: top level: format = 2 is not known; this version reads format = 1"
+        "rig/recordings.toml: top level: format = 2 is not known\n  remedy: this version reads format = 1"
     );
-    assert_eq!(refusal("format = 1", ""), "rig/recordings.toml: top level: key \"format\" is missing; add format = 1");
+    assert_eq!(
+        refusal("format = 1", ""),
+        "rig/recordings.toml: top level: key \"format\" is missing\n  remedy: add format = 1"
+    );
     assert_eq!(
         refusal("scene =", "scen ="),
-        "rig/recordings.toml: top level: unknown key \"scen\", did you mean \"scene\"?; the keys here are \
+        "rig/recordings.toml: top level: unknown key \"scen\", did you mean \"scene\"?\n  remedy: the keys here are \
          format, scene, channel, run"
     );
     assert_eq!(
         refusal("[[run]]", "[[channel]]"),
-        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"; the keys here are column, role, noise_sd"
+        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd"
     );
     assert!(refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3"));
 }
@@ -66,21 +69,21 @@ fn top_level_mistakes() {
 fn channel_mistakes() {
     assert_eq!(
         refusal("role = \"input\"", "rol = \"input\""),
-        "rig/recordings.toml: [[channel]] 1 (\"plunger_mm\"): unknown key \"rol\", did you mean \"role\"?; \
+        "rig/recordings.toml: [[channel]] 1 (\"plunger_mm\"): unknown key \"rol\", did you mean \"role\"?\n  remedy: \
          the keys here are column, role, noise_sd"
     );
     assert_eq!(
         refusal("\"output\"", "\"ouput\""),
         "rig/recordings.toml: [[channel]] 2 (\"force_n\"): role = \"ouput\" is not known, did you mean \
-         \"output\"?; write one of \"input\", \"output\""
+         \"output\"?\n  remedy: write one of \"input\", \"output\""
     );
     assert_eq!(
         refusal("\"output\"", "\"input\""),
-        "rig/recordings.toml: top level: no channel has role = \"output\"; declare one that was measured"
+        "rig/recordings.toml: top level: no channel has role = \"output\"\n  remedy: declare one that was measured"
     );
     assert_eq!(
         refusal("noise_sd = 1", "noise_sd = 0"),
-        "rig/recordings.toml: [[channel]] 2 (\"force_n\"): noise_sd = 0 must be > 0; leave it out to have \
+        "rig/recordings.toml: [[channel]] 2 (\"force_n\"): noise_sd = 0 must be > 0\n  remedy: leave it out to have \
          it estimated"
     );
     assert!(refusal("force_n", "force").contains("column \"force\": its name ends in no known unit"));
@@ -92,11 +95,11 @@ fn channel_mistakes() {
 fn run_mistakes() {
     assert_eq!(
         refusal("hanging_mass_kg = 0.2", "hanging_mass_kg = \"light\""),
-        "rig/recordings.toml: [[run]] 1 (\"sine.csv\"): hanging_mass_kg = \"light\" must be a finite number"
+        "rig/recordings.toml: [[run]] 1 (\"sine.csv\"): hanging_mass_kg = \"light\" must be a finite number\n  remedy: write hanging_mass_kg = 0.5, or whatever it is"
     );
     assert_eq!(
         refusal("file = \"sine.csv\"", ""),
-        "rig/recordings.toml: [[run]] 1: key \"file\" is missing; add file = \"sine.csv\""
+        "rig/recordings.toml: [[run]] 1: key \"file\" is missing\n  remedy: add file = \"sine.csv\""
     );
     assert!(refusal("\"holdout\"", "\"hold\"").contains("write one of \"fit\", \"holdout\""));
 }
@@ -115,7 +118,7 @@ fn runs_are_checked_against_the_declaration() {
     let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
     assert!(
         error.ends_with(
-            "sine.csv: no column \"force_n\", which recordings.toml declares (found: plunger_mm, force); \
+            "sine.csv: no column \"force_n\", which recordings.toml declares (found: plunger_mm, force)\n  remedy: \
              rename the column or the [[channel]]"
         ),
         "{error}"

@@ -40,13 +40,19 @@ fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     let refuse = |problem: String| RecordingError::Parquet { file: path.to_owned(), problem };
     let source = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
     let mut columns = Vec::new();
-    for (name, column) in decode(source).map_err(refuse)? {
+    for (name, column) in decode(source).map_err(|e| refuse(unreadable(&e)))? {
         let values = column.numbers();
-        columns.push((values.ok_or_else(|| refuse(format!("column \"{name}\" holds texts; leave it out")))?, name));
+        columns.push((
+            values.ok_or_else(|| refuse(format!("column \"{name}\" holds texts\n  remedy: leave it out")))?,
+            name,
+        ));
     }
     let names = || columns.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", ");
     let Some(at) = columns.iter().position(|(_, name)| name == TIME_COLUMN) else {
-        return Err(refuse(format!("no column \"{TIME_COLUMN}\" (found: {}); give the time in seconds", names())));
+        return Err(refuse(format!(
+            "no column \"{TIME_COLUMN}\" (found: {})\n  remedy: give the time in seconds",
+            names()
+        )));
     };
     let (time_s, _) = columns.remove(at);
     if time_s.is_empty() {
@@ -54,6 +60,14 @@ fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     }
     let channels = columns.into_iter().map(|(values, name)| Channel::new(name, values));
     Recording::new(time_s, channels.collect()).map_err(|e| refuse(e.to_string()))
+}
+
+/// What cannot be decoded may say itself what to do about it.
+fn unreadable(problem: &str) -> String {
+    if problem.contains("remedy: ") {
+        return problem.to_owned();
+    }
+    format!("cannot be read as Parquet: {problem}\n  remedy: write the file again, or save it as CSV")
 }
 
 #[cfg(test)]

@@ -5,6 +5,8 @@ use std::fmt;
 
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 3.0;
+/// Muscles move faster than samples this far apart could show: a clock of milliseconds, more likely, s.
+const SLOW_S: f64 = 1.0;
 /// An interval this far from the median (as a share of it) is uneven; clocks that count in
 /// milliseconds stay below it at 100 Hz.
 const UNEVEN_TOLERANCE: f64 = 0.2;
@@ -55,6 +57,12 @@ impl Survey {
     /// What a user should know, one sentence each; empty when all is regular.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
+        if self.sample_count == 1 {
+            notes.push("one sample only: nothing moves".to_owned());
+        }
+        if let Some(interval_s) = self.median_interval_s.filter(|s| *s > SLOW_S) {
+            notes.push(format!("one sample in {interval_s} s: is the time in seconds, not in milliseconds?"));
+        }
         if self.is_uneven() {
             let percent = 100.0 * self.uneven_share;
             notes.push(format!("uneven sampling: {percent:.1} % of the intervals are more than 20 % off the median"));

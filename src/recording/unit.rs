@@ -158,7 +158,7 @@ mod tests {
     fn unknown_suffix_is_refused() {
         assert_eq!(
             parse_column("pressure_torr").unwrap_err().to_string(),
-            "column \"pressure_torr\": its name ends in no known unit; rename it to end in one of \
+            "column \"pressure_torr\": its name ends in no known unit\n  remedy: rename it to end in one of \
              _m, _mm, _um, _rad, _deg, _pa, _kpa, _mpa, _bar, _psi, _n, _mn, _nm, _s, _ms, _v, _mv, \
              _kg, _g, _m3, _ml, _ul, _hz, _ratio, _percent, _m_s, _mm_s, _rad_s, _deg_s, _m3_s, \
              _ml_s, _ul_s"

@@ -132,8 +132,10 @@ fn check_range(min: f64, max: f64, place: &Place) -> Result<(), SceneError> {
     if min.is_finite() && max.is_finite() && min < max {
         return Ok(());
     }
-    Err(place
-        .error(format!("min = {min} must be < max = {max}"), "give the range in SI units, the smaller number as min"))
+    Err(place.error(
+        format!("min = {min:?} must be < max = {max:?}"),
+        "give the range in SI units, the smaller number as min",
+    ))
 }
 
 fn input_names(scene: &SceneFile) -> Vec<&str> {
@@ -155,6 +157,12 @@ fn check_simulation(scene: &SceneFile, place: &Place) -> Result<(), SceneError> 
         return Err(place
             .error("duration_s / output_interval_s is more than 1e8 samples", "shorten the run or record less often"));
     }
+    if s.duration_s / s.step_s > 1e9 {
+        return Err(place.error(
+            format!("step_s = {:e} cuts the run into more than 1e9 steps", s.step_s),
+            "take a longer step, 1e-3 s is usual, or shorten the run",
+        ));
+    }
     Ok(())
 }
 
@@ -166,7 +174,7 @@ fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneErr
         let place = Place { file, table: format!("[[input]] \"{}\"", input.channel) };
         let unit = si_unit(&input.channel, &place)?;
         let program = Program::parse(&input.program, unit).map_err(|message| {
-            place.error(message, "see the table of programmes in the documentation of scene files")
+            place.error(message, "docs/scene-files.md has the table of programmes with their keys")
         })?;
         programs.push(program);
     }
@@ -174,9 +182,10 @@ fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneErr
 }
 
 fn si_unit(channel: &str, place: &Place) -> Result<&'static str, SceneError> {
-    parse_column(channel)
-        .map(|name| name.unit.si_suffix)
-        .map_err(|e| place.error(e.to_string(), "end the channel's name in its unit, for example plunger_mm"))
+    parse_column(channel).map(|name| name.unit.si_suffix).map_err(|_| {
+        let message = format!("channel = \"{channel}\": its name ends in no known unit");
+        place.error(message, "end it in its unit, for example plunger_mm; docs/recordings.md lists the units")
+    })
 }
 
 fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError> {
@@ -205,7 +214,7 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
     if !(1.0..=4.0 / 3.0 + 1e-12).contains(&h.line.momentum_factor) {
         return Err(place.error(
             format!("line.momentum_factor = {} must be 1 to 4/3", h.line.momentum_factor),
-            "4/3 for laminar flow",
+            "give 4/3 for laminar flow, 1 for a flat profile",
         ));
     }
     Ok(())

@@ -22,6 +22,6 @@ pub enum SceneError {
     Override { key: String, message: String, remedy: String },
     #[error("{}: {source}", file.display())]
     Mechanism { file: PathBuf, source: MechanismError },
-    #[error("{}: [muscles]: {source}", file.display())]
+    #[error("{}: [muscles]: {source}\n  remedy: give a number in that range, in SI units", file.display())]
     Muscle { file: PathBuf, source: MuscleError },
 }

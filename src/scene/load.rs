@@ -7,7 +7,7 @@ use toml::Table;
 use crate::recording::did_you_mean;
 use crate::stock;
 
-use super::overrides::Override;
+use super::overrides::{Override, child, entry_name};
 use super::{Program, SceneError, SceneFile, check};
 
 /// Scenes that come with the program, by name.
@@ -52,7 +52,7 @@ impl Scene {
     /// ```
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
-        let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
+        let text = stock::read_text(&path).map_err(|source| unreadable(&path, source))?;
         Self::parse(&text, &path, overrides)
     }
 
@@ -107,9 +107,33 @@ impl Scene {
         keys
     }
 
+    /// The value that stands at a key, as [`Self::keys`] writes it; entries of a list also by their index.
+    pub fn value(&self, key: &str) -> Option<String> {
+        let mut value = toml::Value::try_from(&self.file).ok()?;
+        let mut here = &mut value;
+        for segment in key.split('.') {
+            here = child(here, segment)?;
+        }
+        (!here.is_table()).then(|| here.to_string())
+    }
+
     /// Folder that relative paths of the scene start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new("."))
+    }
+}
+
+/// A file that is there but no text has another remedy than one that is not there.
+fn unreadable(path: &Path, source: std::io::Error) -> SceneError {
+    let file = path.to_owned();
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => SceneError::Value {
+            file,
+            table: "encoding".to_owned(),
+            message: "it is not UTF-8 text".to_owned(),
+            remedy: "save it as text in UTF-8".to_owned(),
+        },
+        _ => SceneError::Unreadable { file, source },
     }
 }
 
@@ -119,7 +143,7 @@ fn list_keys(prefix: &str, value: &toml::Value, keys: &mut Vec<(String, String)>
         toml::Value::Table(table) => table.iter().for_each(|(k, v)| list_keys(&join(k), v, keys)),
         toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
             for (i, item) in list.iter().enumerate() {
-                let name = item.get("name").and_then(toml::Value::as_str).map_or_else(|| i.to_string(), str::to_owned);
+                let name = entry_name(item).map_or_else(|| i.to_string(), str::to_owned);
                 list_keys(&join(&name), item, keys);
             }
         }
@@ -139,9 +163,12 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
     }
     let file = format!("scenes/{path_or_name}.toml");
     let here = Some(PathBuf::from(&file)).filter(|path| path.is_file());
-    here.or_else(|| stock::builtin(&file)).ok_or_else(|| SceneError::UnknownName {
-        name: path_or_name.to_owned(),
-        nearest: did_you_mean(path_or_name, &STOCK_SCENES),
-        known: STOCK_SCENES.join(", "),
+    here.or_else(|| stock::builtin(&file)).ok_or_else(|| match direct.is_dir() {
+        true => SceneError::Unreadable { file: direct.to_owned(), source: std::io::ErrorKind::IsADirectory.into() },
+        false => SceneError::UnknownName {
+            name: path_or_name.to_owned(),
+            nearest: did_you_mean(path_or_name, &STOCK_SCENES),
+            known: STOCK_SCENES.join(", "),
+        },
     })
 }

@@ -66,7 +66,7 @@ impl Override {
         Self { key: key.into(), value: Value::Float(value) }
     }
 
-    /// Puts the value into the scene's table. In lists of tables a segment is an index or a `name`.
+    /// Puts the value into the scene's table. In lists of tables a segment is an index, a `name`, or a `channel`.
     pub fn apply(&self, scene: &mut Table) -> Result<(), SceneError> {
         let mut root = Value::Table(std::mem::take(scene));
         let result = self.put(&mut root);
@@ -107,12 +107,18 @@ fn coerced(value: &Value, old: &Value) -> Value {
     }
 }
 
-fn child<'a>(value: &'a mut Value, segment: &str) -> Option<&'a mut Value> {
+/// What an entry of a list is called: its name, or the channel that it is about.
+pub(super) fn entry_name(entry: &Value) -> Option<&str> {
+    entry.get("name").or_else(|| entry.get("channel"))?.as_str()
+}
+
+/// What stands under a segment of a key; of a list the entry of this index or name.
+pub(super) fn child<'a>(value: &'a mut Value, segment: &str) -> Option<&'a mut Value> {
     match value {
         Value::Table(table) => table.get_mut(segment),
         Value::Array(list) => match segment.parse::<usize>() {
             Ok(index) => list.get_mut(index),
-            Err(_) => list.iter_mut().find(|item| item.get("name").and_then(Value::as_str) == Some(segment)),
+            Err(_) => list.iter_mut().find(|item| entry_name(item) == Some(segment)),
         },
         _ => None,
     }
@@ -124,12 +130,15 @@ mod tests {
 
     #[test]
     fn sets_nested_keys_and_named_entries() {
-        let mut scene: Table = "[a]\nb = 1.5\n[[cable]]\nname = 'x'\nk = 1.0".parse().expect("test TOML");
-        for text in ["a.b=2", "cable.x.k=3", "a.word=held"] {
+        let mut scene: Table = "[a]\nb = 1.5\n[[cable]]\nname = 'x'\nk = 1.0\n[[input]]\nchannel = 'u_mm'\nk = 1.0"
+            .parse()
+            .expect("test TOML");
+        for text in ["a.b=2", "cable.x.k=3", "input.u_mm.k=4", "a.word=held"] {
             Override::parse(text).and_then(|o| o.apply(&mut scene)).expect("valid");
         }
         assert_eq!(scene["a"]["b"], Value::Float(2.0));
         assert_eq!(scene["cable"][0]["k"], Value::Float(3.0));
+        assert_eq!(scene["input"][0]["k"], Value::Float(4.0));
         assert_eq!(scene["a"]["word"].as_str(), Some("held"));
     }
 

@@ -7,6 +7,8 @@ use super::spec::{SamplingSpec, VarySpec};
 /// Points of one sweep: rows of more would not fit into the memory of one machine.
 const MOST_POINTS: u64 = 100_000_000;
 
+const FEWER: &str = "take fewer values or samples, or split the ranges over several sweeps";
+
 /// Keys and how their values are chosen.
 #[derive(Clone, Debug)]
 pub struct Design {
@@ -22,8 +24,10 @@ impl Design {
         vary.iter().try_for_each(|v| v.check(sampling))?;
         let refuse = |message: String, remedy: &str| Err(SweepError::Sampling { message, remedy: remedy.to_owned() });
         let count = match count(sampling, vary) {
-            None => return refuse("more points than can be counted".to_owned(), "take fewer values, or samples"),
-            Some(count) if count > MOST_POINTS => return refuse(format!("{count} points"), "split the sweep"),
+            None => return refuse("more points than can be counted".to_owned(), FEWER),
+            Some(count) if count > MOST_POINTS => {
+                return refuse(format!("{count} points are more than the {MOST_POINTS} that a sweep may have"), FEWER);
+            }
             Some(0) => {
                 return refuse("there is no point".to_owned(), "give at least one key, and a count of at least 1");
             }

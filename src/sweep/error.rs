@@ -14,6 +14,8 @@ pub enum SweepError {
     System(#[from] SystemError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    #[error("{file}: cannot be read: {source}\n  remedy: give the path of a sweep file; docs/sweeps.md shows one")]
+    Read { file: PathBuf, source: std::io::Error },
     #[error("{file}: {message}\n  remedy: docs/sweeps.md shows every key of a sweep")]
     Syntax { file: PathBuf, message: String },
     #[error(

@@ -123,7 +123,7 @@ pub fn read(folder: &Path, fingerprint: &str) -> Result<BTreeMap<u64, Row>, Swee
     let refuse =
         |message: String, remedy: &str| SweepError::Journal { file: path.clone(), message, remedy: remedy.to_owned() };
     let text = std::fs::read_to_string(&path)
-        .map_err(|e| refuse(e.to_string(), "name the folder that `smam sweep --out` wrote"))?;
+        .map_err(|e| refuse(format!("cannot be read: {e}"), "name the folder that `smam sweep --out` wrote"))?;
     let mut parsed = text.lines().map(serde_json::from_str::<JournalLine>);
     match parsed.next() {
         Some(Ok(JournalLine::Head { sweep })) if sweep == fingerprint => {}

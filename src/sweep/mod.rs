@@ -38,7 +38,7 @@ pub use nsga2::Evolution;
 pub use pareto::{Score, front};
 pub use plan::{Plan, Shard};
 pub use point::{Row, evaluate};
-pub use run::{Watch, run};
+pub use run::{Watch, check_shard, run};
 pub use sensitivity::{Influence, Sensitivity, sensitivity};
 pub use sobol_indices::{SobolIndices, sobol_indices};
 pub use spec::{Goal, LimitSpec, Mark, MeasureSpec, ObjectiveSpec, SamplingSpec, SweepFile, VarySpec};

@@ -35,8 +35,8 @@ pub fn read_parquet(plan: &Plan, path: &Path) -> Result<Table, SweepError> {
         message,
         remedy: "name the table.parquet that this sweep wrote".to_owned(),
     };
-    let file = File::open(path).map_err(|e| refuse(e.to_string()))?;
-    let columns = decode(file).map_err(refuse)?;
+    let file = File::open(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let columns = decode(file).map_err(|e| refuse(e.lines().next().unwrap_or_default().to_owned()))?;
     let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
     let expected: Vec<String> = plan.columns().into_iter().chain(["error".to_owned()]).collect();
     if names != expected {

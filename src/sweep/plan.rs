@@ -73,7 +73,10 @@ impl Plan {
             return Err(SweepError::Measure {
                 measure: file.name.clone(),
                 message: "nothing is measured".to_owned(),
-                remedy: format!("add [[measure]] with name and of; the channels are {}", known.channels()),
+                remedy: format!(
+                    "add [[measure]] with name and of, or --measure 'max(CHANNEL)'; the channels are {}",
+                    known.channels()
+                ),
             });
         }
         let measures: Vec<Measure> = file.measure.iter().map(|m| Measure::new(m, &known)).collect::<Result<_, _>>()?;
@@ -193,12 +196,10 @@ fn check_duration(file: &SweepFile, set: &[Override]) -> Result<(), SweepError> 
 fn check_names(file: &SweepFile) -> Result<(), SweepError> {
     let is_plain = |c: char| c.is_alphanumeric() || ['-', '_', '.'].contains(&c);
     if file.name.is_empty() || file.name.starts_with('.') || !file.name.chars().all(is_plain) {
-        return Err(SweepError::Syntax {
-            file: PathBuf::from(&file.scene),
-            message: format!(
-                "name = \"{}\" of the sweep must be letters, digits, - _ . and not begin with a dot",
-                file.name
-            ),
+        return Err(SweepError::Table {
+            file: PathBuf::from(format!("name = \"{}\"", file.name)),
+            message: "the name of a sweep becomes that of a folder".to_owned(),
+            remedy: "give letters, digits, - _ . and no dot at the beginning".to_owned(),
         });
     }
     for (i, vary) in file.vary.iter().enumerate() {
@@ -247,7 +248,7 @@ fn check_goals(file: &SweepFile) -> Result<(), SweepError> {
     }
     if matches!(file.sampling, SamplingSpec::Nsga2 { .. }) && file.objective.is_empty() {
         let remedy = "add [[objective]] with measure and goal = \"maximise\" or \"minimise\"".to_owned();
-        return refuse("objective", "", "nsga2 has nothing to optimise".to_owned(), remedy);
+        return Err(SweepError::Sampling { message: "nsga2 has nothing to optimise".to_owned(), remedy });
     }
     Ok(())
 }
@@ -259,7 +260,7 @@ fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepError> {
         let refuse = |message: String, remedy: &str| {
             Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
         };
-        let Some((_, value)) = known.iter().find(|(name, _)| name == calibration_key(key)) else {
+        let Some(value) = base.value(calibration_key(key)) else {
             let message = format!("the scene has no such key{}", did_you_mean(key, &names));
             return refuse(message, "`smam check SCENE --keys` lists them");
         };

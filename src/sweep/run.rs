@@ -25,17 +25,28 @@ pub struct Watch<'a> {
 /// # Errors
 /// A journal that cannot be written; a shard of an optimisation.
 pub fn run(plan: &Plan, journal: &Journal, shard: Shard, watch: &Watch) -> Result<(), SweepError> {
+    check_shard(plan, shard)?;
     match plan.evolution()? {
         None => {
             let pending = shard.points(plan.count()).filter(|i| !journal.done.contains_key(i));
             points(plan, journal, pending.map(|i| (i, plan.point(i))).collect(), watch).map(drop)
         }
-        Some(evolution) if shard == Shard::WHOLE => generations(plan, journal, evolution, watch),
-        Some(_) => Err(SweepError::Sampling {
-            message: "an optimisation has no shards: each generation needs those before it".to_owned(),
-            remedy: "run it whole; all threads of a machine work on a generation".to_owned(),
-        }),
+        Some(evolution) => generations(plan, journal, evolution, watch),
     }
+}
+
+/// Whether a sweep can be split so; to be asked before a journal is begun.
+///
+/// # Errors
+/// A shard of an optimisation.
+pub fn check_shard(plan: &Plan, shard: Shard) -> Result<(), SweepError> {
+    if shard == Shard::WHOLE || plan.evolution()?.is_none() {
+        return Ok(());
+    }
+    Err(SweepError::Sampling {
+        message: "an optimisation has no shards: each generation needs those before it".to_owned(),
+        remedy: "run it whole; all threads of a machine work on a generation".to_owned(),
+    })
 }
 
 fn points(

@@ -153,13 +153,14 @@ impl SweepFile {
     /// A file that is none, or not a sweep.
     pub fn load(path: &Path) -> Result<Self, SweepError> {
         let syntax = |message: String| SweepError::Syntax { file: path.to_owned(), message };
-        let text = std::fs::read_to_string(path).map_err(|e| syntax(e.to_string()))?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| SweepError::Read { file: path.to_owned(), source })?;
         let mut file: Self = toml::from_str(&text).map_err(|e| match is_scene(&text) {
             true => SweepError::IsScene { file: path.to_owned() },
             false => syntax(e.to_string().trim_end().to_owned()),
         })?;
         if file.format != 1 {
-            return Err(syntax(format!("format = {}: this program reads format 1", file.format)));
+            return Err(syntax(format!("format = {} is unknown: this program reads format = 1", file.format)));
         }
         // A scene's path is relative to the sweep; a stock name is no path.
         let beside = path.parent().unwrap_or(Path::new(".")).join(&file.scene);

@@ -100,7 +100,10 @@ impl Builder<'_> {
             self.error(
                 table.to_owned(),
                 format!("joint = \"{name}\" is no free joint of the mechanism"),
-                format!("use one of: {} (locked and following joints do not count)", known.join(", ")),
+                match known.is_empty() {
+                    true => "unlock a joint, or remove this table: the mechanism has no free one".to_owned(),
+                    false => format!("use one of: {} (locked and following joints do not count)", known.join(", ")),
+                },
             )
         })
     }

@@ -11,7 +11,7 @@ use crate::recording::RecordingError;
 pub enum SystemError {
     #[error("{}: {source}", file.display())]
     Mechanism { file: PathBuf, source: MechanismError },
-    #[error("{}: [muscles]: {source}", file.display())]
+    #[error("{}: [muscles]: {source}\n  remedy: give a number in that range, in SI units", file.display())]
     Muscle { file: PathBuf, source: MuscleError },
     #[error("{}: {table}: {message}\n  remedy: {remedy}", file.display())]
     Name { file: PathBuf, table: String, message: String, remedy: String },

@@ -118,7 +118,10 @@ impl Simulation {
                 file: self.scene.path.clone(),
                 table: "[[load]]".to_owned(),
                 message: format!("joint = \"{joint}\" is no free joint of the mechanism"),
-                remedy: format!("use one of: {}", known.join(", ")),
+                remedy: match known.is_empty() {
+                    true => "unlock a joint, or remove this table: the mechanism has no free one".to_owned(),
+                    false => format!("use one of: {}", known.join(", ")),
+                },
             });
         };
         self.loads[i] += load;

@@ -11,7 +11,7 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 };
 use rerun::{AsComponents, Color, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-use super::channels::{axis_title, groups, headline, label};
+use super::channels::{Group, axis_title, groups, headline, label};
 use super::layer::{TIMELINE, WORLD, path};
 use super::layout::{Kind, Pane, View, Writer};
 use super::legend::{SPACING, strip_count};
@@ -93,8 +93,7 @@ fn below(graph: &SceneGraph) -> Vec<(f32, Pane)> {
 
 /// Plots along the chain, then joints, events and energies.
 fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
-    let mut plots: Vec<Pane> =
-        groups(&graph.channels).into_iter().map(|group| series(&group.title, path(["plots", &group.key]))).collect();
+    let mut plots: Vec<Pane> = groups(&graph.channels).into_iter().map(|group| channel_plot(&group)).collect();
     let rest = plots.split_off(plots.len().min(PLOTS_IN_SIGHT));
     let mut tabs = Vec::new();
     if !graph.joints.is_empty() {
@@ -181,6 +180,14 @@ pub(super) fn events() -> Pane {
     view(Kind::Log, "Events", path(["events"]), properties)
 }
 
+/// A single line is named by the plot's title already.
+fn channel_plot(group: &Group) -> Pane {
+    let legend = PlotLegend::new().with_visible(group.members.len() > 1).with_corner(Corner2D::RightTop);
+    let time = TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
+    let origin = path(["plots", &group.key]);
+    view(Kind::Series, &group.title, origin, vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(time))])
+}
+
 fn series(title: &str, origin: EntityPath) -> Pane {
     series_over(title, origin, TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
 }
@@ -199,7 +206,7 @@ pub(super) fn series_whole(title: &str, origin: EntityPath) -> Pane {
 }
 
 fn series_over(title: &str, origin: EntityPath, time: TimeAxis) -> Pane {
-    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
+    let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
     view(Kind::Series, title, origin, vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(time))])
 }
 

@@ -16,7 +16,7 @@ pub(super) struct Group {
 struct Parts<'a> {
     quantity: &'a str,
     unit: &'a str,
-    symbol: &'a str,
+    symbol: &'static str,
 }
 
 /// Endings of names and how the units are written; longer endings first where one ends another.
@@ -107,12 +107,17 @@ pub(super) fn key(name: &str) -> String {
     format!("{}_{}", parts.quantity, parts.unit)
 }
 
-/// The angle to show large: a bending angle, else any output in degrees.
+/// How a channel's unit is written.
+pub(super) fn symbol(name: &str) -> &'static str {
+    parts(name).symbol
+}
+
+/// What to show large: a bending angle, else any output in degrees, else the first output.
 pub(super) fn headline(names: &[String], input_count: usize) -> Option<usize> {
     let is_angle = |name: &str| parts(name).unit == "deg";
     let bending = names.iter().position(|name| is_angle(name) && name.contains("bend"));
     let output = || (input_count..names.len()).find(|&index| is_angle(&names[index]));
-    bending.or_else(output)
+    bending.or_else(output).or((input_count < names.len()).then_some(input_count))
 }
 
 fn new_group(key: String, name: &str, index: usize) -> Group {

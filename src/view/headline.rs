@@ -1,28 +1,30 @@
-//! Words: the bending angle in large type, and what happened.
+//! Words: the angle (or what the scene is about instead) in large type, and what happened.
 
 use rerun::{RecordingStream, TextDocument, TextLog};
 
-use super::channels::{headline, label};
+use super::channels::{headline, label, symbol};
 use super::error::ViewError;
 use super::layer::{Layer, time_column};
 use crate::system::observe::{Frame, SceneGraph};
 
-/// The angle at the cursor; a row only when its text changes.
+/// The value at the cursor; a row only when its text changes.
 pub(super) struct Headline {
     channel: usize,
     name: String,
+    symbol: &'static str,
     last: String,
 }
 
 impl Headline {
-    /// None if the scene has no angle.
+    /// None if the scene has no output.
     pub(super) fn new(graph: &SceneGraph) -> Option<Self> {
         let channel = headline(&graph.channels, graph.input_count)?;
-        Some(Headline { channel, name: label(&graph.channels[channel]), last: String::new() })
+        let name = &graph.channels[channel];
+        Some(Headline { channel, name: label(name), symbol: symbol(name), last: String::new() })
     }
 
     fn text(&self, frame: &Frame) -> String {
-        format!("# {:.1}°\n{}", frame.channels[self.channel], self.name)
+        format!("# {:.1} {}\n{}", frame.channels[self.channel], self.symbol, self.name).replace(" °", "°")
     }
 }
 

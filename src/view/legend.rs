@@ -1,4 +1,4 @@
-//! The colour scales of cables and muscles, drawn as strips with their ends named.
+//! The colour scales of cables, muscles and loops, drawn as strips with their ends named.
 
 use rerun::{LineStrips2D, Points2D, Radius, RecordingStream};
 
@@ -10,8 +10,8 @@ use crate::system::observe::{Frame, SceneGraph};
 
 const STEPS: usize = 48;
 /// Height of a strip and the distance between two.
-const HEIGHT: f32 = 0.06;
-pub(super) const SPACING: f32 = 0.34;
+const HEIGHT: f32 = 0.05;
+pub(super) const SPACING: f32 = 0.21;
 
 /// One strip: a title, its colours from left to right, texts below both ends.
 struct Strip {
@@ -26,14 +26,20 @@ pub(super) struct Legend {
 
 /// How many strips the scene needs.
 pub(super) fn strip_count(graph: &SceneGraph) -> usize {
-    usize::from(!graph.cables.is_empty()) + usize::from(!graph.muscles.is_empty())
+    usize::from(!graph.cables.is_empty()) + usize::from(shows_pressure(graph)) + usize::from(!graph.loops.is_empty())
+}
+
+/// Muscles of a formula have no pressure.
+fn shows_pressure(graph: &SceneGraph) -> bool {
+    !graph.muscles.is_empty() && graph.channels.iter().any(|c| c.contains("pressure"))
 }
 
 impl Legend {
     pub(super) fn new(graph: &SceneGraph, options: &ViewOptions) -> Self {
         let cables = (!graph.cables.is_empty()).then(|| tension_strip(options));
-        let muscles = (!graph.muscles.is_empty()).then(|| pressure_strip(options));
-        Legend { strips: cables.into_iter().chain(muscles).collect() }
+        let muscles = shows_pressure(graph).then(|| pressure_strip(options));
+        let loops = (!graph.loops.is_empty()).then(age_strip);
+        Legend { strips: cables.into_iter().chain(muscles).chain(loops).collect() }
     }
 }
 
@@ -72,6 +78,14 @@ fn pressure_strip(options: &ViewOptions) -> Strip {
         title: "muscle pressure (kPa)".into(),
         colours: fractions().map(at).collect(),
         ends: ["0".into(), format!("≥ {}", options.pressure_scale_pa / 1e3)],
+    }
+}
+
+fn age_strip() -> Strip {
+    Strip {
+        title: "loop".into(),
+        colours: fractions().map(colour::age).collect(),
+        ends: ["first".into(), "now".into()],
     }
 }
 

@@ -29,6 +29,7 @@ mod loops;
 mod muscles;
 mod options;
 mod scalars;
+mod scale_bar;
 mod shape;
 mod sink;
 mod solids;

@@ -47,9 +47,9 @@ fn log_coil(out: &RecordingStream, root: &str, muscle: &MuscleGraph, number: usi
         .with_strips([LineStrip3D::from_iter(&coil.points_m)])
         .with_radii([Radius::new_scene_units(coil.wire_radius_m as f32)]);
     out.log_static(path([root, "muscles", &muscle.name, "coil"]), &strip)?;
-    // Neighbours stand close together: names are staggered so that they do not cover each other.
-    let below_m = 0.14 * muscle.rest_length_m * (number % 2) as f64;
-    let name = Points3D::new([[0.0, 0.0, -below_m]])
+    // Beside the coil's middle; neighbours stand close together, so that names are staggered along them.
+    let along_m = muscle.rest_length_m * if number % 2 == 0 { 0.35 } else { 0.65 };
+    let name = Points3D::new([[-0.12 * muscle.rest_length_m, 0.0, along_m]])
         .with_colors([opaque(AXIS)])
         .with_radii([Radius::new_ui_points(0.0)])
         .with_labels([muscle.name.as_str()])

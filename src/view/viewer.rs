@@ -17,6 +17,7 @@ use super::loops::Loop;
 use super::muscles::Muscles;
 use super::options::{Pace, ViewOptions};
 use super::scalars::{Channels, Energies, Joints};
+use super::scale_bar::ScaleBar;
 use super::shape;
 use super::sink::{Connection, ViewSink};
 use super::tip::Tip;
@@ -215,6 +216,9 @@ fn layers(graph: &SceneGraph, options: &ViewOptions) -> Vec<Box<dyn Layer>> {
     }
     if let Some(angles) = Angles::new(graph) {
         layers.push(Box::new(angles));
+    }
+    if let Some(bar) = ScaleBar::new(WORLD, graph) {
+        layers.push(Box::new(bar));
     }
     if let Some(tip) = Tip::new(WORLD, graph, options) {
         layers.push(Box::new(tip));

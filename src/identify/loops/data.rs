@@ -1,6 +1,6 @@
 //! What a hysteresis model is identified from: plunger in, elongation out, over time.
 
-use crate::recording::{PiecewiseLinear, Recording};
+use crate::recording::{Channel, PiecewiseLinear, Recording, RecordingError};
 
 use super::LoopError;
 
@@ -22,16 +22,20 @@ impl LoopRun {
     /// A missing input is bridged by a straight line. The model is at rest at the first sample.
     pub fn of(name: &str, recording: &Recording, [input, output]: [&str; 2], skip_s: f64) -> Result<Self, LoopError> {
         let time_s = recording.time_s().to_vec();
+        let in_file = |e: RecordingError| e.in_file(name);
+        if input == output {
+            return Err(LoopError::Same { file: name.to_owned(), column: input.to_owned() });
+        }
         for column in [input, output] {
-            let unit = recording.channel(column)?.unit()?;
+            let unit = recording.channel(column).and_then(Channel::unit).map_err(in_file)?;
             if unit.si_suffix != "m" {
                 return Err(LoopError::Unit { file: name.to_owned(), column: column.to_owned() });
             }
         }
-        let driven: PiecewiseLinear = recording.piecewise_si(input)?;
+        let driven: PiecewiseLinear = recording.piecewise_si(input).map_err(in_file)?;
         let input_mm = time_s.iter().map(|&t| driven.value(t) * 1e3).collect();
         let from_s = time_s.first().copied().unwrap_or(0.0) + skip_s;
-        let counted = time_s.iter().zip(recording.si(output)?);
+        let counted = time_s.iter().zip(recording.si(output).map_err(in_file)?);
         let output_mm = counted.map(|(&t, y)| if t < from_s { f64::NAN } else { y * 1e3 }).collect();
         let run = Self { name: name.to_owned(), time_s, input_mm, output_mm };
         run.check()?;

@@ -58,13 +58,19 @@ pub enum LoopError {
     )]
     Unit { file: String, column: String },
     #[error(
-        "{file}: {counted} samples to fit over {travel_mm} mm of input are too little\n  \
+        "{file}: column \"{column}\" is input and output at once\n  remedy: name another one with --input or --output"
+    )]
+    Same { file: String, column: String },
+    #[error(
+        "{file}: {counted} samples to fit over {travel_mm:.3} mm of input are too little\n  \
          remedy: record whole strokes, at least 50 samples"
     )]
     TooLittle { file: String, counted: usize, travel_mm: f64 },
-    #[error("{file}: time, input and output must be of one length, the input without gaps; cut or fill them")]
+    #[error("{file}: time, input and output must be of one length, the input without gaps\n  remedy: cut or fill them")]
     Ragged { file: String },
-    #[error("no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml")]
+    #[error(
+        "recordings.toml: no run to fit: every one is held out\n  remedy: mark one with use = \"fit\" in recordings.toml"
+    )]
     NoRun,
     #[error(
         "{form}: no parameters within their bounds can follow the data\n  remedy: look at the recording first; input and \
