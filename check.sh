@@ -20,6 +20,20 @@ else
 fi
 cargo clippy --no-default-features --all-targets -- -D warnings
 
+say "libraries of others, to hold bags and schemas against"
+peers=$target/peers
+if [ ! -x "$peers/bin/python" ]; then
+    { python3 -m venv "$peers" && "$peers/bin/python" -m pip install --quiet --disable-pip-version-check \
+        mcap==1.6.0 mcap-ros2-support==0.6.0 jsonschema==4.26.0; } || rm -rf "$peers"
+fi
+if [ -x "$peers/bin/python" ]; then
+    SMAM_PEER_PYTHON=$(realpath "$peers/bin")/python
+    export SMAM_PEER_PYTHON
+    echo "ok    $SMAM_PEER_PYTHON"
+else
+    echo "skipped: they could not be installed (no python3 venv, or no network); bags and schemas are tested without them"
+fi
+
 say "tests: library, contracts, documentation"
 cargo test --no-default-features
 

@@ -21,6 +21,7 @@
 //! # }
 //! ```
 
+pub mod bag;
 pub mod columns;
 pub mod conceal;
 pub mod diagnose;

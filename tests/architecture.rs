@@ -11,7 +11,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("scalar", &[]),
     ("columns", &[]),
     ("stock", &[]),
-    ("recording", &["columns"]),
+    ("bag", &[]),
+    ("recording", &["bag", "columns"]),
     ("mechanism", &["stock"]),
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
@@ -64,6 +65,10 @@ const OWNED: &[(&str, &str)] = &[
     ("rerun", "view"),
     ("diffsol", "conceal"),
     ("parquet", "columns"),
+    ("mcap", "bag"),
+    ("lz4_flex", "bag"),
+    ("ruzstd", "bag"),
+    ("crc32fast", "bag"),
     ("pulp", "hysteresis"),
 ];
 

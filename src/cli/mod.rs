@@ -27,7 +27,9 @@ mod proof;
 mod proof_figure;
 mod reproduce;
 mod run;
+mod run_file;
 mod scenes;
+mod schema;
 mod score;
 mod sweep;
 mod sweep_page;
@@ -72,6 +74,8 @@ enum Command {
     Check(check::CheckArguments),
     /// List the scenes that come with the program, or copy one
     Scenes(scenes::ScenesArguments),
+    /// Print the JSON Schema of a kind of file, for editors
+    Schema(schema::SchemaArguments),
     /// Run a scene at many points of its keys and tabulate what each run shows
     Sweep(sweep::SweepArguments),
     /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
@@ -131,6 +135,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
+        Some(Command::Schema(arguments)) => schema::schema(&arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Trial(arguments)) => trial::trial(&arguments),
         Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),

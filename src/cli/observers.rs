@@ -1,21 +1,21 @@
-//! Who watches a run: the CSV file, the recorder for checks, the progress bar, the viewer.
+//! Who watches a run: the file, the recorder for checks, the progress bar, the viewer.
 
 use std::io::IsTerminal;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use smam::recording::{Channel, CsvWriter, Recording};
+use smam::recording::{Channel, Recording};
 use smam::system::observe::{Frame, Observer, SceneGraph};
 
 use super::CliError;
 use super::angles::Angles;
 use super::interrupt::interrupted;
+use super::run_file::RunFile;
 
 /// All observers of one run; those not asked for are absent.
 #[derive(Default)]
 pub struct Observers {
-    pub csv: Option<CsvFile>,
+    pub file: Option<RunFile>,
     pub recorder: Option<Recorder>,
     pub angles: Option<Angles>,
     pub progress: Option<Progress>,
@@ -28,8 +28,8 @@ impl Observer for Observers {
     type Error = CliError;
 
     fn begin(&mut self, graph: &SceneGraph) -> Result<(), CliError> {
-        if let Some(csv) = &mut self.csv {
-            csv.begin(graph)?;
+        if let Some(file) = &mut self.file {
+            file.begin(graph)?;
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.begin(graph);
@@ -45,8 +45,8 @@ impl Observer for Observers {
     }
 
     fn frame(&mut self, frame: &Frame) -> Result<(), CliError> {
-        if let Some(csv) = &mut self.csv {
-            csv.frame(frame)?;
+        if let Some(file) = &mut self.file {
+            file.frame(frame)?;
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.frame(frame);
@@ -68,45 +68,7 @@ impl Observer for Observers {
     }
 }
 
-/// Streams frames into a CSV file, of all channels or of some.
-pub struct CsvFile {
-    path: std::path::PathBuf,
-    writer: Option<CsvWriter>,
-}
-
-impl CsvFile {
-    pub fn new(path: &Path) -> Self {
-        Self { path: path.to_owned(), writer: None }
-    }
-
-    fn begin(&mut self, graph: &SceneGraph) -> Result<(), CliError> {
-        if let Some(folder) = self.path.parent().filter(|p| !p.as_os_str().is_empty()) {
-            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { file: folder.to_owned(), source })?;
-        }
-        let columns: Vec<&str> = graph.channels.iter().map(String::as_str).collect();
-        self.writer = Some(CsvWriter::create(&self.path, &columns).map_err(failed_write)?);
-        Ok(())
-    }
-
-    fn frame(&mut self, frame: &Frame) -> Result<(), CliError> {
-        match &mut self.writer {
-            Some(writer) => writer.row(frame.time_s, &frame.channels).map_err(failed_write),
-            None => Ok(()),
-        }
-    }
-
-    /// Puts the file in its place, complete or interrupted.
-    pub fn finish(self) -> Result<(), CliError> {
-        self.writer.map_or(Ok(()), |w| w.finish().map_err(failed_write))
-    }
-}
-
-/// A full disk or a closed folder is a failure, not wrong usage.
-fn failed_write(error: smam::recording::RecordingError) -> CliError {
-    CliError::Failed(error.to_string())
-}
-
-/// Keeps the run in memory for the checks.
+/// Keeps the run in memory, for the checks or until it is written whole.
 #[derive(Default)]
 pub struct Recorder {
     names: Vec<String>,
@@ -115,12 +77,12 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    fn begin(&mut self, graph: &SceneGraph) {
+    pub fn begin(&mut self, graph: &SceneGraph) {
         self.names.clone_from(&graph.channels);
         self.columns = vec![Vec::new(); self.names.len()];
     }
 
-    fn frame(&mut self, frame: &Frame) {
+    pub fn frame(&mut self, frame: &Frame) {
         self.time_s.push(frame.time_s);
         self.columns.iter_mut().zip(&frame.channels).for_each(|(c, v)| c.push(*v));
     }

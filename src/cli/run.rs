@@ -11,7 +11,8 @@ use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run
 
 use super::angles::Angles;
 use super::interrupt::{interrupted, stop_flag};
-use super::observers::{Clock, CsvFile, Observers, Progress, Recorder};
+use super::observers::{Clock, Observers, Progress, Recorder};
+use super::run_file::RunFile;
 use super::{CliError, junit};
 
 /// Arguments of `smam run`.
@@ -25,11 +26,11 @@ use super::{CliError, junit};
 pub struct RunArguments {
     /// Path of a scene file, or a name that `smam scenes` lists
     scene: String,
-    /// Drive the scene's inputs from this recording, at its sample times
-    #[arg(long, value_name = "CSV")]
+    /// Drive the scene's inputs from this recording (CSV, .parquet or .mcap), at its sample times
+    #[arg(long, value_name = "FILE")]
     input: Option<PathBuf>,
-    /// Write the recording here instead of out/NAME.csv
-    #[arg(long, value_name = "CSV")]
+    /// Write the recording here instead of out/NAME.csv; .parquet and .mcap are written as such
+    #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Write the Rerun stream here instead of out/NAME.rrd
     #[arg(long, value_name = "FILE")]
@@ -154,7 +155,7 @@ fn writes_defaults(arguments: &RunArguments) -> bool {
     arguments.output.is_none() && arguments.rrd.is_none() && !arguments.view && !arguments.serve && !arguments.check
 }
 
-fn csv_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
+fn file_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
     let default = || writes_defaults(arguments).then(|| Path::new("out").join(format!("{name}.csv")));
     arguments.output.clone().or_else(default)
 }
@@ -167,7 +168,7 @@ fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
 
 fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) -> Result<Observers, CliError> {
     let mut observers = Observers {
-        csv: csv_path(arguments, name).map(|path| CsvFile::new(&path)),
+        file: file_path(arguments, name).map(|path| RunFile::new(&path)).transpose()?,
         recorder: arguments.check.then(Recorder::default),
         angles: arguments.angles.then(Angles::default),
         progress: Some(Progress::new(end_s)),
@@ -227,8 +228,8 @@ fn add_viewers(arguments: &RunArguments, name: &str, _: &ViewSpec, _: &mut Obser
 }
 
 fn finish(observers: &mut Observers) -> Result<Option<Recording>, CliError> {
-    if let Some(csv) = observers.csv.take() {
-        csv.finish()?;
+    if let Some(file) = observers.file.take() {
+        file.finish()?;
     }
     #[cfg(feature = "viz")]
     for viewer in &mut observers.viewers {
@@ -238,7 +239,7 @@ fn finish(observers: &mut Observers) -> Result<Option<Recording>, CliError> {
 }
 
 fn say_what_to_open(arguments: &RunArguments, name: &str) {
-    if let Some(path) = csv_path(arguments, name) {
+    if let Some(path) = file_path(arguments, name) {
         eprintln!("recording: {}", path.display());
     }
     if let Some(path) = rrd_path(arguments, name) {

@@ -2,29 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
 use crate::scalar::Scalar;
 
 /// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
-///
-/// ```
-/// use smam::effects::{EffectTable, Kind};
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let table: EffectTable = toml::from_str("name = 'trapped_air'\nelement = 'line_2'\nfree_volume_m3 = 1e-9")?;
-/// let air = table.effect()?;
-/// assert_eq!((air.kind, air.element.index), (Kind::TrappedAir, 1));
-/// // The polytropic exponent is isothermal unless it is given.
-/// assert_eq!(air.values, [1e-9, 1.0]);
-/// assert_eq!(air.table().effect()?, air);
-/// # Ok(())
-/// # }
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffectTable {
+    /// Name in the catalogue (`smam effects`).
+    #[schemars(schema_with = "names")]
     pub name: String,
+    /// What has it: `muscle`, `cable 2`.
     pub element: String,
     /// Column of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -32,6 +22,11 @@ pub struct EffectTable {
     /// Whatever else stands in the table; must be the law's parameters.
     #[serde(flatten)]
     pub parameters: BTreeMap<String, f64>,
+}
+
+fn names(_: &mut SchemaGenerator) -> Schema {
+    let names: Vec<&str> = CATALOGUE.iter().map(|spec| spec.name).collect();
+    json_schema!({ "type": "string", "enum": names })
 }
 
 /// What is wrong with an [`EffectTable`].
@@ -79,6 +74,20 @@ fn refuse(message: String, remedy: impl Into<String>) -> EffectError {
 
 impl EffectTable {
     /// Looks the law up and checks element and numbers.
+    ///
+    /// ```
+    /// use smam::effects::{EffectTable, Kind};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let table: EffectTable = toml::from_str("name = 'trapped_air'\nelement = 'line_2'\nfree_volume_m3 = 1e-9")?;
+    /// let air = table.effect()?;
+    /// assert_eq!((air.kind, air.element.index), (Kind::TrappedAir, 1));
+    /// // The polytropic exponent is isothermal unless it is given.
+    /// assert_eq!(air.values, [1e-9, 1.0]);
+    /// assert_eq!(air.table().effect()?, air);
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// Unknown name, element, key; a number missing or out of range; a sensor without channel.

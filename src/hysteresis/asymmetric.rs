@@ -3,6 +3,7 @@
 use super::branch::Branch;
 use super::error::{HysteresisError, not_negative, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Generalized asymmetric Bouc-Wen model with ten parameters:
@@ -17,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// ten-parameter comparison; they cite Do et al., Mechatronics 24, 2014. **That this is their form is our
 /// reading**: six shape terms, `A`, `n` and the two output gains make exactly ten. In the six phases of a loop about
 /// the origin (all but `sgn x = sgn v != sgn z`), `b1 = lambda + delta`, `b2 = -delta`, `b3 = delta` is the symmetric model.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AsymmetricBoucWen<D> {
     pub alpha_x: D,

@@ -3,10 +3,11 @@
 use super::branch::Branch;
 use super::error::{HysteresisError, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the state enters the output at small inputs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gate {
     /// Times `tanh x`: the loop is closed at `x = 0` (our reading of the exponentials in eq. (3)).
@@ -37,18 +38,7 @@ impl Gate {
 /// Eq. (3) is misprinted: there is no `z` in it. `p = 2`, the sign of `az` and the gate are our reading. For
 /// `p = 2`: the printed parameters then give the printed mean speeds (a digit 4 in the text gives 4.54 mm/s
 /// for 5.34). For the sign: only so does unloading lie above loading. The gate is only moderately supported.
-///
-/// ```
-/// use smam::hysteresis::PaperModel;
-///
-/// let printed = PaperModel::printed();
-/// // The gate closes the loop where the plunger begins; the other way nothing moves.
-/// assert_eq!((printed.output(0.0, 0.8), printed.output(-0.5, 0.8)), (0.0, 0.0));
-/// // Far along, the state stands at ((A + rho)/nu)^(1/n).
-/// let limit = ((printed.a + printed.rho) / printed.nu).powf(1.0 / printed.n);
-/// assert!((printed.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-6);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PaperModel<D> {
     pub alpha_x1: D,
@@ -71,6 +61,17 @@ fn square() -> f64 {
 
 impl PaperModel<f64> {
     /// The identified parameters as printed.
+    ///
+    /// ```
+    /// use smam::hysteresis::PaperModel;
+    ///
+    /// let printed = PaperModel::printed();
+    /// // The gate closes the loop where the plunger begins; the other way nothing moves.
+    /// assert_eq!((printed.output(0.0, 0.8), printed.output(-0.5, 0.8)), (0.0, 0.0));
+    /// // Far along, the state stands at ((A + rho)/nu)^(1/n).
+    /// let limit = ((printed.a + printed.rho) / printed.nu).powf(1.0 / printed.n);
+    /// assert!((printed.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-6);
+    /// ```
     pub fn printed() -> Self {
         Self::from_array([-0.082, 9.886, -1.809, 2.981, 1.035, 2.178, -0.428])
     }

@@ -2,6 +2,7 @@
 
 use super::error::{HysteresisError, all_of_one_sign, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Play (backlash): `w = max(x - r, min(x + r, w))`, `r` half the total width, >= 0.
@@ -41,7 +42,7 @@ fn between<D: Scalar>(value: D, least: D, most: D) -> D {
 }
 
 /// One play of a Prandtl-Ishlinskii sum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlayElement<D> {
     /// Output per play output.
@@ -61,34 +62,22 @@ pub struct PlayElement<D> {
 ///
 /// Sources: Krejčí and Kuhnen 2001 (the sum); Al Janaideh, Rakheja and Su 2009 (edges of two shapes);
 /// Al Janaideh and Krejčí 2013 (half widths that grow with speed).
-///
-/// ```
-/// use smam::hysteresis::{PlayElement, PrandtlIshlinskii};
-///
-/// let plays = vec![PlayElement { weight: 2.0_f64, half_width: 0.1 }];
-/// let model = PrandtlIshlinskii { rate_s: 0.02, ..PrandtlIshlinskii::classical(4.0, plays) };
-/// let mut state = model.rest(0.0);
-/// let mut at = |x_mm: f64, speed_mm_s: f64| {
-///     model.advance(&mut state, x_mm, speed_mm_s);
-///     model.output(x_mm, &state)
-/// };
-/// // At 1.5 mm/s the loop is 2 w (r + tau v) = 0.52 mm wide.
-/// let (up_mm, _, down_mm) = (at(1.5, 1.5), at(3.0, 1.5), at(1.5, 1.5));
-/// assert!((down_mm - up_mm - 0.52).abs() < 1e-12);
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct PrandtlIshlinskii<D> {
     /// Output per input past the hysteresis.
     pub gain: D,
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub curvature: D,
     /// `kappa`, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub asymmetry: D,
     /// `tau`, s: growth of every half width per input speed.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub rate_s: D,
     pub elements: Vec<PlayElement<D>>,
 }
@@ -106,6 +95,21 @@ impl<D: Scalar> PrandtlIshlinskii<D> {
     }
 
     /// Moves every play to the input `x`, reached at `speed_mm_s` without turning; `state` has one entry per element.
+    ///
+    /// ```
+    /// use smam::hysteresis::{PlayElement, PrandtlIshlinskii};
+    ///
+    /// let plays = vec![PlayElement { weight: 2.0_f64, half_width: 0.1 }];
+    /// let model = PrandtlIshlinskii { rate_s: 0.02, ..PrandtlIshlinskii::classical(4.0, plays) };
+    /// let mut state = model.rest(0.0);
+    /// let mut at = |x_mm: f64, speed_mm_s: f64| {
+    ///     model.advance(&mut state, x_mm, speed_mm_s);
+    ///     model.output(x_mm, &state)
+    /// };
+    /// // At 1.5 mm/s the loop is 2 w (r + tau v) = 0.52 mm wide.
+    /// let (up_mm, _, down_mm) = (at(1.5, 1.5), at(3.0, 1.5), at(1.5, 1.5));
+    /// assert!((down_mm - up_mm - 0.52).abs() < 1e-12);
+    /// ```
     pub fn advance(&self, state: &mut [D], x: D, speed_mm_s: f64) {
         let bend = self.asymmetry * x * x;
         let wider = self.rate_s * speed_mm_s.abs() + bend;

@@ -3,10 +3,11 @@
 use super::Gate;
 use super::error::{HysteresisError, all_of_one_sign, not_negative, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One spring with a slider of a Maxwell-slip sum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlipElement<D> {
     /// Output per stretch of the spring.
@@ -23,36 +24,26 @@ pub struct SlipElement<D> {
 /// that of a muscle does with its pressure. With `k_i > 0` unloading lies below
 /// loading, with `k_i < 0` above. Source: Iwan 1966; Al-Bender et al. 2005 (the constant-limit case of their
 /// generalized Maxwell-slip model); the gate is borrowed from Thai et al. 2021.
-///
-/// ```
-/// use smam::hysteresis::{Gate, MaxwellSlip, SlipElement};
-///
-/// let springs = vec![SlipElement { stiffness: -2.0_f64, reach: 0.1 }];
-/// let [offset, curvature, cubic, growth] = [0.0; 4];
-/// let model = MaxwellSlip { offset, gain: 9.0, curvature, cubic, growth, gate: Gate::None, elements: springs };
-/// let mut state = model.rest();
-/// model.advance(&mut state, 3.0);
-/// assert_eq!(state, [0.1]);
-/// // It slides at its reach; turned about, the spring gives way over twice that.
-/// model.advance(&mut state, -0.2);
-/// assert!((state[0] + 0.1).abs() < 1e-15);
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
 pub struct MaxwellSlip<D> {
     /// `y0`, mm: where the output counts from.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub offset: D,
     /// Output per input beside the sliders.
     pub gain: D,
     /// Output per squared input, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub curvature: D,
     /// `s`, 1/mm².
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub cubic: D,
     /// `c`, 1/mm.
     #[serde(default = "super::zero")]
+    #[schemars(default = "super::zero::<f64>")]
     pub growth: D,
     #[serde(default = "not_gated")]
     pub gate: Gate,
@@ -70,6 +61,20 @@ impl<D: Scalar> MaxwellSlip<D> {
     }
 
     /// Moves the input by `step` without turning; exact; `state` has one entry per element.
+    ///
+    /// ```
+    /// use smam::hysteresis::{Gate, MaxwellSlip, SlipElement};
+    ///
+    /// let springs = vec![SlipElement { stiffness: -2.0_f64, reach: 0.1 }];
+    /// let [offset, curvature, cubic, growth] = [0.0; 4];
+    /// let model = MaxwellSlip { offset, gain: 9.0, curvature, cubic, growth, gate: Gate::None, elements: springs };
+    /// let mut state = model.rest();
+    /// model.advance(&mut state, 3.0);
+    /// assert_eq!(state, [0.1]);
+    /// // It slides at its reach; turned about, the spring gives way over twice that.
+    /// model.advance(&mut state, -0.2);
+    /// assert!((state[0] + 0.1).abs() < 1e-15);
+    /// ```
     pub fn advance(&self, state: &mut [D], step: D) {
         for (stretch, element) in state.iter_mut().zip(&self.elements) {
             let free = *stretch + step;

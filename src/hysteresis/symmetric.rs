@@ -3,6 +3,7 @@
 use super::branch::Branch;
 use super::error::{HysteresisError, not_negative, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Symmetric Bouc-Wen model, Thai et al. 2021, eqs. (1)-(2):
@@ -11,17 +12,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// `x`, `y`, `z` in mm; `gamma_x`, `gamma_z`, `K`, `n` dimensionless, `lambda`, `delta` in mm^-n. Range: `K > 0`,
 /// `lambda + delta > 0` (bounded state), `n > 0`; the loop loses energy while `lambda >= |delta|`.
-///
-/// ```
-/// use smam::hysteresis::SymmetricBoucWen;
-///
-/// let model = SymmetricBoucWen::from_array([1.0_f64, 1.0, 2.0, 0.9, 0.3, 1.5]);
-/// // Far along, the state stands at (K/(lambda + delta))^(1/n), and at its opposite the other way.
-/// let limit = (2.0_f64 / 1.2).powf(1.0 / 1.5);
-/// assert!((model.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-9);
-/// assert!((model.advance(0.3, 0.0, -40.0) + limit).abs() < 1e-9);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SymmetricBoucWen<D> {
     pub gamma_x: D,
@@ -67,6 +58,16 @@ impl<D: Scalar> SymmetricBoucWen<D> {
     }
 
     /// State after the input went straight from `from_mm` to `to_mm`.
+    ///
+    /// ```
+    /// use smam::hysteresis::SymmetricBoucWen;
+    ///
+    /// let model = SymmetricBoucWen::from_array([1.0_f64, 1.0, 2.0, 0.9, 0.3, 1.5]);
+    /// // Far along, the state stands at (K/(lambda + delta))^(1/n), and at its opposite the other way.
+    /// let limit = (2.0_f64 / 1.2).powf(1.0 / 1.5);
+    /// assert!((model.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-9);
+    /// assert!((model.advance(0.3, 0.0, -40.0) + limit).abs() < 1e-9);
+    /// ```
     pub fn advance(&self, z: D, from_mm: D, to_mm: D) -> D {
         let way = to_mm - from_mm;
         let sign = if way.value() < 0.0 { -1.0 } else { 1.0 };

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A URDF and what it cannot say: stiffness, rest, stops, hung masses, free bodies, contacts.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MechanismSpec {
     /// The URDF file, relative to the scene file's folder.
@@ -34,7 +35,7 @@ pub struct MechanismSpec {
 ///
 /// Revolute joints take the `_rad` keys, prismatic ones the `_m` keys. What is not given is zero,
 /// but for the damping, which defaults to the URDF's `<dynamics damping>`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointSpec {
     /// Names of the joints these values are for.
@@ -70,7 +71,7 @@ pub struct JointSpec {
 }
 
 /// A one-sided spring and damper.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StopSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -88,7 +89,7 @@ pub struct StopSpec {
 }
 
 /// A point mass hung at a link's centre of mass (its origin where the link has no `<inertial>`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkMassSpec {
     pub link: String,
@@ -97,7 +98,7 @@ pub struct LinkMassSpec {
 }
 
 /// A body beside the mechanism: a ball to grip, an obstacle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeBodySpec {
     /// Unique among bodies and links.
@@ -126,7 +127,7 @@ pub struct FreeBodySpec {
 }
 
 /// Whether a free body moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BodyMotion {
     #[default]
@@ -135,7 +136,7 @@ pub enum BodyMotion {
 }
 
 /// Shape of a free body, centred on its position; `shape.sphere.radius_m = 0.0015` in TOML.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BodyShapeSpec {
     Sphere {
@@ -156,7 +157,7 @@ pub enum BodyShapeSpec {
 /// Links never touch each other, only free bodies: what stops a joint belongs into its stops.
 /// Defaults hold newtons on milligrams at a step of 0.1 ms (softer ones let the jaws pass through);
 /// at 1 ms `pgs_iterations` of 100 to 200 are needed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
     /// Links whose `<collision>` shapes take part.
@@ -192,7 +193,7 @@ impl Default for ContactSpec {
 }
 
 /// How a cable runs: exactly one of `lever` and `via`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RouteSpec {
     /// The path shortens by `lever_m` per unit of each joint's position.
@@ -207,7 +208,7 @@ pub struct RouteSpec {
 }
 
 /// Lever of a cable on one joint.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LeverSpec {
     pub joint: String,
@@ -216,7 +217,7 @@ pub struct LeverSpec {
 }
 
 /// A point fixed in a link's frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointSpec {
     pub link: String,

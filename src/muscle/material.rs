@@ -2,13 +2,14 @@
 
 use super::error::{MuscleError, positive};
 use crate::scalar::Scalar;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Gent's limit is approached up to this share; beyond it the energy goes on as a parabola.
 const GENT_SHARE: f64 = 0.999;
 
 /// One term of Ogden's law. A term with `mu_pa = 0` adds nothing; `alpha` must not be zero.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OgdenTerm<D> {
     /// Modulus of the term, Pa (its share of the shear modulus is `mu alpha / 2`).
@@ -30,16 +31,7 @@ pub struct OgdenTerm<D> {
 ///
 /// The parabola keeps a simulation finite past the locking stretch; it is no physics there, and
 /// `Wall::valid_range` says where it begins.
-///
-/// ```
-/// use smam::muscle::Material;
-///
-/// let silicone = Material::Yeoh { c1_pa: 0.255e6_f64, c2_pa: 0.0155e6, c3_pa: 0.0 };
-/// assert_eq!(silicone.shear_modulus_pa(), 0.51e6);
-/// assert!(silicone.check().is_ok());
-/// assert!(Material::NeoHookean { c1_pa: -0.255e6_f64 }.check().is_err());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Material<D> {
     NeoHookean { c1_pa: D },
@@ -72,6 +64,15 @@ impl Material<f64> {
 
 impl<D: Scalar> Material<D> {
     /// Shear modulus at small strain, Pa.
+    ///
+    /// ```
+    /// use smam::muscle::Material;
+    ///
+    /// let silicone = Material::Yeoh { c1_pa: 0.255e6_f64, c2_pa: 0.0155e6, c3_pa: 0.0 };
+    /// assert_eq!(silicone.shear_modulus_pa(), 0.51e6);
+    /// assert!(silicone.check().is_ok());
+    /// assert!(Material::NeoHookean { c1_pa: -0.255e6_f64 }.check().is_err());
+    /// ```
     pub fn shear_modulus_pa(&self) -> D {
         match self {
             Material::NeoHookean { c1_pa } | Material::Yeoh { c1_pa, .. } => *c1_pa * 2.0,

@@ -105,7 +105,7 @@ mod tests {
     }
 
     fn force_output() -> Vec<ChannelSpec> {
-        vec![ChannelSpec { column: "force_n".into(), role: Role::Output, noise_sd: Some(0.5) }]
+        vec![ChannelSpec { column: "force_n".into(), role: Role::Output, noise_sd: Some(0.5), bag: None }]
     }
 
     #[test]

@@ -57,9 +57,9 @@ pub enum RecordingError {
         /// Cause and remedy.
         problem: String,
     },
-    /// A Parquet file that is no recording.
+    /// A file that is no recording, or of a format that is none here.
     #[error("{}: {problem}", file.display())]
-    Parquet {
+    Format {
         /// The file.
         file: PathBuf,
         /// Cause and remedy.

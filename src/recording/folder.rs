@@ -1,7 +1,9 @@
-//! A folder of recordings: `recordings.toml` and one CSV file per run.
+//! A folder of recordings: `recordings.toml` and one file per run.
 
+use super::bag_read::read_bag;
+use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::{Keys, did_you_mean};
-use super::{Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
+use super::{FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use toml::Table;
@@ -10,7 +12,9 @@ use toml::Table;
 pub const SET_FILE_NAME: &str = "recordings.toml";
 
 const FORMAT: i64 = 1;
-const RUN_KEYS: [&str; 2] = ["file", "use"];
+pub(super) const TOP_KEYS: [&str; 4] = ["format", "scene", "channel", "run"];
+pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
+pub(super) const RUN_KEYS: [&str; 2] = ["file", "use"];
 
 /// What a channel is to a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +43,8 @@ pub struct ChannelSpec {
     pub role: Role,
     /// Standard deviation of its noise in the column's unit, if stated.
     pub noise_sd: Option<f64>,
+    /// Where a bag has it, if stated.
+    pub bag: Option<BagSource>,
 }
 
 /// A declared run.
@@ -122,7 +128,7 @@ impl RecordingSet {
         })?;
         let top = Keys::new(file, "top level", &table);
         check_format(&top)?;
-        top.refuse_unknown(&["format", "scene", "channel", "run"])?;
+        top.refuse_unknown(&TOP_KEYS)?;
         Ok(Self {
             dir: file.parent().unwrap_or(Path::new("")).to_owned(),
             scene: top.required_text("scene", "muscle_bench")?.to_owned(),
@@ -144,6 +150,9 @@ impl RecordingSet {
     /// As [`read_recording`]; a declared column is missing.
     pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
         let file = self.dir.join(&run.file);
+        if FileFormat::of(&file)? == FileFormat::Mcap {
+            return read_bag(&file, &self.channels);
+        }
         let recording = read_recording(&file)?;
         let mut declared = self.channels.iter().map(|spec| &spec.column);
         if let Some(column) = declared.find(|column| recording.find(column).is_none()) {
@@ -205,12 +214,12 @@ fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingEr
 }
 
 fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
-    keys.refuse_unknown(&["column", "role", "noise_sd"])?;
+    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &BAG_KEYS].concat())?;
     let column = keys.required_text("column", "plunger_mm")?;
     if column == TIME_COLUMN {
         return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
     }
-    parse_column(column).map_err(|error| keys.error(error.to_string()))?;
+    let unit = parse_column(column).map_err(|error| keys.error(error.to_string()))?.unit;
     let role = keys
         .word("role", &[("input", Role::Input), ("output", Role::Output)])?
         .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
@@ -218,7 +227,7 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
         return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
     }
-    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd })
+    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag: bag_source(keys, unit)? })
 }
 
 fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {

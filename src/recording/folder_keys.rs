@@ -33,6 +33,10 @@ impl<'a> Keys<'a> {
         }
     }
 
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
     pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, RecordingError> {
         match self.table.get(key) {
             None => Ok(None),

@@ -60,7 +60,8 @@ fn top_level_mistakes() {
     );
     assert_eq!(
         refusal("[[run]]", "[[channel]]"),
-        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd"
+        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd, \
+         topic, field, joint, unit, zero, time"
     );
     assert!(refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3"));
 }
@@ -70,7 +71,7 @@ fn channel_mistakes() {
     assert_eq!(
         refusal("role = \"input\"", "rol = \"input\""),
         "rig/recordings.toml: [[channel]] 1 (\"plunger_mm\"): unknown key \"rol\", did you mean \"role\"?\n  remedy: \
-         the keys here are column, role, noise_sd"
+         the keys here are column, role, noise_sd, topic, field, joint, unit, zero, time"
     );
     assert_eq!(
         refusal("\"output\"", "\"ouput\""),

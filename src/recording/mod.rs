@@ -19,6 +19,8 @@
 //! # }
 //! ```
 
+mod bag_read;
+mod bag_source;
 mod channels;
 mod compare;
 mod csv_read;
@@ -27,13 +29,17 @@ mod error;
 pub mod figures;
 mod folder;
 mod folder_keys;
+mod formats;
 mod noise;
+mod one_clock;
 mod parquet_read;
 mod piecewise;
+mod schema;
 mod survey;
 mod unit;
 mod whole_file;
 
+pub use bag_source::BagSource;
 pub use channels::{Channel, Recording, TIME_COLUMN};
 pub use compare::{ChannelFit, compare};
 pub use csv_read::{read_csv, read_csv_from};
@@ -41,9 +47,12 @@ pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use folder_keys::did_you_mean;
+pub use formats::{FileFormat, read_recording};
 pub use noise::noise_sd;
-pub use parquet_read::read_recording;
 pub use piecewise::PiecewiseLinear;
+pub use schema::recordings_schema;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
 pub use whole_file::{write_whole, write_whole_bytes};
+
+pub use crate::bag::{Clock, JointPositions};

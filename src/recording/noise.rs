@@ -19,8 +19,8 @@ const MIN_RESIDUALS: usize = 20;
 /// `sqrt(20)`); it removes any quadratic trend, at uneven sampling too. The median is not misled by
 /// steps and outliers. `q` is the smallest change between neighbours: the floor that quantisation sets.
 ///
-/// Stretches with a missing sample or across a gap are left out. `None` with fewer than 20 residuals
-/// or a constant channel.
+/// Stretches with a missing sample or across a gap are left out; where too little is left, as of a channel sampled more slowly
+/// than the others, the samples that are there stand for themselves. `None` with fewer than 20 residuals or a constant channel.
 ///
 /// Limits: noise that is filtered or otherwise correlated is underestimated; a signal that is not
 /// smooth over four samples counts as noise, so does vibration near the sampling rate. State
@@ -39,6 +39,15 @@ const MIN_RESIDUALS: usize = 20;
 /// # }
 /// ```
 pub fn noise_sd(time_s: &[f64], values: &[f64]) -> Option<f64> {
+    if let Some(sd) = noise_of_neighbours(time_s, values) {
+        return Some(sd);
+    }
+    let there = time_s.iter().zip(values).filter(|(_, y)| y.is_finite());
+    let (time_s, values): (Vec<f64>, Vec<f64>) = there.unzip();
+    noise_of_neighbours(&time_s, &values)
+}
+
+fn noise_of_neighbours(time_s: &[f64], values: &[f64]) -> Option<f64> {
     let limit_s = gap_limit_s(time_s);
     let mut residuals: Vec<f64> = time_s
         .windows(4)
@@ -113,6 +122,15 @@ mod tests {
         values.iter_mut().step_by(97).for_each(|y| *y = f64::NAN);
         let found = noise_sd(&time_s, &values).unwrap();
         assert!((found / 0.05 - 1.0).abs() < 0.06, "{found}");
+    }
+
+    #[test]
+    fn a_channel_slower_than_the_others_has_its_own_noise() {
+        let time_s: Vec<f64> = (0..8000).map(|i| f64::from(i) * 0.01).collect();
+        let mut values = noisy_sine(&time_s, 0.05);
+        values.iter_mut().enumerate().filter(|(i, _)| i % 5 != 0).for_each(|(_, y)| *y = f64::NAN);
+        let found = noise_sd(&time_s, &values).unwrap();
+        assert!((found / 0.05 - 1.0).abs() < 0.08, "{found}");
     }
 
     #[test]

@@ -3,41 +3,13 @@
 use std::fs::File;
 use std::path::Path;
 
-use super::{Channel, Recording, RecordingError, TIME_COLUMN, read_csv};
+use super::{Channel, Recording, RecordingError, TIME_COLUMN};
 use crate::columns::decode;
 
-/// Reads a recording: Parquet where the file is called so, else CSV.
-///
-/// A null, a NaN or an empty cell is a missing sample and kept as NaN.
-///
-/// ```
-/// use smam::columns::{Column, encode};
-/// use smam::recording::read_recording;
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let folder = tempfile::tempdir()?;
-/// let [csv, parquet] = ["sine.csv", "sine.parquet"].map(|name| folder.path().join(name));
-/// std::fs::write(&csv, "time_s,plunger_mm\n0,0\n0.01,0.3\n")?;
-/// let column = |name: &str, values: [f64; 2]| (name.to_owned(), Column::Numbers(values.to_vec()));
-/// std::fs::write(&parquet, encode(&[column("time_s", [0.0, 0.01]), column("plunger_mm", [0.0, 0.3])])?)?;
-/// assert_eq!(read_recording(&csv)?, read_recording(&parquet)?);
-/// # Ok(())
-/// # }
-/// ```
-///
-/// # Errors
-/// As [`read_csv`]; a Parquet file without the time, or with columns that are no numbers.
-pub fn read_recording(path: &Path) -> Result<Recording, RecordingError> {
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
-        read_parquet(path)
-    } else {
-        read_csv(path)
-    }
-}
-
-fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
+/// Reads the columns of a Parquet file.
+pub(super) fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     let file = path.display().to_string();
-    let refuse = |problem: String| RecordingError::Parquet { file: path.to_owned(), problem };
+    let refuse = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
     let source = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
     let mut columns = Vec::new();
     for (name, column) in decode(source).map_err(|e| refuse(unreadable(&e)))? {
@@ -80,7 +52,7 @@ mod tests {
         let path = folder.path().join("run.parquet");
         let named: Vec<(String, Column)> = table.iter().map(|(n, c)| ((*n).to_owned(), c.clone())).collect();
         std::fs::write(&path, encode(&named).expect("encoded")).expect("written");
-        read_recording(&path)
+        read_parquet(&path)
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The scene file as it stands on disk.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::EffectTable;
@@ -9,7 +10,7 @@ use crate::mechanism::{MechanismSpec, RouteSpec};
 use crate::muscle::Material;
 
 /// A whole scene file. Lengths in m, forces in N, pressures in Pa (gauge), angles in rad, times in s.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of this format: 1.
@@ -52,7 +53,7 @@ pub struct SceneFile {
 }
 
 /// Duration and steps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimulationSpec {
     /// Length of the stock programme, s.
@@ -66,7 +67,7 @@ pub struct SimulationSpec {
 }
 
 /// Syringe, line and compliances, the same for every muscle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HydraulicsSpec {
     pub syringe: Syringe,
@@ -80,7 +81,7 @@ pub struct HydraulicsSpec {
 }
 
 /// What every muscle of the scene is made like. Exactly one of `tube`, `linear` and `displacement`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MusclesSpec {
     pub rest_length_m: f64,
@@ -108,7 +109,7 @@ pub struct MusclesSpec {
 }
 
 /// A silicone microtube in a micro-coil.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TubeSpec {
     pub inner_diameter_m: f64,
@@ -128,7 +129,7 @@ pub struct TubeSpec {
 }
 
 /// Whether the wall may leave its coil.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WallSpec {
     #[default]
@@ -137,7 +138,7 @@ pub enum WallSpec {
 }
 
 /// The micro-coil.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoilSpec {
     pub stiffness_n_m: f64,
@@ -151,7 +152,7 @@ pub struct CoilSpec {
 }
 
 /// One-sided spring and damper of a closed coil.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClosedStopSpec {
     pub stiffness_n_m: f64,
@@ -159,7 +160,7 @@ pub struct ClosedStopSpec {
 }
 
 /// A muscle known by its stiffness and by what pressure adds to its pull: `F = k e + b p`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinearSpec {
     pub stiffness_n_m: f64,
@@ -168,7 +169,7 @@ pub struct LinearSpec {
 }
 
 /// Friction in force form, `(m0 + m1 max(p, 0)) z`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
     pub m0_n: f64,
@@ -185,7 +186,7 @@ pub struct FrictionSpec {
 }
 
 /// One muscle of the scene. Exactly one of `joint` and `cable` says what it pulls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MuscleSpec {
     pub name: String,
@@ -204,7 +205,7 @@ pub struct MuscleSpec {
 }
 
 /// A cable: pulls when stretched, never pushes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CableSpec {
     pub name: String,
@@ -224,7 +225,7 @@ pub struct CableSpec {
 }
 
 /// Motion of a cable's near end.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CableDriveSpec {
     pub input: String,
@@ -233,7 +234,7 @@ pub struct CableDriveSpec {
 }
 
 /// A constant load on a joint: a force on a slider, a torque on a hinge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSpec {
     pub joint: String,
@@ -244,7 +245,7 @@ pub struct LoadSpec {
 }
 
 /// `F = F0 + A p + c dx/dt + m d²x/dt²`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisSpec {
     pub position_input: String,
@@ -263,17 +264,18 @@ pub struct AxisSpec {
 }
 
 /// An input channel, and what it does when no recording drives it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InputSpec {
     /// Column name with its unit.
     pub channel: String,
     /// The stock programme; its keys carry the SI unit of the channel.
+    #[schemars(schema_with = "super::schema::program")]
     pub program: toml::Table,
 }
 
 /// An output channel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputSpec {
     /// Column name with its unit.
@@ -288,7 +290,7 @@ pub struct OutputSpec {
 }
 
 /// What an output channel shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Elongation of a muscle.
@@ -312,7 +314,7 @@ pub enum Quantity {
 }
 
 /// A known condition of a run: a key of `[[run]]` in recordings.toml and the scene keys it sets.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConditionSpec {
     pub name: String,
@@ -320,7 +322,7 @@ pub struct ConditionSpec {
 }
 
 /// A parameter that a lab cannot know.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrateSpec {
     /// A calibration name (`tube_c1_pa`) or a scene key.
@@ -333,7 +335,7 @@ pub struct CalibrateSpec {
 }
 
 /// A check on a channel of the stock run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectSpec {
     pub name: String,
@@ -367,7 +369,7 @@ pub struct ExpectSpec {
 }
 
 /// What an `[[expect]]` looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
     Min,
@@ -383,7 +385,7 @@ pub enum Measure {
 }
 
 /// Where to look.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ViewSpec {
     /// Tension drawn in full colour, N.

@@ -25,9 +25,11 @@ mod file;
 mod load;
 mod overrides;
 mod program;
+mod schema;
 
 pub use error::SceneError;
 pub use file::*;
 pub use load::{STOCK_SCENES, Scene, find_scene};
 pub use overrides::{Override, calibration_key};
 pub use program::Program;
+pub use schema::scene_schema;
