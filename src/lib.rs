@@ -2,6 +2,24 @@
 //!
 //! The chain is `plunger -> syringe -> line -> muscle -> cable -> mechanism`. Everything left of the
 //! mechanism is written here; the mechanism is a rapier multibody. See `ARCHITECTURE.md` for the map.
+//!
+//! A stock scene with one key changed, and its first second:
+//!
+//! ```
+//! use smam::scene::{Override, Scene};
+//! use smam::system::{Schedule, Simulation, record};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = Scene::load("muscle_bench", &[Override::number("hydraulics.line.length_m", 2.0)])?;
+//! let recording = record(&mut Simulation::new(scene)?, &Schedule::even(1.0, 0.01))?;
+//! let plunger_mm = recording.value_at("plunger_mm", 1.0)?;
+//! let elongation_mm = recording.value_at("elongation_mm", 1.0)?;
+//! // A syringe and a line that did not yield would give the ratio of the areas, 18.4 mm for each mm of the plunger.
+//! let stiff_mm = plunger_mm * (4.5_f64 / 1.05).powi(2);
+//! assert!(elongation_mm > 0.4 * stiff_mm && elongation_mm < stiff_mm);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod bag;
 pub mod columns;

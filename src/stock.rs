@@ -2,6 +2,22 @@
 //!
 //! They are named by paths that begin with [`PREFIX`], `builtin:scenes/muscle_bench.toml`, so that a program without its
 //! sources at hand (an installed one) reads and names them like files.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use smam::stock;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = stock::builtin("scenes/muscle_bench.toml").ok_or("it is carried")?;
+//! let folder = scene.parent().ok_or("it has one")?;
+//! let urdf = stock::join(folder, Path::new("../models/muscle_bench.urdf"));
+//! assert_eq!(urdf, Path::new("builtin:models/muscle_bench.urdf"));
+//! assert!(stock::read_text(&urdf)?.contains("<joint name=\"slide\" type=\"prismatic\">"));
+//! assert!(stock::builtin("scenes/mine.toml").is_none());
+//! # Ok(())
+//! # }
+//! ```
 
 use std::io;
 use std::path::{Component, Path, PathBuf};

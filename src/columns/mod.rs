@@ -1,4 +1,26 @@
 //! Tables of named columns as Parquet files. A leaf of the crate, and the only user of the crate `parquet`.
+//!
+//! ```
+//! use std::io::{Seek, Write};
+//!
+//! use smam::columns::{Column, decode, encode};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let table = vec![
+//!     ("index".to_owned(), Column::Whole(vec![0, 1])),
+//!     ("force_n".to_owned(), Column::Numbers(vec![0.05, f64::NAN])),
+//! ];
+//! let mut file = tempfile::tempfile()?;
+//! file.write_all(&encode(&table)?)?;
+//! file.rewind()?;
+//! let back = decode(file)?;
+//! assert_eq!(back[0], table[0]);
+//! // A missing sample comes back as one.
+//! let force_n = back[1].1.numbers().ok_or("numbers")?;
+//! assert!(force_n[0] == 0.05 && force_n[1].is_nan());
+//! # Ok(())
+//! # }
+//! ```
 
 mod read;
 mod write;

@@ -15,6 +15,15 @@ use super::stock::{Calibration, Rig};
 use crate::recording::{Channel, Recording};
 
 /// What kind of thing a case hides.
+///
+/// ```
+/// use smam::conceal::Hiding;
+///
+/// // What a seed hides does not change; of many seeds a fifth hide nothing.
+/// assert_eq!(Hiding::drawn(7), Hiding::drawn(7));
+/// let nothing = (0..2000).filter(|seed| Hiding::drawn(*seed) == Hiding::Nothing).count();
+/// assert!((300..500).contains(&nothing));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hiding {
@@ -78,6 +87,22 @@ pub struct Drawn {
 }
 
 /// Draws a case and makes its recordings.
+///
+/// ```
+/// use smam::conceal::{Hiding, Rig, draw, seal, write_case};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let drawn = draw("quiet", Rig::MuscleBench, Hiding::Nothing, 7)?;
+/// assert!(drawn.truth.secrets.is_empty());
+/// let published = write_case(&drawn, folder.path())?;
+/// // What everyone may see, and beside it the answer that the published seal holds.
+/// assert!(folder.path().join("quiet/recordings.toml").is_file());
+/// let answer = std::fs::read_to_string(folder.path().join("sealed/quiet.json"))?;
+/// assert_eq!(seal(&answer), published);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// A plant that the solver cannot follow.

@@ -13,6 +13,12 @@ pub fn sealed_text(truth: &Truth) -> Result<String, serde_json::Error> {
 }
 
 /// SHA-256 of a text, in hexadecimal.
+///
+/// ```
+/// use smam::conceal::seal;
+///
+/// assert_eq!(seal("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+/// ```
 pub fn seal(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|b| format!("{b:02x}")).collect()
 }

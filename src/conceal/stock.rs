@@ -72,6 +72,21 @@ impl Calibration {
 }
 
 /// The rigs.
+///
+/// ```
+/// use smam::conceal::Rig;
+/// use smam::scene::Scene;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // Both sides agree on what goes in and on what is shown, and on nothing else.
+/// for rig in Rig::ALL {
+///     let scene = Scene::load(rig.scene(), &[])?;
+///     assert!(scene.file.input.iter().map(|i| i.channel.as_str()).eq(rig.inputs().iter().copied()));
+///     assert!(rig.outputs().iter().all(|shown| scene.file.output.iter().any(|o| o.channel == shown.column)));
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rig {

@@ -3,6 +3,26 @@
 //! [`diagnose`] goes through the steps one by one, each a module of its own: `preflight`, `baseline`, detection in
 //! `noise`, `locate`, `search`, `verdict`, `prove`. It works on the fast model of the scene
 //! ([`crate::system::Twin`]); what it finds is written as a scene.
+//!
+//! Half a minute for a bench:
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use smam::diagnose::{Case, Options, Verdict, diagnose, write_answer};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let case = Case::load(&[Path::new("recordings/bench")], None, &[])?;
+//! let outcome = diagnose(case, Options { seed: 1 }, &|step| eprintln!("{step}"))?;
+//! if outcome.diagnosis.verdict == Verdict::MissingPhysics {
+//!     for effect in &outcome.diagnosis.effects {
+//!         println!("{} in the {}: {:.2}", effect.name, effect.element, effect.probability);
+//!     }
+//! }
+//! write_answer(&outcome, Path::new("out/bench"))?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod answer;
 mod baseline;
@@ -102,6 +122,34 @@ impl Outcome {
 }
 
 /// Diagnoses a case; `say` hears of progress.
+///
+/// A recording of one second is answered, too:
+///
+/// ```
+/// use smam::diagnose::{Case, Options, Verdict, diagnose};
+/// use smam::scene::Scene;
+/// use smam::system::{Schedule, Simulation, record};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &Schedule::even(1.0, 0.01))?;
+/// recording.write_csv(&folder.path().join("short.csv"))?;
+/// let set = r#"
+/// format = 1
+/// scene = "muscle_bench"
+/// channel = [{ column = "plunger_mm", role = "input" }, { column = "elongation_mm", role = "output" }]
+/// run = [{ file = "short.csv" }]
+/// "#;
+/// std::fs::write(folder.path().join("recordings.toml"), set)?;
+/// let case = Case::load(&[folder.path()], None, &[])?;
+/// // Of a single run the last third is held back.
+/// assert_eq!(case.runs.iter().filter(|run| run.is_sealed).count(), 1);
+/// let diagnosis = diagnose(case, Options { seed: 1 }, &|_| {})?.diagnosis;
+/// assert_eq!(diagnosis.verdict, Verdict::UnusableData);
+/// assert!(diagnosis.summary.contains("only 101 samples: record at least some ten seconds"));
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// When the scene cannot be simulated at all. Recordings that cannot carry a diagnosis are an answer, not an error.

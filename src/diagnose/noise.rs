@@ -23,6 +23,18 @@ const LAGS: std::ops::Range<usize> = 8..17;
 const COLOUR_ERROR: f64 = 0.15;
 
 /// Noise of one channel: covariance `sd² ((1 - s) [lag = 0] + s rho^lag)`.
+///
+/// ```
+/// use smam::diagnose::Noise;
+///
+/// let white = Noise::white(0.02);
+/// assert_eq!(white.inflation(), 1.0);
+/// // Half of the variance keeps 0.9 from sample to sample: 1 + 2 (0.5) 0.9/0.1, ten times as strong against
+/// // slow signals.
+/// let slow = Noise { slow_share: 0.5, kept: 0.9, ..white };
+/// assert!((slow.inflation() - 10.0).abs() < 1e-12);
+/// assert!((slow.scale() - 0.02 * 10.0_f64.sqrt()).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Standard deviation of all of it, in the channel's unit.

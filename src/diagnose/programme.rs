@@ -1,4 +1,19 @@
 //! Programmes that a rig can play: waves between 0 and 1 over the stroke of every plunger.
+//!
+//! ```
+//! use smam::diagnose::programme::{sample, sine, strokes};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let moved = [("plunger_mm".to_owned(), vec![0.0, 1.5e-3, 3.0e-3])];
+//! let next = sample(&strokes(&moved), 20.0, |t, _| sine(t, 0.1))?;
+//! let plunger_mm = &next.channel("plunger_mm")?.values;
+//! // From rest, over the stroke that was recorded and no further; its end is met at one and a half periods.
+//! assert_eq!(plunger_mm[0], 0.0);
+//! assert!((plunger_mm[1500] - 3.0).abs() < 1e-9);
+//! assert!(plunger_mm.iter().all(|x| (0.0..=3.0 + 1e-9).contains(x)));
+//! # Ok(())
+//! # }
+//! ```
 
 use super::preflight::correlation;
 use crate::recording::{Channel, Recording, RecordingError, parse_column};

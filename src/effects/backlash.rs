@@ -7,6 +7,16 @@ use crate::scalar::Scalar;
 /// `x = min(max(x, u - b/2), u + b/2)`, `u` the recorded position; starts centred, `x = u`.
 ///
 /// Range: `b >= 0`. Source: Krasnosel'skii and Pokrovskii, Systems with Hysteresis.
+///
+/// ```
+/// use smam::effects::Backlash;
+///
+/// let play = Backlash { width_m: 4e-5_f64 };
+/// // Half of the width behind the plunger going out, half of it ahead coming back.
+/// let ahead_m = play.follow(0.0, 1e-3);
+/// assert_eq!(ahead_m, -2e-5);
+/// assert_eq!(play.follow(ahead_m, -1e-3), 2e-5);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backlash<D> {
     pub width_m: D,

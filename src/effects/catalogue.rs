@@ -18,6 +18,16 @@ const fn fixed(key: &'static str, symbol: &'static str, min: f64, max: f64, defa
 }
 
 /// The catalogue, along the chain. The order of parameters is that of [`super::Effect::values`].
+///
+/// ```
+/// use smam::effects::{CATALOGUE, Kind, find};
+///
+/// let leak = find(Kind::Leak);
+/// assert_eq!((leak.name, leak.element.name(), leak.law), ("leak", "line", "Q_leak = G p_m"));
+/// assert_eq!(leak.parameters[0].key, "conductance_m3_s_pa");
+/// // The first parameter is the size of the effect: zero, where it is absent, is within the range of each.
+/// assert!(CATALOGUE.iter().all(|e| (e.parameters[0].range.min..=e.parameters[0].range.max).contains(&0.0)));
+/// ```
 pub const CATALOGUE: &[EffectSpec] = &[
     EffectSpec {
         kind: Kind::PlungerBacklash,

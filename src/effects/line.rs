@@ -13,6 +13,16 @@ const VACUUM_SHARE: f64 = 0.02;
 ///
 /// `V0` m³, `kappa` 1 (isothermal) to 1.4 (adiabatic). Range: `p > -0.98 p_atm`; below, the compliance stays that
 /// of the bound. Source: ideal gas.
+///
+/// ```
+/// use smam::effects::TrappedAir;
+///
+/// let air = TrappedAir { free_volume_m3: 1e-9_f64, kappa: 1.0 };
+/// let at_rest = air.compliance_m3_pa(0.0);
+/// assert!((at_rest * 101_325.0 / 1e-9 - 1.0).abs() < 1e-12);
+/// // Under twice the absolute pressure it yields a quarter as much.
+/// assert!((air.compliance_m3_pa(101_325.0) / at_rest - 0.25).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrappedAir<D> {
     pub free_volume_m3: D,

@@ -3,6 +3,17 @@
 use crate::scalar::Scalar;
 
 /// One sensor error on one channel, in the channel's unit.
+///
+/// ```
+/// use smam::effects::{Sensor, SensorHistory};
+///
+/// let mut filtered = SensorHistory::new(Sensor::Lag { time_constant_s: 0.1_f64 });
+/// let mut late = SensorHistory::new(Sensor::Delay { delay_s: 0.1_f64 });
+/// // A ramp of 1 mm/s, once the filter has settled: both show it a tenth of a millimetre late.
+/// let shown_mm = [0.0, 2.0].map(|t| [filtered.show(t, t), late.show(t, t)]);
+/// assert_eq!(shown_mm[0], [0.0, 0.0]);
+/// assert!(shown_mm[1].iter().all(|mm| (mm - 1.9).abs() < 1e-6));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sensor<D> {
     /// First-order filter `T dy/dt = u - y`, s; starts settled.

@@ -75,6 +75,20 @@ fn refuse(message: String, remedy: impl Into<String>) -> EffectError {
 impl EffectTable {
     /// Looks the law up and checks element and numbers.
     ///
+    /// ```
+    /// use smam::effects::{EffectTable, Kind};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let table: EffectTable = toml::from_str("name = 'trapped_air'\nelement = 'line_2'\nfree_volume_m3 = 1e-9")?;
+    /// let air = table.effect()?;
+    /// assert_eq!((air.kind, air.element.index), (Kind::TrappedAir, 1));
+    /// // The polytropic exponent is isothermal unless it is given.
+    /// assert_eq!(air.values, [1e-9, 1.0]);
+    /// assert_eq!(air.table().effect()?, air);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
     /// # Errors
     /// Unknown name, element, key; a number missing or out of range; a sensor without channel.
     pub fn effect(&self) -> Result<Effect<f64>, EffectError> {

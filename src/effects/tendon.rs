@@ -9,6 +9,16 @@ pub(crate) const SLIDING_LENGTH_M: f64 = 1.0e-4;
 ///
 /// `mu` 1, `phi` rad. `z > 0` while the near end draws the cable in, so that the far end feels less; returning, it
 /// feels more. Source: Euler and Eytelwein, with Dahl's presliding.
+///
+/// ```
+/// use smam::effects::TendonFriction;
+///
+/// let tendon = TendonFriction { friction_coefficient: 0.1_f64, fixed_wrap_rad: 0.0, presliding_m: 1e-4 };
+/// let half_turn = std::f64::consts::PI;
+/// // 73 % of the tension is left behind half a turn; on the way back it is as much greater.
+/// assert!((tendon.transmission(1.0, half_turn) - 0.7304).abs() < 1e-4);
+/// assert!((tendon.transmission(1.0, half_turn) * tendon.transmission(-1.0, half_turn) - 1.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonFriction<D> {
     pub friction_coefficient: D,

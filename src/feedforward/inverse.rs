@@ -18,6 +18,19 @@ pub struct Limits {
 ///
 /// Each step solves `G(x, z(x)) = wanted` for the input `x` in the direction in which the output must go, `z(x)` being
 /// the state after going straight to `x`. Lengths in mm.
+///
+/// ```
+/// use smam::feedforward::{Inverse, Limits};
+/// use smam::hysteresis::{HysteresisModel, PlayElement, PrandtlIshlinskii};
+///
+/// let play = PlayElement { weight: 2.0, half_width: 0.1 };
+/// let muscle = HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii::classical(4.0, vec![play]));
+/// let limits = Limits { input_mm: [0.0, 3.0], speed_mm_s: 5.0, least_slope: 0.1 };
+/// let mut inverse = Inverse::new(&muscle, limits, 0.0);
+/// // Out, 6 x - 0.2 = 8.8; on the way back 0.2 mm of the plunger move it by 4 mm per mm only.
+/// assert!((inverse.step(8.8, 1.0) - 1.5).abs() < 1e-6);
+/// assert!((inverse.step(8.0, 1.0) - 1.3).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Inverse<'a> {
     model: &'a HysteresisModel<f64>,
@@ -39,6 +52,25 @@ pub struct Programme {
 }
 
 /// The programme for wanted outputs (mm) at given times (s), from rest at the input `start_mm`.
+///
+/// There and back through a play of 0.1 mm, which the programme crosses at each turn:
+///
+/// ```
+/// use smam::feedforward::{Limits, programme};
+/// use smam::hysteresis::{HysteresisModel, PlayElement, PrandtlIshlinskii};
+///
+/// let play = PlayElement { weight: 2.0, half_width: 0.1 };
+/// let muscle = HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii::classical(4.0, vec![play]));
+/// let limits = Limits { input_mm: [0.0, 3.0], speed_mm_s: 5.0, least_slope: 0.1 };
+/// let (time_s, wanted_mm) = ([0.0, 1.0, 2.0, 3.0], [0.0, 9.0, 5.0, 8.0]);
+/// let plunger = programme(&muscle, limits, 0.0, &time_s, &wanted_mm);
+/// let reached_mm = muscle.follow(&time_s, &plunger.input_mm);
+/// assert!(reached_mm.iter().zip(&wanted_mm).all(|(a, b)| (a - b).abs() < 1e-6));
+/// assert_eq!(plunger.clipped_s, 0.0);
+/// // 30 mm are more than 3 mm of plunger give: it goes as far as it may, and says how long that fell short.
+/// let short = programme(&muscle, limits, 0.0, &[0.0, 1.0], &[0.0, 30.0]);
+/// assert_eq!((short.input_mm[1], short.clipped_s), (3.0, 1.0));
+/// ```
 pub fn programme(
     model: &HysteresisModel<f64>,
     limits: Limits,

@@ -12,6 +12,24 @@ use crate::scalar::Scalar;
 /// ```
 /// Gauge pressures in Pa, flows in m³/s positive towards the muscle. A node at the vapour pressure keeps it and
 /// grows a vapour volume instead, until that volume is taken up again.
+///
+/// ```
+/// use smam::hydraulics::{Chain, ChainRow, Fluid, Line, Port};
+///
+/// let line = Line { length_m: 1.0, bore_m: 0.8e-3, segments: 1, compliance_m3_pa: 0.0, momentum_factor: 4.0 / 3.0 };
+/// let water = Fluid::default();
+/// let chain = Chain::new(&line, &water, 8.0e-15_f64, 2.6e-15);
+/// // 10 uL/s in and out: steady when the pressures differ by Hagen and Poiseuille's drop, 1 kPa.
+/// let flow_m3_s = 1e-8;
+/// let drop_pa = line.resistance_pa_s_m3(&water) * flow_m3_s;
+/// assert!((drop_pa - 997.0).abs() < 1.0);
+/// let row = [1e5 + drop_pa, 1e5, flow_m3_s, 0.0, 0.0];
+/// let muscle = Port { outflow_m3_s: flow_m3_s, compliance_m3_pa: 0.0 };
+/// let mut rates = [0.0; 5];
+/// chain.rates(&row, &[false; 2], flow_m3_s, &muscle, &mut rates);
+/// assert_eq!(ChainRow::of(&rates, 1).pressure_pa, [0.0, 0.0]);
+/// assert!(ChainRow::of(&rates, 1).flow_m3_s[0].abs() < 1e-15);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Chain<D> {
     /// Compliance of each node, m³/Pa; N + 1 entries, all > 0.
@@ -108,6 +126,20 @@ impl<D: Scalar> Chain<D> {
 
     /// Turns pressures below the vapour pressure into vapour of the same missing volume, and vapour that has been
     /// used up back into pressure. Volume is kept exactly.
+    ///
+    /// ```
+    /// use smam::hydraulics::{Chain, ChainRow, Fluid, Line};
+    ///
+    /// let line =
+    ///     Line { length_m: 1.0, bore_m: 0.8e-3, segments: 1, compliance_m3_pa: 0.0, momentum_factor: 4.0 / 3.0 };
+    /// let chain = Chain::new(&line, &Fluid::default(), 8.0e-15_f64, 2.6e-15);
+    /// let (mut row, mut boils) = (chain.at_rest(-1.5e5), [false; 2]);
+    /// chain.settle_vapour(&mut row, &mut boils);
+    /// let settled = ChainRow::of(&row, 1);
+    /// assert_eq!((boils, settled.pressure_pa[0]), ([true; 2], -99_025.0));
+    /// // C times the 51 kPa that liquid cannot hold.
+    /// assert!((settled.vapour_m3[0] / (8.0e-15 * 50_975.0) - 1.0).abs() < 1e-9);
+    /// ```
     pub fn settle_vapour(&self, row: &mut [D], boils: &mut [bool]) {
         let at = ChainRowMut::of(row, self.segments());
         for (j, &compliance) in self.compliance_m3_pa.iter().enumerate() {

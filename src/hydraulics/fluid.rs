@@ -30,6 +30,13 @@ impl Default for Fluid {
 
 impl Fluid {
     /// Lowest gauge pressure the liquid can have, Pa: `p_vapour - p_atm` (negative).
+    ///
+    /// ```
+    /// use smam::hydraulics::Fluid;
+    ///
+    /// // Water boils at 99 kPa below the surroundings.
+    /// assert_eq!(Fluid::default().cavitation_gauge_pressure_pa(), -99_025.0);
+    /// ```
     pub fn cavitation_gauge_pressure_pa(&self) -> f64 {
         self.vapour_pressure_pa - self.atmospheric_pressure_pa
     }

@@ -17,6 +17,14 @@ pub struct Syringe {
 
 impl Syringe {
     /// Piston area, m².
+    ///
+    /// ```
+    /// use smam::hydraulics::Syringe;
+    ///
+    /// // 3 mm of a 1 mL syringe displace 47.7 uL.
+    /// let syringe = Syringe { bore_m: 4.5e-3 };
+    /// assert!((syringe.area_m2() * 3e-3 / 47.7e-9 - 1.0).abs() < 1e-3);
+    /// ```
     pub fn area_m2(&self) -> f64 {
         PI * self.bore_m * self.bore_m / 4.0
     }
@@ -60,6 +68,18 @@ impl Line {
     }
 
     /// Laminar (Hagen-Poiseuille) resistance of the whole line, `128 mu l / (pi d⁴)`, Pa s/m³.
+    ///
+    /// ```
+    /// use smam::hydraulics::{Fluid, Line};
+    ///
+    /// let line =
+    ///     Line { length_m: 1.0, bore_m: 0.8e-3, segments: 1, compliance_m3_pa: 0.0, momentum_factor: 4.0 / 3.0 };
+    /// let (thin, water) = (Line { bore_m: 0.4e-3, ..line }, Fluid::default());
+    /// // Half the bore: sixteen times the resistance, four times the inertance, a quarter of the 0.5 mL.
+    /// assert!((thin.resistance_pa_s_m3(&water) / line.resistance_pa_s_m3(&water) - 16.0).abs() < 1e-9);
+    /// assert!((thin.inertance_pa_s2_m3(&water) / line.inertance_pa_s2_m3(&water) - 4.0).abs() < 1e-9);
+    /// assert!((thin.volume_m3() / 0.1257e-6 - 1.0).abs() < 1e-3);
+    /// ```
     pub fn resistance_pa_s_m3(&self, fluid: &Fluid) -> f64 {
         128.0 * fluid.viscosity_pa_s * self.length_m / (PI * self.bore_m.powi(4))
     }

@@ -20,6 +20,18 @@ type Lane = [f64; LANES];
 ///
 /// As following each set by itself, to about 1e-4 of F, but in fixed steps instead of controlled ones.
 /// Samples whose measured value is NaN do not count.
+///
+/// ```
+/// use smam::hysteresis::{DisplacementModel, PaperModel, mean_squares};
+///
+/// let form = DisplacementModel::Paper(PaperModel::printed());
+/// let plunger_mm: Vec<f64> = (0..400).map(|i| 1.5 - 1.5 * (f64::from(i) * 0.05).cos()).collect();
+/// let (loop_mm, _) = form.follow(0.0, &plunger_mm);
+/// let [own, mut wider] = [form.parameters(), form.parameters()];
+/// wider[2] *= 1.2;
+/// let found_mm2 = mean_squares(&form, &[own, wider], &plunger_mm, &loop_mm);
+/// assert!(found_mm2[0] < 1e-4 && found_mm2[1] > 1e-2);
+/// ```
 pub fn mean_squares(
     form: &DisplacementModel<f64>,
     sets: &[Vec<f64>],

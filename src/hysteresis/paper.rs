@@ -61,6 +61,17 @@ fn square() -> f64 {
 
 impl PaperModel<f64> {
     /// The identified parameters as printed.
+    ///
+    /// ```
+    /// use smam::hysteresis::PaperModel;
+    ///
+    /// let printed = PaperModel::printed();
+    /// // The gate closes the loop where the plunger begins; the other way nothing moves.
+    /// assert_eq!((printed.output(0.0, 0.8), printed.output(-0.5, 0.8)), (0.0, 0.0));
+    /// // Far along, the state stands at ((A + rho)/nu)^(1/n).
+    /// let limit = ((printed.a + printed.rho) / printed.nu).powf(1.0 / printed.n);
+    /// assert!((printed.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-6);
+    /// ```
     pub fn printed() -> Self {
         Self::from_array([-0.082, 9.886, -1.809, 2.981, 1.035, 2.178, -0.428])
     }

@@ -61,6 +61,20 @@ impl<D: Scalar> MaxwellSlip<D> {
     }
 
     /// Moves the input by `step` without turning; exact; `state` has one entry per element.
+    ///
+    /// ```
+    /// use smam::hysteresis::{Gate, MaxwellSlip, SlipElement};
+    ///
+    /// let springs = vec![SlipElement { stiffness: -2.0_f64, reach: 0.1 }];
+    /// let [offset, curvature, cubic, growth] = [0.0; 4];
+    /// let model = MaxwellSlip { offset, gain: 9.0, curvature, cubic, growth, gate: Gate::None, elements: springs };
+    /// let mut state = model.rest();
+    /// model.advance(&mut state, 3.0);
+    /// assert_eq!(state, [0.1]);
+    /// // It slides at its reach; turned about, the spring gives way over twice that.
+    /// model.advance(&mut state, -0.2);
+    /// assert!((state[0] + 0.1).abs() < 1e-15);
+    /// ```
     pub fn advance(&self, state: &mut [D], step: D) {
         for (stretch, element) in state.iter_mut().zip(&self.elements) {
             let free = *stretch + step;

@@ -58,6 +58,16 @@ impl<D: Scalar> SymmetricBoucWen<D> {
     }
 
     /// State after the input went straight from `from_mm` to `to_mm`.
+    ///
+    /// ```
+    /// use smam::hysteresis::SymmetricBoucWen;
+    ///
+    /// let model = SymmetricBoucWen::from_array([1.0_f64, 1.0, 2.0, 0.9, 0.3, 1.5]);
+    /// // Far along, the state stands at (K/(lambda + delta))^(1/n), and at its opposite the other way.
+    /// let limit = (2.0_f64 / 1.2).powf(1.0 / 1.5);
+    /// assert!((model.advance(0.0, 0.0, 40.0) - limit).abs() < 1e-9);
+    /// assert!((model.advance(0.3, 0.0, -40.0) + limit).abs() < 1e-9);
+    /// ```
     pub fn advance(&self, z: D, from_mm: D, to_mm: D) -> D {
         let way = to_mm - from_mm;
         let sign = if way.value() < 0.0 { -1.0 } else { 1.0 };

@@ -50,6 +50,23 @@ pub type Slopes<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
 ///
 /// `residuals` returns `None` where the model cannot be evaluated; such points are stepped back from. Returns `None`
 /// when the start itself cannot be evaluated.
+///
+/// ```
+/// use nalgebra::DVector;
+/// use smam::identify::{Bounds, LmOptions, minimise};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // The spring, N/m, and preload, N, behind three pulls.
+/// let (elongation_m, pull_n) = ([0.0_f64, 0.01, 0.02], [0.1, 0.383, 0.666]);
+/// let residuals = |p: &[f64]| {
+///     Some(DVector::from_iterator(3, elongation_m.iter().zip(&pull_n).map(|(e, f)| p[0] * e + p[1] - f)))
+/// };
+/// let bounds = [Bounds { min: 0.0, max: 100.0 }, Bounds { min: 0.0, max: 1.0 }];
+/// let found = minimise(&residuals, &[50.0, 0.5], &bounds, LmOptions::default()).ok_or("it can be evaluated")?;
+/// assert!((found.parameters[0] - 28.3).abs() < 0.01 && (found.parameters[1] - 0.1).abs() < 1e-4);
+/// # Ok(())
+/// # }
+/// ```
 pub fn minimise(residuals: &Residuals<'_>, start: &[f64], bounds: &[Bounds], options: LmOptions) -> Option<LmResult> {
     descend(Search { residuals, slopes: None, bounds, evaluations: 0 }, start, options)
 }

@@ -64,6 +64,24 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
 /// Simulates a run at its sample times with its recorded inputs and known conditions.
 ///
 /// `every` > 1 takes only each so-many-th sample (for fits); the times of the result are those taken.
+///
+/// ```
+/// use smam::identify::{RecordedRun, replay};
+/// use smam::recording::{Run, figures};
+/// use smam::scene::Scene;
+/// use smam::system::{Schedule, Simulation, record};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &Schedule::even(1.0, 0.01))?;
+/// let run = Run { file: "sine.csv".to_owned(), run_use: None, conditions: Default::default() };
+/// let again = replay("muscle_bench", &[], &RecordedRun { run, recording: recording.clone() }, 1)?;
+/// // The plunger goes straight from sample to sample instead of along the sine: that is all the difference.
+/// let [first, second] = [recording.channel("elongation_mm")?, again.channel("elongation_mm")?];
+/// let apart_mm: Vec<f64> = first.values.iter().zip(&second.values).map(|(a, b)| a - b).collect();
+/// assert!(figures::rms(&apart_mm) < 0.01);
+/// # Ok(())
+/// # }
+/// ```
 pub fn replay(
     scene: &str,
     overrides: &[Override],

@@ -25,6 +25,35 @@ use super::{free_bodies, shapes, urdf_file};
 /// Vectors of positions, velocities and forces are in the order of [`Mechanism::coordinates`];
 /// a slice of another length is filled or read as far as it goes. Link indices count the URDF's
 /// links in its order, then the free bodies.
+///
+/// ```
+/// use nalgebra::DMatrix;
+/// use smam::mechanism::{Mechanism, MechanismSpec};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let urdf = r#"<robot name="pendulum"><link name="base"/>
+///   <link name="rod"><inertial><origin xyz="0.1 0 0"/><mass value="0.2"/>
+///     <inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial></link>
+///   <joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 0 1"/>
+///     <limit effort="1" velocity="1"/></joint></robot>"#;
+/// std::fs::write(folder.path().join("pendulum.urdf"), urdf)?;
+/// let spec = MechanismSpec {
+///     urdf: "pendulum.urdf".into(),
+///     gravity_m_s2: [0.0, -9.81, 0.0],
+///     links_have_weight: true,
+///     ..MechanismSpec::default()
+/// };
+/// let pendulum = Mechanism::load(&spec, folder.path())?;
+/// // Held level: M = I + m l^2, and its weight turns it by -m g l.
+/// let (mut inertia_kg_m2, mut torque_n_m) = (DMatrix::zeros(1, 1), [0.0]);
+/// pendulum.mass_matrix(&mut inertia_kg_m2);
+/// pendulum.weight(&mut torque_n_m);
+/// assert!((inertia_kg_m2[(0, 0)] - (1e-6 + 0.2 * 0.01)).abs() < 1e-9);
+/// assert!((torque_n_m[0] + 0.2 * 9.81 * 0.1).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
 pub struct Mechanism {
     pub(super) world: PhysicsWorld,
     pub(super) multibody: Option<MultibodyIndex>,

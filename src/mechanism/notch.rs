@@ -17,6 +17,22 @@
 use super::error::MechanismError;
 
 /// Cross-section and height of a notch.
+///
+/// ```
+/// use std::f64::consts::PI;
+///
+/// use smam::mechanism::{NotchGeometry, NotchedTube};
+///
+/// let notch = NotchedTube::STOCK.notch;
+/// // PTFE of 0.5 GPa, eight notches in series: 1.05 mN m/rad; a tendon on the cut's side has a lever of 2.6 mm.
+/// assert!((notch.stiffness_n_m_rad(0.5e9) / 8.0 / 1.048e-3 - 1.0).abs() < 1e-3);
+/// assert!((notch.lever_m() / 2.617e-3 - 1.0).abs() < 1e-3);
+/// assert!((notch.tendon_pull_m(1e-3) / (notch.lever_m() * 1e-3) - 1.0).abs() < 1e-3);
+/// // Scratched only, the section is a ring.
+/// let scratched = NotchGeometry { cut_depth_m: 1e-9, ..notch };
+/// let ring_m4 = PI / 4.0 * (notch.outer_radius_m.powi(4) - notch.inner_radius_m.powi(4));
+/// assert!((scratched.second_moment_m4() / ring_m4 - 1.0).abs() < 1e-4);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotchGeometry {
     /// r_o, m.

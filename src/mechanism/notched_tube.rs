@@ -75,6 +75,24 @@ fn strip_file(meshes: &str) -> String {
 /// The URDF text. With the name of `meshes` it draws the tube by the files of [`notched_tube_meshes`], beside it; without,
 /// by cylinders and boxes.
 ///
+/// ```
+/// use smam::mechanism::{Mechanism, MechanismSpec, NotchedTube, notched_tube_urdf};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let tube = NotchedTube { notches: 3, forceps: None, ..NotchedTube::STOCK };
+/// std::fs::write(folder.path().join("tube.urdf"), notched_tube_urdf(&tube, None)?)?;
+/// let spec = MechanismSpec { urdf: "tube.urdf".into(), ..MechanismSpec::default() };
+/// let mechanism = Mechanism::load(&spec, folder.path())?;
+/// let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
+/// assert_eq!(names, ["notch_1", "notch_2", "notch_3"]);
+/// // The last hinge stands behind the base, two bridges and two and a half notches.
+/// let hinge_m = mechanism.link_poses()[3].translation_m[0];
+/// assert!((hinge_m - (tube.base_m + 2.0 * tube.bridge_m + 2.5 * tube.notch.notch_height_m)).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// Sizes that make no such tube.
 pub fn notched_tube_urdf(tube: &NotchedTube, meshes: Option<&str>) -> Result<String, MechanismError> {

@@ -23,6 +23,14 @@ pub struct Coil<D> {
 ///
 /// `G` shear modulus of the wire, Pa; `d` wire diameter, m; `D` mean coil diameter, m; `N` active turns.
 /// Range: spring index `D/d` above about 4. Source: Wahl, Mechanical Springs.
+///
+/// ```
+/// use smam::muscle::spring_rate;
+///
+/// // The stock coil: 250 turns of 0.2 mm steel wire, 1.25 mm wide.
+/// let stiffness_n_m = spring_rate(69.1e9_f64, 0.2e-3, 1.25e-3, 250.0);
+/// assert!((stiffness_n_m - 28.3).abs() < 0.05);
+/// ```
 pub fn spring_rate<D: Scalar>(shear_modulus_pa: D, wire_diameter_m: D, mean_diameter_m: D, turns: D) -> D {
     shear_modulus_pa * wire_diameter_m.powi(4) / (mean_diameter_m.powi(3) * turns * 8.0)
 }
@@ -46,6 +54,15 @@ impl<D: Scalar> Coil<D> {
 /// The closed coil: `F_push = max(0, -k e - c de/dt)` for `e < 0`, else 0. Stock: 2e4 N/m, 3 N s/m.
 ///
 /// It pushes the ends apart and never holds them together; its force is *subtracted* from the muscle's pull.
+///
+/// ```
+/// use smam::muscle::Stop;
+///
+/// let closed = Stop { stiffness_n_m: 2e4_f64, damping_n_s_m: 3.0 };
+/// assert!((closed.push(-1e-4, -0.1).push_n - 2.3).abs() < 1e-12);
+/// // However fast the ends part, it does not hold them.
+/// assert_eq!(closed.push(-1e-4, 1.0).push_n, 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stop<D> {

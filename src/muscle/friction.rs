@@ -20,6 +20,21 @@ use serde::{Deserialize, Serialize};
 /// Range: `nu > 0`, `n >= 1`, `|rho| < A` ([`Friction::check`]). With `rho = 0` it is passive at constant `p`
 /// with the storage of [`Friction::stored_energy_j`]; with `rho` any *closed* loop still loses energy.
 /// Source: the state of Thai et al. 2021, eq. (4), acting as a force.
+///
+/// ```
+/// use smam::muscle::Friction;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let friction = Friction::dahl(0.106_f64, 0.222e-6, 5.2e-3);
+/// // After a long way out, all of m0 + m1 p: 0.55 N at 2 MPa.
+/// let out = friction.exact_step(0.0, 0.1).ok_or("n is 1")?;
+/// assert!((friction.force_n(out, 2e6) - 0.55).abs() < 1e-6);
+/// // Turned about, the state stands at 2/e - 1 one presliding length later.
+/// let back = friction.exact_step(1.0, -5.2e-3).ok_or("n is 1")?;
+/// assert!((back - (2.0 / std::f64::consts::E - 1.0)).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Friction<D> {

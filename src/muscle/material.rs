@@ -64,6 +64,15 @@ impl Material<f64> {
 
 impl<D: Scalar> Material<D> {
     /// Shear modulus at small strain, Pa.
+    ///
+    /// ```
+    /// use smam::muscle::Material;
+    ///
+    /// let silicone = Material::Yeoh { c1_pa: 0.255e6_f64, c2_pa: 0.0155e6, c3_pa: 0.0 };
+    /// assert_eq!(silicone.shear_modulus_pa(), 0.51e6);
+    /// assert!(silicone.check().is_ok());
+    /// assert!(Material::NeoHookean { c1_pa: -0.255e6_f64 }.check().is_err());
+    /// ```
     pub fn shear_modulus_pa(&self) -> D {
         match self {
             Material::NeoHookean { c1_pa } | Material::Yeoh { c1_pa, .. } => *c1_pa * 2.0,

@@ -69,6 +69,20 @@ pub struct WallState<D> {
 /// `b^2 = R_c^2 - (R_c^2 - B^2)/lambda`, so `lambda_theta = b/B`, `lambda_r = 1/(lambda lambda_theta)`, and
 /// `U = L0 integral of W 2 pi B dB`. The fluid's volume is `pi R_c^2 L` minus the constant volume of the wall:
 /// `dV/dL = pi R_c^2` whatever the bore. Range: `e > -L0 (r0/R_c)^2`, where the bore closes.
+///
+/// ```
+/// use smam::muscle::{Material, Wall, WallCondition, WallGeometry};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let tube = WallGeometry { inner_radius_m: 0.255e-3, outer_radius_m: 0.525e-3, rest_length_m: 0.05 };
+/// let wall = Wall::new(tube, Material::Yeoh { c1_pa: 0.255e6_f64, c2_pa: 0.0155e6, c3_pa: 0.0 })?;
+/// let [at, on] = [0.030, 0.031].map(|elongation_m| wall.state(WallCondition::Held, elongation_m, 1e6));
+/// // Pressure pushes on the coil's bore, and a muscle that grows by a millimetre takes in a millimetre of that bore.
+/// assert_eq!(at.dpull_dp, -tube.coil_area_m2());
+/// assert!(((on.volume_m3 - at.volume_m3) / (1e-3 * tube.coil_area_m2()) - 1.0).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Wall<D> {
     geometry: WallGeometry,

@@ -12,6 +12,16 @@ use crate::diagnose::{Case, Options, Step, diagnose, write_answer};
 use crate::recording::write_whole;
 
 /// How many cases, and from which seed they are drawn.
+///
+/// ```
+/// use smam::conceal::Hiding;
+/// use smam::proof::Plan;
+///
+/// let cases = Plan { hiding: 60, nothing: 60, seed: 1 }.cases();
+/// // Half hide nothing, and so do half of any first part.
+/// let nothing = |count: usize| cases[..count].iter().filter(|case| case.hiding == Hiding::Nothing).count();
+/// assert_eq!((cases.len(), nothing(120), nothing(40)), (120, 60, 20));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Cases in which something is missing.

@@ -5,6 +5,15 @@ use super::row::Row;
 use crate::conceal::Hiding;
 
 /// How many of the cases in a bin are right.
+///
+/// ```
+/// use smam::proof::Share;
+///
+/// // None of three hundred: at most 1.26 %, z^2/(n + z^2).
+/// let none = Share { from: 0.0, to: 1.0, mean: 0.5, hits: 0, count: 300 };
+/// let [low, high] = none.interval();
+/// assert!(low == 0.0 && (high - 1.96_f64.powi(2) / (300.0 + 1.96_f64.powi(2))).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     pub from: f64,

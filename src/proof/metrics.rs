@@ -48,6 +48,40 @@ impl Goal {
 }
 
 /// All figures, in the order of the table.
+///
+/// ```
+/// use smam::conceal::{Hiding, Rig};
+/// use smam::diagnose::Verdict;
+/// use smam::proof::{Row, metrics};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // Two hundred benches that hide nothing; of one it was said that something is missing.
+/// let quiet = |i: usize| Row {
+///     name: format!("s1_{i:05}"),
+///     rig: Rig::MuscleBench,
+///     hiding: Hiding::Nothing,
+///     verdict: if i == 0 { Verdict::MissingPhysics } else { Verdict::Adequate },
+///     seconds: Some(9.0),
+/// #   secrets: Vec::new(),
+/// #   is_noise_coloured: false,
+/// #   is_noise_stated: true,
+/// #   decoys: Vec::new(),
+/// #   element: None,
+/// #   effects: Vec::new(),
+/// #   excess: 0.0,
+/// #   gap_closed: None,
+/// #   settled: None,
+///     // ...
+/// };
+/// let rows: Vec<Row> = (0..200).map(quiet).collect();
+/// let figures = metrics(&rows);
+/// let alarms = figures.iter().find(|m| m.key == "false_alarms").ok_or("it is a figure")?;
+/// // Half a percent is within the target of one; two hundred cases do not show it yet.
+/// assert_eq!((alarms.value, alarms.is_met), (0.005, true));
+/// assert!(alarms.interval[1] > 0.01);
+/// # Ok(())
+/// # }
+/// ```
 pub fn metrics(rows: &[Row]) -> Vec<Metric> {
     let nothing = select(rows, |r| r.hiding == Hiding::Nothing);
     let visible = select(rows, |r| r.hiding != Hiding::Nothing && r.excess >= VISIBLE);

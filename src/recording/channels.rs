@@ -7,6 +7,17 @@ use std::collections::HashSet;
 pub const TIME_COLUMN: &str = "time_s";
 
 /// One column of samples.
+///
+/// ```
+/// use smam::recording::Channel;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pressure = Channel::new("pressure_kpa", vec![-99.0, 1900.0]);
+/// assert_eq!((pressure.unit()?.symbol, pressure.si()?), ("kPa", vec![-99e3, 1.9e6]));
+/// assert!(Channel::new("pressure_torr", Vec::new()).unit().is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Column name; its suffix is the unit of `values`.
@@ -43,6 +54,19 @@ impl Channel {
 ///
 /// Sampling may be uneven. The fields are private so that lengths, order of time and unique names
 /// always hold.
+///
+/// ```
+/// use smam::recording::{Channel, Recording};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut recording = Recording::new(vec![0.0, 0.5], vec![Channel::new("plunger_mm", vec![1.0, 3.0])])?;
+/// assert_eq!(recording.value_at("plunger_mm", 0.25)?, 2.0);
+/// assert!(recording.push(Channel::new("force_n", vec![1.0])).is_err());
+/// // Time does not stand still.
+/// assert!(Recording::new(vec![0.0, 0.0], Vec::new()).is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     time_s: Vec<f64>,

@@ -28,6 +28,22 @@ impl ChannelFit {
 ///
 /// Samples missing in either recording are skipped.
 ///
+/// ```
+/// use smam::recording::{Channel, ChannelSpec, Recording, Role, compare};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let recording = |force_n: [f64; 3]| {
+///     Recording::new(vec![0.0, 1.0, 2.0], vec![Channel::new("force_n", force_n.to_vec())])
+/// };
+/// let (measured, simulated) = (recording([1.0, f64::NAN, 5.0])?, recording([2.0, 7.0, 4.0])?);
+/// let force = ChannelSpec { column: "force_n".to_owned(), role: Role::Output, noise_sd: Some(0.5), bag: None };
+/// let fits = compare(&measured, &simulated, &[force])?;
+/// // 1 N off at the two samples that there are: twice the noise.
+/// assert_eq!((fits[0].rmse, fits[0].count, fits[0].rmse_over_noise()), (1.0, 2, Some(2.0)));
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// The sample times differ; an output is missing in either recording.
 pub fn compare(

@@ -11,6 +11,18 @@ use tempfile::NamedTempFile;
 ///
 /// Numbers have the fewest digits that read back to the same `f64`; a missing value is `NaN`. The
 /// same values give the same bytes. One row is one `write_all` of a whole line.
+///
+/// ```
+/// use smam::recording::RowWriter;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut rows = RowWriter::new(Vec::new(), &["force_n"])?;
+/// rows.row(0.0, &[0.05])?;
+/// rows.row(0.01, &[f64::NAN])?;
+/// assert_eq!(String::from_utf8(rows.finish()?)?, "time_s,force_n\n0,0.05\n0.01,NaN\n");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct RowWriter<W: Write> {
     target: W,
@@ -96,6 +108,21 @@ fn push_quoted(line: &mut String, name: &str) {
 /// Rows stream into a temporary file in the target's folder; [`CsvWriter::finish`] moves it to the
 /// target in one step. Called after an interrupt it keeps what was computed, in whole rows. Dropped
 /// without it, nothing is left and a former file of that name is untouched.
+///
+/// ```
+/// use smam::recording::CsvWriter;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("sine.csv");
+/// let mut writer = CsvWriter::create(&path, &["force_n"])?;
+/// writer.row(0.0, &[0.05])?;
+/// assert!(!path.exists());
+/// writer.finish()?;
+/// assert!(path.exists());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct CsvWriter {
     path: PathBuf,

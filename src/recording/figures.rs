@@ -1,4 +1,14 @@
 //! Figures of a series of samples: NaN where there are no samples, or a missing one.
+//!
+//! ```
+//! use smam::recording::figures;
+//!
+//! // A spring of 28.3 N/m with a preload of 0.1 N, and the work of a loop of 10 mm by 0.2 N.
+//! let spring = figures::line_of_best_fit(&[0.0, 0.01, 0.02], &[0.1, 0.383, 0.666]);
+//! assert!((spring.slope - 28.3).abs() < 1e-9 && (spring.offset - 0.1).abs() < 1e-9);
+//! let work_j = figures::enclosed(&[0.0, 0.01, 0.01, 0.0], &[0.0, 0.0, 0.2, 0.2]).abs();
+//! assert!((work_j - 2e-3).abs() < 1e-15);
+//! ```
 
 use statrs::statistics::Statistics;
 

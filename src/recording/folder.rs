@@ -59,6 +59,29 @@ pub struct Run {
 }
 
 /// The recordings of one folder.
+///
+/// ```
+/// use smam::recording::{RecordingSet, Role};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let set = r#"
+/// format = 1
+/// scene = "muscle_bench"
+/// channel = [{ column = "plunger_mm", role = "input" }, { column = "elongation_mm", role = "output" }]
+/// run = [{ file = "sine.csv", use = "fit", hanging_mass_kg = 0.05 }]
+/// "#;
+/// std::fs::write(folder.path().join("recordings.toml"), set)?;
+/// let sine = "time_s,plunger_mm,elongation_mm,room_v\n0,0,0,1\n0.01,0.1,0.9,1\n";
+/// std::fs::write(folder.path().join("sine.csv"), sine)?;
+/// let set = RecordingSet::load(folder.path())?;
+/// assert_eq!(set.of_role(Role::Output).map(|c| c.column.as_str()).collect::<Vec<_>>(), ["elongation_mm"]);
+/// assert_eq!(set.runs[0].conditions["hanging_mass_kg"], 0.05);
+/// let run = set.load_run(&set.runs[0])?;
+/// assert!(run.recording.sample_count() == 2 && run.notes[0].contains("room_v"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordingSet {
     /// The folder.

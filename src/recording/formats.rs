@@ -58,6 +58,21 @@ impl FileFormat {
 ///
 /// A null, a NaN or an empty cell is a missing sample and kept as NaN.
 ///
+/// ```
+/// use smam::columns::{Column, encode};
+/// use smam::recording::read_recording;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let [csv, parquet] = ["sine.csv", "sine.parquet"].map(|name| folder.path().join(name));
+/// std::fs::write(&csv, "time_s,plunger_mm\n0,0\n0.01,0.3\n")?;
+/// let column = |name: &str, values: [f64; 2]| (name.to_owned(), Column::Numbers(values.to_vec()));
+/// std::fs::write(&parquet, encode(&[column("time_s", [0.0, 0.01]), column("plunger_mm", [0.0, 0.3])])?)?;
+/// assert_eq!(read_recording(&csv)?, read_recording(&parquet)?);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// As [`read_csv`]; a Parquet file without the time, or with columns that are no numbers; a bag without a topic that is
 /// called as a column is.

@@ -3,6 +3,21 @@
 //! It knows files and numbers, nothing of scenes. A channel keeps the unit its
 //! column name ends in (`plunger_mm`), so a file is written back as it was read; [`Recording::si`]
 //! gives SI values.
+//!
+//! ```
+//! use smam::recording::{Channel, Recording, figures};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let plunger = Channel::new("plunger_mm", vec![0.0, 1.5, 3.0]);
+//! let force = Channel::new("force_n", vec![0.05, f64::NAN, 0.85]);
+//! let recording = Recording::new(vec![0.0, 0.5, 1.0], vec![plunger, force])?;
+//! assert_eq!(recording.si("plunger_mm")?[1], 1.5e-3);
+//! // Straight across what is missing, when something is driven by it.
+//! assert!((recording.piecewise_si("force_n")?.value(0.5) - 0.45).abs() < 1e-12);
+//! assert_eq!(figures::range(&recording.channel("plunger_mm")?.values), 3.0);
+//! # Ok(())
+//! # }
+//! ```
 
 mod bag_read;
 mod bag_source;

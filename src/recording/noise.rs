@@ -25,6 +25,19 @@ const MIN_RESIDUALS: usize = 20;
 /// Limits: noise that is filtered or otherwise correlated is underestimated; a signal that is not
 /// smooth over four samples counts as noise, so does vibration near the sampling rate. State
 /// `noise_sd` where it is known.
+///
+/// ```
+/// use smam::recording::noise_sd;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // A slow rise, shown in steps of 0.5 kPa: the error of rounding, q/sqrt(12).
+/// let time_s: Vec<f64> = (0..1000).map(f64::from).collect();
+/// let pressure_kpa: Vec<f64> = time_s.iter().map(|t| (t / 100.0).floor() * 0.5).collect();
+/// let sd_kpa = noise_sd(&time_s, &pressure_kpa).ok_or("enough samples")?;
+/// assert!((sd_kpa - 0.5 / 12_f64.sqrt()).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 pub fn noise_sd(time_s: &[f64], values: &[f64]) -> Option<f64> {
     if let Some(sd) = noise_of_neighbours(time_s, values) {
         return Some(sd);

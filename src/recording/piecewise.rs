@@ -8,6 +8,17 @@
 /// `t` in seconds, `u` in the unit of the values given (SI where a simulation is driven). Missing
 /// samples are no points: the line runs on from the last to the next sample there is.
 /// [`super::survey`] says where such stretches are.
+///
+/// ```
+/// use smam::recording::PiecewiseLinear;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let plunger_m = PiecewiseLinear::new(&[0.0, 1.0, 2.0], &[0.0, f64::NAN, 3e-3]).ok_or("two samples are there")?;
+/// assert_eq!((plunger_m.value(1.0), plunger_m.slope(1.0)), (1.5e-3, 1.5e-3));
+/// assert_eq!((plunger_m.value(9.0), plunger_m.slope(9.0)), (3e-3, 0.0));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PiecewiseLinear {
     times_s: Vec<f64>,

@@ -107,6 +107,18 @@ impl fmt::Display for Survey {
 }
 
 /// Surveys the sampling and the missing samples of a recording.
+///
+/// ```
+/// use smam::recording::{Channel, Recording, survey};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let force = Channel::new("force_n", vec![1.0, f64::NAN, 1.0, 1.0, 1.0]);
+/// let found = survey(&Recording::new(vec![0.0, 1.0, 2.0, 3.0, 7.0], vec![force])?);
+/// assert_eq!((found.gaps[0].from_s, found.gaps[0].to_s), (3.0, 7.0));
+/// assert_eq!((found.missing[0].column.as_str(), found.missing[0].count), ("force_n", 1));
+/// # Ok(())
+/// # }
+/// ```
 pub fn survey(recording: &Recording) -> Survey {
     let time_s = recording.time_s();
     let gap_limit_s = gap_limit_s(time_s);

@@ -93,6 +93,19 @@ impl ColumnName<'_> {
 ///
 /// The longest suffix wins: `rate_deg_s` is degrees per second, never a `rate_deg` in seconds.
 ///
+/// ```
+/// use smam::recording::parse_column;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pressure = parse_column("pressure_1_kpa")?;
+/// assert_eq!((pressure.base, pressure.si_column()), ("pressure_1", "pressure_1_pa".to_owned()));
+/// assert_eq!(pressure.unit.to_si(1900.0), 1.9e6);
+/// // Degrees per second, and no duration.
+/// assert_eq!(parse_column("bend_deg_s")?.unit.symbol, "°/s");
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// [`RecordingError::UnknownUnit`], which names the column and the known suffixes.
 pub fn parse_column(column: &str) -> Result<ColumnName<'_>, RecordingError> {

@@ -8,6 +8,18 @@ use tempfile::NamedTempFile;
 /// Writes a text under `path`, making its folder where it is missing. A former file of that name stays until the new
 /// one is complete.
 ///
+/// ```
+/// use smam::recording::write_whole;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("out/wanted.csv");
+/// write_whole(&path, "time_s,elongation_mm\n0,0\n")?;
+/// assert_eq!(std::fs::read_to_string(&path)?.lines().count(), 2);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// The folder cannot be made or written to, or there is no room.
 pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {

@@ -10,6 +10,16 @@ padding:.25rem .8rem;text-align:right}th:first-child,td:first-child{text-align:l
 figure{margin:1.5rem 0}figure svg{max-width:100%;height:auto}figcaption{color:#444}";
 
 /// A page in the making. All text is escaped; only figures are taken as they are.
+///
+/// ```
+/// use smam::report::HtmlPage;
+///
+/// let mut page = HtmlPage::new("Bench");
+/// page.heading("Fit").paragraph("p < 1 MPa");
+/// page.table(&["run", "RMSE, mm"], &[vec!["sine".to_owned(), "0.03".to_owned()]]);
+/// let text = page.finish();
+/// assert!(text.contains("<h2>Fit</h2>") && text.contains("p &lt; 1 MPa") && text.contains("<td>0.03</td>"));
+/// ```
 #[derive(Clone, Debug)]
 pub struct HtmlPage {
     title: String,

@@ -171,6 +171,22 @@ pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), right: f64, entries: &[
 /// A figure of panels below each other, each with its legend under its title.
 ///
 /// `width` and `panel_height` in pixels; 640 by 300 is legible on a page.
+///
+/// ```
+/// use smam::report::{BLUE, Panel, Series, figure_svg};
+///
+/// let loading = Series { label: "loading".to_owned(), colour: BLUE, x: vec![0.0, 3.0], y: vec![0.0, 26.9] };
+/// let panel = Panel {
+///     x_label: "plunger (mm)".to_owned(),
+///     y_label: "elongation (mm)".to_owned(),
+///     series: vec![loading],
+///     ..Panel::default()
+/// };
+/// let svg = figure_svg(&[panel], 640.0, 300.0);
+/// assert!([">plunger (mm)<", ">elongation (mm)<", ">loading<"].iter().all(|text| svg.contains(text)));
+/// // Nothing is fetched.
+/// assert!(!svg.contains("href"));
+/// ```
 pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
     const GAP: f64 = 10.0;
     const LEGEND_HEIGHT: f64 = 20.0;

@@ -34,6 +34,19 @@ impl Standing {
 pub(super) const YES_NO: &str = "yes/no";
 
 /// One number: the paper's, ours, and what their difference is worth.
+///
+/// ```
+/// use smam::reproduce::{Row, Standing};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let range = Row::compared("range of the loop", "mm", 26.87, 26.9, 0.1, "within 0.1 mm");
+/// assert_eq!(range.standing, Standing::Met);
+/// assert!((range.deviation().ok_or("both are there")? - 0.03).abs() < 1e-9);
+/// // A number that the paper does not print is shown, and has nothing to deviate from.
+/// assert_eq!(Row::shown("work of the loop", "mJ", 1.2, "").deviation(), None);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     pub quantity: String,

@@ -42,6 +42,13 @@ const fn figure(name: &'static str, title: &'static str, make: fn() -> Result<Ch
 }
 
 /// Every figure and table of the paper, in its order.
+///
+/// ```
+/// use smam::reproduce::FIGURES;
+///
+/// let frequency = FIGURES.iter().find(|figure| figure.name == "4a").map(|figure| figure.title);
+/// assert_eq!(frequency, Some("frequency response to 3 Hz"));
+/// ```
 pub const FIGURES: &[Figure] = &[
     figure("1", "sizes, and elongation to 245 %", sizes::chapter),
     figure("lift", "loads lifted (Fig. 1c, d)", lifting::chapter),

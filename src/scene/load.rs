@@ -37,6 +37,19 @@ pub struct Scene {
 
 impl Scene {
     /// Reads a scene by path or stock name and applies `overrides` in order.
+    ///
+    /// What is wrong is said by table, key and value:
+    ///
+    /// ```
+    /// use smam::scene::{Override, Scene};
+    ///
+    /// let refused = |name: &str, changed: &[Override]| Scene::load(name, changed).err().map(|e| e.to_string());
+    /// let message = refused("muscle_bnch", &[]).unwrap_or_default();
+    /// assert!(message.contains("did you mean \"muscle_bench\"?"));
+    /// let negative = Override::number("muscles.damping_n_s_m", -0.1);
+    /// let message = refused("muscle_bench", &[negative]).unwrap_or_default();
+    /// assert!(message.contains("[muscles]: damping_n_s_m = -0.1 must be >= 0"));
+    /// ```
     pub fn load(path_or_name: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let path = find_scene(path_or_name)?;
         let text = stock::read_text(&path).map_err(|source| unreadable(&path, source))?;
@@ -44,6 +57,19 @@ impl Scene {
     }
 
     /// Reads a scene from text; `path` is where it stands.
+    ///
+    /// ```
+    /// use smam::{scene::Scene, stock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let path = stock::builtin("scenes/muscle_bench.toml").ok_or("it is carried")?;
+    /// let text = stock::read_text(&path)?.replace("stroke_m = 3.0e-3", "stroke_m = 1.5e-3");
+    /// let scene = Scene::parse(&text, &path, &[])?;
+    /// // Half a period of 0.1 Hz: the whole stroke.
+    /// assert!((scene.programs[0].value(5.0) - 1.5e-3).abs() < 1e-12);
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<Self, SceneError> {
         let syntax = |message: String| SceneError::Syntax { file: path.to_owned(), message };
         // Straight from the text first: its errors carry line and column, those of a changed table cannot.

@@ -3,6 +3,19 @@
 //! Raw text becomes a [`SceneFile`] (unknown keys refused, every key with its unit), `--set` and the known conditions
 //! of a run change it by key, [`Scene::from_file`] checks the numbers and the names. Errors name file, table, key,
 //! value and remedy.
+//!
+//! ```
+//! use smam::scene::{Override, Scene};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = Scene::load("muscle_bench", &[Override::parse("muscles.friction.m0_n=0.2")?])?;
+//! let friction = scene.file.muscles.as_ref().and_then(|m| m.friction.as_ref()).ok_or("the bench has friction")?;
+//! assert_eq!(friction.m0_n, 0.2);
+//! // Every key that may be set, with its value.
+//! assert!(scene.keys().contains(&("simulation.step_s".to_owned(), "0.01".to_owned())));
+//! # Ok(())
+//! # }
+//! ```
 
 mod check;
 mod check_effects;

@@ -14,11 +14,30 @@ const CALIBRATION_NAMES: [(&str, &str); 5] = [
 ];
 
 /// The scene key that a calibration name stands for; any other key is itself.
+///
+/// ```
+/// use smam::scene::calibration_key;
+///
+/// assert_eq!(calibration_key("tube_c1_pa"), "muscles.tube.material.c1_pa");
+/// assert_eq!(calibration_key("muscles.rest_length_m"), "muscles.rest_length_m");
+/// ```
 pub fn calibration_key(name: &str) -> &str {
     CALIBRATION_NAMES.iter().find(|(short, _)| *short == name).map_or(name, |(_, key)| key)
 }
 
 /// One changed key.
+///
+/// ```
+/// use smam::scene::Override;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// assert_eq!(Override::parse("muscles.friction.m0_n = 0.2")?, Override::number("muscles.friction.m0_n", 0.2));
+/// // A bare word is a text.
+/// assert_eq!(Override::parse("muscles.tube.wall=unilateral")?.value.as_str(), Some("unilateral"));
+/// assert!(Override::parse("muscles.friction.m0_n").is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
     pub key: String,

@@ -18,6 +18,21 @@ use toml::{Table, Value};
 /// | `points` | `time_s` (list), `value_U` (list) | piecewise linear, ends held |
 ///
 /// All but `points` have an optional `start_s` before which the value is the first one.
+///
+/// ```
+/// use smam::scene::Program;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let table: toml::Table = "kind = 'sine'\nstroke_m = 3e-3\nfrequency_hz = 0.1".parse()?;
+/// let plunger = Program::parse(&table, "m")?;
+/// assert_eq!(plunger.value(0.0), 0.0);
+/// assert!((plunger.value(5.0) - 3e-3).abs() < 1e-15);
+/// // Fastest in the middle of the way: pi f times the stroke, 0.94 mm/s.
+/// let speed_m_s = (plunger.value(2.501) - plunger.value(2.499)) / 2e-3;
+/// assert!((speed_m_s / (std::f64::consts::PI * 0.1 * 3e-3) - 1.0).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     start_s: f64,

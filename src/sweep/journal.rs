@@ -34,6 +34,26 @@ pub enum JournalLine {
 }
 
 /// The journal of a folder, open for more.
+///
+/// ```
+/// use smam::sweep::{Journal, Plan, Row};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let plan = Plan::new(toml::from_str(
+///     "format = 1\nname = 'friction'\nscene = 'muscle_bench'\n\
+///      vary = [{ key = 'muscles.friction.m0_n', values = [0.1, 0.2] }]\n\
+///      measure = [{ name = 'range_mm', of = 'range(elongation_mm)' }]",
+/// )?)?;
+/// let folder = tempfile::tempdir()?;
+/// let journal = Journal::open(folder.path(), &plan, false)?;
+/// journal.add(&Row { index: 1, values: plan.point(1), outcome: Ok(vec![26.2]) })?;
+/// drop(journal);
+/// // Begun is begun: anew only in another folder, else it goes on with what is done.
+/// assert!(Journal::open(folder.path(), &plan, false).is_err());
+/// assert!(Journal::open(folder.path(), &plan, true)?.done.keys().eq([&1_u64]));
+/// # Ok(())
+/// # }
+/// ```
 pub struct Journal {
     /// Held while the sweep runs; a kill lets go of it.
     _folder: Option<File>,

@@ -21,6 +21,16 @@ impl Score {
 }
 
 /// Indices of the points within the limits that no other beats, in their order; of equal ones the first.
+///
+/// ```
+/// use smam::sweep::{Score, front};
+///
+/// // Weight and negative pull; the last one breaks a limit.
+/// let score = |mass_g: f64, pull_n: f64, excess: f64| Score { costs: vec![mass_g, -pull_n], excess };
+/// let points = [score(1.0, 2.0, 0.0), score(2.0, 5.0, 0.0), score(2.5, 4.0, 0.0), score(0.5, 9.0, 0.1)];
+/// // The third is heavier than the second and pulls less.
+/// assert_eq!(front(&points), [0, 1]);
+/// ```
 pub fn front(scores: &[Score]) -> Vec<usize> {
     let mut found: Vec<usize> = Vec::new();
     for (i, score) in scores.iter().enumerate() {

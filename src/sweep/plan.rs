@@ -19,6 +19,27 @@ use crate::stock;
 use crate::system::Schedule;
 
 /// A sweep ready to run.
+///
+/// ```
+/// use smam::sweep::{Plan, SweepFile};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let file = |key: &str| -> Result<SweepFile, toml::de::Error> {
+///     toml::from_str(&format!(
+///         "format = 1\nname = 'friction'\nscene = 'muscle_bench'\n\
+///          vary = [{{ key = '{key}', from = 0.1, to = 0.2, count = 3 }}]\n\
+///          measure = [{{ name = 'range_mm', of = 'range(elongation_mm)' }}]"
+///     ))
+/// };
+/// let plan = Plan::new(file("muscles.friction.m0_n")?)?;
+/// assert_eq!((plan.count(), plan.point(2)), (3, vec![0.2]));
+/// assert_eq!(plan.columns(), ["index", "muscles.friction.m0_n", "range_mm"]);
+/// // A wrong key is found before anything runs.
+/// let message = Plan::new(file("muscles.friction.m0n")?).err().map_or_else(String::new, |e| e.to_string());
+/// assert!(message.contains("did you mean \"muscles.friction.m0_n\"?"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub file: SweepFile,
@@ -269,6 +290,16 @@ fn fingerprint(file: &SweepFile, base: &Scene) -> Result<String, SweepError> {
 }
 
 /// One part of a sweep's points: every `of`-th, from `number` on (counted from 1).
+///
+/// ```
+/// use smam::sweep::Shard;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// assert_eq!(Shard::parse("2/7")?.points(20).collect::<Vec<_>>(), [1, 8, 15]);
+/// assert!(Shard::parse("8/7").is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     pub number: u64,

@@ -17,6 +17,26 @@ pub struct Row {
 }
 
 /// Runs a point at values of the keys. What fails there is its outcome; nothing of it depends on other points.
+///
+/// ```
+/// use smam::sweep::{Plan, SweepFile, evaluate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let file: SweepFile = toml::from_str(r#"
+/// format = 1
+/// name = "stiffness"
+/// scene = "muscle_bench"
+/// duration_s = 1.0
+/// vary = [{ key = "tube_c1_pa", values = [0.2e6, 0.3e6] }]
+/// measure = [{ name = "longest_mm", of = "max(elongation_mm)" }]
+/// "#)?;
+/// let plan = Plan::new(file)?;
+/// let longest_mm = |i: u64| plan.measured(&evaluate(&plan, i, plan.point(i)), "longest_mm");
+/// // Half as stiff again: a tenth shorter.
+/// assert!((longest_mm(1) / longest_mm(0) - 0.9).abs() < 0.02);
+/// # Ok(())
+/// # }
+/// ```
 pub fn evaluate(plan: &Plan, index: u64, values: Vec<f64>) -> Row {
     // A point that breaks the engine must not end the sweep.
     let outcome = catch_unwind(AssertUnwindSafe(|| measured(plan, &values)))

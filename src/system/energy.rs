@@ -26,6 +26,26 @@ struct Powers {
 }
 
 /// The book of one run.
+///
+/// ```
+/// use smam::scene::Scene;
+/// use smam::system::Simulation;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
+/// simulation.keep_energy_book();
+/// simulation.advance_to(0.5)?;
+/// let lines = simulation.energy_book().ok_or("it was kept")?.lines();
+/// let line_j = |name: &str| lines.iter().find(|(n, _)| n == name).map_or(f64::NAN, |(_, j)| *j);
+/// let brought = ["input_work", "load_work", "pressure_friction_exchange", "engine_and_contacts"];
+/// let brought_j: f64 = brought.iter().map(|name| line_j(name)).sum();
+/// let lost_j: f64 = lines.iter().filter(|(n, _)| n.starts_with("lost_")).map(|(_, j)| j).sum();
+/// // What came in is stored, or lost, or the integrator's error.
+/// let left_j = brought_j - line_j("stored") - lost_j - line_j("unaccounted_integrator");
+/// assert!(lost_j > 0.0 && left_j.abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct EnergyBook {
     stored_0: f64,

@@ -19,6 +19,20 @@ pub struct Verdict {
 }
 
 /// Judges a recorded run of a scene by the scene's expectations. A figure that cannot be taken fails.
+///
+/// ```
+/// use smam::scene::Scene;
+/// use smam::system::{Schedule, Simulation, judge, record};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let scene = Scene::load("muscle_bench", &[])?;
+/// let short = record(&mut Simulation::new(scene.clone())?, &Schedule::even(0.1, 0.05))?;
+/// let verdicts = judge(&scene, &short)?;
+/// // Expected from 10 s on: what was not played does not pass.
+/// assert!(verdicts.len() == scene.file.expect.len() && verdicts.iter().all(|v| !v.passed));
+/// # Ok(())
+/// # }
+/// ```
 pub fn judge(scene: &Scene, recording: &Recording) -> Result<Vec<Verdict>, SystemError> {
     scene.file.expect.iter().map(|e| verdict(scene, e, recording)).collect()
 }

@@ -1,6 +1,24 @@
 //! A scene as a system in time: wiring, stepping order, energy book, channels.
 //!
 //! [`Simulation`] is the full scene with its rigid-body engine; [`Plant`] the equations it integrates.
+//!
+//! The first second of the bench, and where the fluid went:
+//!
+//! ```
+//! use smam::scene::Scene;
+//! use smam::system::{Schedule, Simulation, record};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &Schedule::even(1.0, 0.01))?;
+//! let at_end = |column: &str| recording.piecewise_si(column).map(|line| line.value(1.0));
+//! let area_m2 = |bore_m: f64| std::f64::consts::PI * bore_m * bore_m / 4.0;
+//! // No fluid is lost: what the plunger displaced is in the muscle and in what yields at either end of the line.
+//! let displaced_m3 = area_m2(4.5e-3) * at_end("plunger_mm")?;
+//! let held_m3 = area_m2(1.05e-3) * at_end("elongation_mm")? + (8.0e-15 + 2.6e-15) * at_end("pressure_kpa")?;
+//! assert!((held_m3 / displaced_m3 - 1.0).abs() < 0.01);
+//! # Ok(())
+//! # }
+//! ```
 
 mod axis;
 mod build;

@@ -11,6 +11,14 @@ use super::observe::Observer;
 use super::{InputSource, Simulation, SystemError, Warnings};
 
 /// The instants at which a run is recorded, s; increasing, the first one is the start.
+///
+/// ```
+/// use smam::system::Schedule;
+///
+/// assert_eq!(Schedule::even(1.0, 0.25).0, [0.0, 0.25, 0.5, 0.75, 1.0]);
+/// // The end is there even where the interval does not fit.
+/// assert_eq!(Schedule::even(1.0, 0.4).0.last(), Some(&1.0));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule(pub Vec<f64>);
 
@@ -38,6 +46,43 @@ pub enum RunError<E: std::error::Error + 'static> {
 /// Runs over the schedule, showing every instant to the observer; `stop` ends the run after the present instant.
 ///
 /// Returns the warnings of the run. What was shown before an error or a stop stays shown.
+///
+/// ```
+/// use std::convert::Infallible;
+/// use std::sync::atomic::AtomicBool;
+///
+/// use smam::scene::Scene;
+/// use smam::system::observe::{Frame, Observer, SceneGraph};
+/// use smam::system::{Schedule, Simulation, run};
+///
+/// /// The greatest pull of any muscle so far, N.
+/// #[derive(Default)]
+/// struct GreatestPull(f64);
+///
+/// impl Observer for GreatestPull {
+///     type Error = Infallible;
+///
+///     fn begin(&mut self, _: &SceneGraph) -> Result<(), Infallible> {
+///         Ok(())
+///     }
+///
+///     fn frame(&mut self, frame: &Frame) -> Result<(), Infallible> {
+///         self.0 = frame.muscles.iter().fold(self.0, |most, muscle| most.max(muscle.pull_n));
+///         Ok(())
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
+/// let mut pull = GreatestPull::default();
+/// let never = AtomicBool::new(false);
+/// let mut warnings = run(&mut simulation, &Schedule::even(1.0, 0.01), &never, &mut pull)?;
+/// // The string's 0.05 N, which comes all at once; the fluid does not cavitate, and the coil does not yield.
+/// assert!((0.05..0.15).contains(&pull.0));
+/// assert!(warnings.summary(1.0).is_empty());
+/// # Ok(())
+/// # }
+/// ```
 pub fn run<O: Observer>(
     simulation: &mut Simulation,
     schedule: &Schedule,
@@ -67,6 +112,40 @@ where
 }
 
 /// Someone who drives a run as it goes: a controller.
+///
+/// ```
+/// use smam::scene::Scene;
+/// use smam::system::{Driver, Schedule, Simulation, record_driven};
+///
+/// /// Moves the plunger until the muscle is as long as wanted.
+/// struct Hold {
+///     wanted_mm: f64,
+///     plunger_m: f64,
+/// }
+///
+/// impl Driver for Hold {
+///     fn start(&self) -> Vec<(String, f64)> {
+///         vec![("plunger_mm".to_owned(), self.plunger_m)]
+///     }
+///
+///     fn watched(&self) -> &str {
+///         "elongation_mm"
+///     }
+///
+///     fn choose(&mut self, _next_s: f64, measured: f64) -> Vec<f64> {
+///         self.plunger_m += 1e-5 * (self.wanted_mm - measured);
+///         vec![self.plunger_m]
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
+/// let mut hold = Hold { wanted_mm: 2.0, plunger_m: 0.0 };
+/// let recording = record_driven(&mut simulation, &Schedule::even(3.0, 0.02), &mut hold)?;
+/// assert!((recording.value_at("elongation_mm", 3.0)? - 2.0).abs() < 0.05);
+/// # Ok(())
+/// # }
+/// ```
 pub trait Driver {
     /// The inputs that are driven, with their values at the start, SI.
     fn start(&self) -> Vec<(String, f64)>;
@@ -130,6 +209,19 @@ fn check_names<'a>(
 }
 
 /// Runs over the schedule and returns the recording: inputs first, then outputs, in their columns' units.
+///
+/// ```
+/// use smam::scene::Scene;
+/// use smam::system::{Schedule, Simulation, record};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let schedule = Schedule(vec![0.0, 0.05, 0.2]);
+/// let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &schedule)?;
+/// assert_eq!(recording.columns(), ["plunger_mm", "elongation_mm", "pressure_kpa", "force_n"]);
+/// assert_eq!(recording.time_s(), [0.0, 0.05, 0.2]);
+/// # Ok(())
+/// # }
+/// ```
 pub fn record(simulation: &mut Simulation, schedule: &Schedule) -> Result<Recording, SystemError> {
     record_steps(simulation, schedule, |_, _, _, _| {})
 }

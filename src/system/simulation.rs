@@ -19,6 +19,22 @@ use super::{InputSource, SystemError};
 /// Over one engine step `h` the plant is integrated at `h/substeps` with the mechanism's inertia and levers taken at
 /// the start of the step. The engine is then given the mean generalised force that carries it to the same positions;
 /// what contacts add comes back as a change of velocity and, for the next step, as a known force.
+///
+/// ```
+/// use smam::scene::Scene;
+/// use smam::system::Simulation;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
+/// simulation.keep_energy_book();
+/// simulation.advance_to(1.0)?;
+/// let elongation_m = simulation.joint_position("slide").ok_or("the carriage slides")?;
+/// assert!((2e-3..3e-3).contains(&elongation_m));
+/// let book = simulation.energy_book().ok_or("it was kept")?;
+/// assert!(book.unaccounted_j().abs() < 1e-3 * book.turnover_j());
+/// # Ok(())
+/// # }
+/// ```
 pub struct Simulation {
     pub(super) scene: Scene,
     pub(super) mechanism: Option<Mechanism>,

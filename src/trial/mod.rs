@@ -2,6 +2,19 @@
 //!
 //! The full scene makes the recordings ([`make_specimen`]), noise is added, and the diagnosis answers without knowing.
 //! Sizes are counted from what the diagnosis itself says it could just see, so that 'small' means the same everywhere.
+//!
+//! A leak at three sizes takes minutes:
+//!
+//! ```no_run
+//! use smam::trial::{plan, table, try_case};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let cases = plan("muscle_bench", 0, Some("leak"), 1)?;
+//! let rows = cases.iter().map(try_case).collect::<Result<Vec<_>, _>>()?;
+//! println!("{}", table(&rows));
+//! # Ok(())
+//! # }
+//! ```
 
 mod judge;
 mod plan;

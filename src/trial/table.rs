@@ -5,6 +5,31 @@ use std::fmt::Write as _;
 use super::judge::{Judgement, Row};
 
 /// Tables of all rows: by effect and size, the nulls, and every answer that is not right.
+///
+/// ```
+/// use smam::diagnose::Verdict;
+/// use smam::trial::{Judgement, Row, table};
+///
+/// let null = |i: u32| Row {
+///     name: format!("muscle_bench nothing {i}"),
+///     scene: "muscle_bench".to_owned(),
+///     effect: "nothing".to_owned(),
+///     judgement: if i == 0 { Judgement::Wrong } else { Judgement::Right },
+///     verdict: if i == 0 { Verdict::MissingPhysics } else { Verdict::Adequate },
+/// #   element: String::new(),
+/// #   size: String::new(),
+/// #   value: 0.0,
+/// #   excess_chi2_per_sample: 0.0,
+/// #   answer: Vec::new(),
+/// #   found: None,
+/// #   covered: None,
+/// #   gap_closed: 0.0,
+/// #   seconds: 9.0,
+///     // ...
+/// };
+/// let rows: Vec<Row> = (0..8).map(null).collect();
+/// assert!(table(&rows).contains("Nothing missing: 8 cases, 1 false alarms."));
+/// ```
 pub fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     let mut scenes: Vec<&str> = rows.iter().map(|r| r.scene.as_str()).collect();
