@@ -81,7 +81,7 @@ fn unknown_scene_proposes_the_nearest() {
 fn unknown_key_is_named_with_its_line() {
     let here = folder();
     let path = changed_scene(here.path(), "muscle_bench", "substeps =", "substep =");
-    refused(&smam(&["check", &path], here.path()), &["mine.toml", "simulation", "unknown field `substep`", "line 9"]);
+    refused(&smam(&["check", &path], here.path()), &["mine.toml", "simulation", "unknown field `substep`", "line 10"]);
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn a_model_is_written_whole() {
     let urdf = std::fs::read_to_string(here.path().join("tube.urdf")).expect("written");
     assert!(urdf.contains("notch_5") && !urdf.contains("notch_6"));
     assert!(said(&output).contains("stiffness_n_m_rad = "));
-    assert_eq!(listing(here.path()), ["tube.urdf"]);
+    assert_eq!(listing(here.path()), ["tube.urdf", "tube_strip.stl", "tube_tube.stl"]);
 }
 
 /// Ctrl-C: whole rows up to where it got, under the file's own name, and exit code 1.

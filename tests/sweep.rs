@@ -133,8 +133,10 @@ fn where_a_sweep_stands_is_no_part_of_it() {
     let (folder, _, at) = sweep(SWEEP);
     let beside = SWEEP.replace("scene = \"muscle_bench\"", "scene = \"scene.toml\"");
     fs::write(folder.path().join("sweep.toml"), beside).expect("written");
-    let stock = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/muscle_bench.toml");
-    fs::copy(stock, folder.path().join("scene.toml")).expect("copied");
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let stock = fs::read_to_string(project.join("scenes/muscle_bench.toml")).expect("a stock scene");
+    let scene = stock.replace("../models", &project.join("models").display().to_string());
+    fs::write(folder.path().join("scene.toml"), scene).expect("written");
     let from = |directory: &Path, file: &str, shard: &str, out: &str| {
         let done =
             command(&[file, "--shard", shard, "--out", &at(out)]).current_dir(directory).output().expect("starts");

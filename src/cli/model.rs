@@ -98,7 +98,7 @@ fn write_with_meshes(tube: &NotchedTube, path: &Path) -> Result<(), CliError> {
     let meshes =
         notched_tube_meshes(tube, &name).map_err(of_option)?.map(|(file, bytes)| (path.with_file_name(file), bytes));
     let urdf = (path.to_owned(), notched_tube_urdf(tube, Some(&name)).map_err(of_option)?.into_bytes());
-    for (file, bytes) in meshes.into_iter().chain([urdf]) {
+    for (file, bytes) in std::iter::once(urdf).chain(meshes) {
         write_whole_bytes(&file, &bytes).map_err(|source| CliError::Write { file: file.clone(), source })?;
         eprintln!("written: {}", file.display());
     }

@@ -126,7 +126,7 @@ mod tests {
             let error = compare(&measured, &simulated, &force_output()).unwrap_err();
             assert_eq!(
                 error.to_string(),
-                "measured and simulated times differ at sample 1; simulate at the recording's sample times"
+                "measured and simulated times differ at sample 1\n  remedy: simulate at the recording's sample times"
             );
         }
     }
