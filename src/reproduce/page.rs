@@ -20,10 +20,7 @@ pub fn page(made: &[Made]) -> String {
          printed hysteresis model and printed parameters. 'given' was taken over as an input; 'shown' has nothing to be \
          compared with, or was printed about recordings that nobody else has.",
     );
-    page.table_of_remarks(
-        &HEADER,
-        &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>(),
-    );
+    page.table(&HEADER, &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>());
     for (figure, chapter) in made {
         page.heading(&format!("{}: {}", figure.name, figure.title));
         chapter.text.iter().for_each(|text| {
