@@ -2,6 +2,7 @@
 
 use super::axis::three_digits;
 use super::panel::{Band, Panel, Series, draw_legend};
+use super::quantity::with;
 use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to};
 use crate::recording::{gap_limit_s, parse_column};
 
@@ -104,12 +105,14 @@ fn accuracy(channel: &ComparedChannel) -> Vec<String> {
     let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
     let values = channel.measured.iter().filter(|v| v.is_finite());
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-    let mut text = format!("RMSE {} {symbol}", three_digits(channel.rmse));
+    let mut text = format!("RMSE {}", with(&three_digits(channel.rmse), symbol));
     if high > low {
         text += &format!(" = {} % of the range", three_digits(100.0 * channel.rmse / (high - low)));
     }
     let noise = match channel.noise_sd {
-        Some(sd) => format!("= {} × noise (sd {} {symbol})", three_digits(channel.rmse / sd), three_digits(sd)),
+        Some(sd) => {
+            format!("= {} × noise (sd {})", three_digits(channel.rmse / sd), with(&three_digits(sd), symbol))
+        }
         None => "noise unknown".to_owned(),
     };
     vec![text, noise]

@@ -11,6 +11,7 @@ use super::diagnosis_map::{state_map_svg, time_lines_svg};
 use super::diagnosis_words::{
     estimate, is_good, last_name, next_words, region_words, sensor_words, size_key, smallest_words, verdict_word,
 };
+use super::quantity::with;
 use super::symbols::greek;
 
 /// One self-contained page, readable by a person who was not there: what it comes to and what to do stand first.
@@ -128,7 +129,7 @@ fn better(page: &mut HtmlPage, outcome: &Outcome) {
         .iter()
         .map(|(channel, p)| {
             let symbol = parse_column(channel).map_or("", |name| name.unit.symbol);
-            let numbers = [p.rmse_baseline, p.rmse_corrected, p.noise_sd].map(|v| three_digits(v) + " " + symbol);
+            let numbers = [p.rmse_baseline, p.rmse_corrected, p.noise_sd].map(|v| with(&three_digits(v), symbol));
             let ratios = [p.rmse_baseline, p.rmse_corrected].map(|rmse| format!("{:.2}", rmse / p.noise_sd));
             [vec![channel.clone()], numbers.to_vec(), ratios.to_vec()].concat()
         })

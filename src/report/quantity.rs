@@ -62,8 +62,8 @@ impl Scale {
             return plain(if own.is_empty() { "1/s".to_owned() } else { format!("{own}/s") });
         }
         let Some(unit) = of_key(key) else { return plain(String::new()) };
-        // A rounded 999.7 belongs to the next unit.
-        let fits = |(_, size): &&(&str, f64)| greatest.abs() >= 0.9995 * size;
+        // From a tenth of a unit on: 0.3 mm, not 300 µm. A rounded 0.09996 belongs to it.
+        let fits = |(_, size): &&(&str, f64)| greatest.abs() >= 0.09995 * size;
         let step = match greatest == 0.0 || !greatest.is_finite() {
             true => None,
             false => unit.steps.iter().rev().find(fits).or(unit.steps.first()),
@@ -79,6 +79,15 @@ impl Scale {
     /// A number in the unit shown, to three digits.
     pub fn digits(&self, value_si: f64) -> String {
         to_digits(value_si / self.factor, 3)
+    }
+
+    /// As short as it is exact to six digits, with its unit: `0.3 mm`, `1e-16 m³/(s Pa)`.
+    pub fn short(&self, value_si: f64) -> String {
+        let value = value_si / self.factor;
+        let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+        let is_plain = rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs());
+        let number = if is_plain { format!("{rounded}") } else { format!("{rounded:e}") };
+        with(&without_minus_zero(number), &self.symbol)
     }
 
     /// The same with its unit: `10.1 mN`.
@@ -140,8 +149,13 @@ fn without_minus_zero(text: String) -> String {
     if is_zero { text[1..].to_owned() } else { text }
 }
 
-fn with(number: &str, symbol: &str) -> String {
-    if symbol.is_empty() { number.to_owned() } else { format!("{number} {symbol}") }
+/// A number with its unit; degrees follow without a space.
+pub(super) fn with(number: &str, symbol: &str) -> String {
+    match symbol {
+        "" | "1" => number.to_owned(),
+        _ if symbol.starts_with('°') => format!("{number}{symbol}"),
+        _ => format!("{number} {symbol}"),
+    }
 }
 
 /// The unit of a key; `None` for ratios, coefficients, powers. A further branch's `_2` is no part of it.
@@ -164,16 +178,16 @@ mod tests {
     fn the_suffix_gives_unit_and_prefix() {
         let cases = [
             ("preload_n", 1.0079e-2, "10.1 mN"),
-            ("friction_per_pressure_n_pa", 2.53e-7, "253 mN/MPa"),
+            ("friction_per_pressure_n_pa", 2.53e-7, "0.253 N/MPa"),
             ("free_volume_m3", 1e-9, "1.00 mm³"),
             ("conductance_m3_s_pa", 1e-16, "1.00e-16 m³/(s Pa)"),
             ("volume_rate_m3_s", -5e-11, "-0.0500 mm³/s"),
-            ("relaxation_time_s_2", 0.4, "400 ms"),
-            ("coulomb_torque_n_m", 2e-4, "200 µN m"),
+            ("relaxation_time_s_2", 0.4, "0.400 s"),
+            ("coulomb_torque_n_m", 2e-4, "0.200 mN m"),
             ("stiffness_n_m", 6.0, "6.00 N/m"),
             ("stiffness_n_m_rad", 1e-3, "1.00 mN m/rad"),
-            ("angle_rad", 0.6, "600 mrad"),
-            ("material.c1_pa", 265_280.0, "265 kPa"),
+            ("angle_rad", 0.6, "0.600 rad"),
+            ("material.c1_pa", 265_280.0, "0.265 MPa"),
             ("quadratic_pa_s2_m6", 1e18, "1.00e18 Pa s²/m⁶"),
             ("set_rate_1_s", 2e-3, "0.00200 1/s"),
             ("slack_length_m", 0.000_999_96, "1.00 mm"),
@@ -186,6 +200,15 @@ mod tests {
             assert_eq!(quantity(key, None, value), text, "{key}");
         }
         assert_eq!(quantity("rate_per_s", Some("pressure_kpa"), -0.107), "-0.107 kPa/s");
+    }
+
+    #[test]
+    fn given_numbers_are_written_short() {
+        let short = |key: &str, value: f64| Scale::of(key, None, value).short(value);
+        let shown =
+            [short("bore_m", 3e-4), short("conductance_m3_s_pa", 2e-16), short("width_m", 4e-5), short("kappa", 1.0)];
+        assert_eq!(shown, ["0.3 mm", "2e-16 m³/(s Pa)", "40 µm", "1"]);
+        assert_eq!([with("3.4", "°"), with("3.4", "°/s"), with("3.4", "1")], ["3.4°", "3.4°/s", "3.4"]);
     }
 
     #[test]
@@ -202,7 +225,7 @@ mod tests {
         let scale = Scale::of("preload_n", None, 1.0079e-2);
         assert_eq!(scale.with_interval(1.0079e-2, 1.0049e-2, 1.0109e-2), ["10.079 mN", "10.049 to 10.109 mN"]);
         let scale = Scale::of("m0_n", None, 0.5);
-        assert_eq!(scale.with_interval(0.5, -0.7, 1.7), ["500 mN", "-700 to 1700 mN"]);
+        assert_eq!(scale.with_interval(0.5, -0.7, 1.7), ["0.5 N", "-0.7 to 1.7 N"]);
         assert_eq!(to_place(1.302_815, 1.17), "1.3");
         assert_eq!(to_place(0.0, 0.2), "0.00");
         assert_eq!(to_place(7.5511e-15, 1e-18), "7.5511e-15");
