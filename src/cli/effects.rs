@@ -93,15 +93,18 @@ fn picture(spec: &'static EffectSpec) -> Result<String, CliError> {
 /// What the law's symbols are called in a scene: `κ = kappa` only where the two differ.
 fn symbols(spec: &EffectSpec) -> String {
     let keys = spec.parameters.iter().map(|p| match greek(p.symbol) {
-        symbol if p.key.starts_with(p.symbol) => format!("{symbol} is the key {}", p.key),
+        symbol if p.key.split('_').next() == Some(p.symbol) => format!("{symbol} is the key {}", p.key),
         symbol => format!("{symbol} = {}", p.key),
     });
     keys.collect::<Vec<_>>().join(",  ")
 }
 
-/// The sizes played: `G = 1e-16 m³/(s Pa)`.
+/// The sizes played, in one unit: `G = 1e-16 m³/(s Pa)`.
 fn sizes(spec: &EffectSpec, one: &Influence) -> Vec<String> {
-    one.sizes.iter().map(|size| value_of(&spec.parameters[0], one.effect.channel.as_deref(), *size)).collect()
+    let p = &spec.parameters[0];
+    let greatest = one.sizes.iter().fold(0.0_f64, |m, size| m.max(size.abs()));
+    let scale = Scale::of(p.key, one.effect.channel.as_deref(), greatest);
+    one.sizes.iter().map(|size| format!("{} = {}", greek(p.symbol), scale.short(*size))).collect()
 }
 
 fn value_of(p: &ParameterSpec, channel: Option<&str>, value: f64) -> String {

@@ -132,7 +132,7 @@ fn change(scene: &AffectedScene) -> Option<Panel> {
     })
 }
 
-/// `changed by up to 2.31 and 4.50 mm (8.6 and 16.7 % of range)`.
+/// `up to 2.31 and 4.50 mm (8.6 and 16.7 % of range)`.
 fn greatest(changes: &[Vec<f64>], stock: &[f64], symbol: &str) -> String {
     let (low, high) = stock.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
     let most: Vec<f64> = changes.iter().map(|change| change.iter().fold(0.0_f64, |m, c| m.max(c.abs()))).collect();
@@ -142,7 +142,7 @@ fn greatest(changes: &[Vec<f64>], stock: &[f64], symbol: &str) -> String {
         true => format!(" ({} % of range)", list(&|m| format!("{:.1}", 100.0 * m / (high - low)))),
         false => String::new(),
     };
-    format!("changed by up to {}{share}", with(&list(&three_digits), symbol))
+    format!("up to {}{share}", with(&list(&three_digits), symbol))
 }
 
 /// The stock output broad and grey; before it the coloured ones, the larger first.
@@ -196,7 +196,7 @@ mod tests {
         for text in [">muscle_bench<", ">elongation (mm)<", ">plunger (mm)<", ">time (s)<", ">1e-16 SI<", ">Q = G p<"] {
             assert!(svg.contains(text), "{text}");
         }
-        assert!(svg.contains(">changed by up to 0.500 and 1.00 mm (2.5 and 5.0 % of range)<"), "{svg}");
+        assert!(svg.contains(">up to 0.500 and 1.00 mm (2.5 and 5.0 % of range)<"), "{svg}");
     }
 
     #[test]

@@ -162,6 +162,10 @@ pub(super) fn with(number: &str, symbol: &str) -> String {
 fn of_key(key: &str) -> Option<KeyUnit> {
     let number = key.rsplit_once('_').filter(|(_, n)| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()));
     let key = number.map_or(key, |(base, _)| base);
+    // The unit of a sensor's rate is that of its channel.
+    if key.ends_with("_per_s") {
+        return None;
+    }
     if key.contains("torque") && key.ends_with("_n_m") {
         return Some(TORQUE);
     }
