@@ -10,4 +10,3 @@ mkdir -p "$out"
 "$1" effects | awk '/^$/ { exit } { print $1 }' | sort -u | while read -r name; do
   "$1" effects "$name" --out "$out" > /dev/null
 done
-python3 "$(dirname "$0")/thin_svg.py" "$out"/*.svg

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::effects::{CATALOGUE, Effect, EffectSpec};
+use smam::effects::{CATALOGUE, Effect, EffectSpec, ElementKind, ParameterSpec};
 use smam::recording::did_you_mean;
-use smam::report::{AffectedScene, effect_svg};
+use smam::report::{AffectedScene, Scale, effect_svg, greek};
 use smam::scene::{STOCK_SCENES, Scene};
 use smam::system::{Influence, influence};
 
@@ -62,26 +62,53 @@ fn show(spec: &EffectSpec) {
         let default = p.default.map_or("must be given".to_owned(), |d| format!("default {d:e}"));
         say!("    {:<30} {:<10} {:e} to {:e}, {default}", p.key, p.symbol, p.range.min, p.range.max);
     }
-    let channel = if spec.element.name() == "sensor" { "\n  channel = \"angle_deg\"" } else { "" };
-    let size = spec.parameters[0];
-    say!(
-        "  in a scene\n\n  [[effect]]\n  name = \"{}\"\n  element = \"{}\"{channel}\n  {} = {:e}\n",
-        spec.name,
-        spec.element.name(),
-        size.key,
-        size.typical
-    );
+    say!("  in a scene\n\n{}", table(spec));
+}
+
+/// The table for a scene: the size and whatever else has no default.
+fn table(spec: &EffectSpec) -> String {
+    let mut text = format!("  [[effect]]\n  name = \"{}\"\n  element = \"{}\"\n", spec.name, spec.element.name());
+    if spec.element == ElementKind::Sensor {
+        text += "  channel = \"angle_deg\"\n";
+    }
+    let given = spec.parameters.iter().enumerate().filter(|(i, p)| *i == 0 || p.default.is_none());
+    given.for_each(|(_, p)| text += &format!("  {} = {:e}\n", p.key, p.typical));
+    text
 }
 
 fn picture(spec: &'static EffectSpec) -> Result<String, CliError> {
     let shown = influences(spec)?;
-    let size = &spec.parameters[0];
-    let sizes: Vec<String> = shown.first().map_or_else(Vec::new, |first| {
-        first.with.iter().map(|(value, _)| format!("{} = {}", size.key, number(*value))).collect()
+    let of_each: Vec<Vec<String>> = shown.iter().map(|one| sizes(spec, one)).collect();
+    let is_common = of_each.windows(2).all(|pair| pair[0] == pair[1]);
+    let legend = match of_each.first() {
+        Some(first) if is_common => first.clone(),
+        _ => ["the first size said above each column", "twice that"].map(str::to_owned).to_vec(),
+    };
+    let own = of_each.iter().map(|sizes| if is_common { String::new() } else { sizes[0].clone() });
+    let scenes: Vec<AffectedScene> = shown.iter().zip(own).map(|(one, size)| affected(spec, one, size)).collect();
+    let title = format!("{}: {}", spec.name, spec.title);
+    Ok(effect_svg(&title, [&greek(spec.law), &symbols(spec)], &legend, &scenes))
+}
+
+/// What the law's symbols are called in a scene: `κ = kappa` only where the two differ.
+fn symbols(spec: &EffectSpec) -> String {
+    let keys = spec.parameters.iter().map(|p| match greek(p.symbol) {
+        symbol if p.key.split('_').next() == Some(p.symbol) => format!("{symbol} is the key {}", p.key),
+        symbol => format!("{symbol} = {}", p.key),
     });
-    let scenes: Vec<AffectedScene> = shown.into_iter().map(|one| affected(spec, one)).collect();
-    let symbols = spec.parameters.iter().map(|p| format!("{} = {}", p.symbol, p.key)).collect::<Vec<_>>().join(",  ");
-    Ok(effect_svg(&format!("{}: {}", spec.name, spec.title), [spec.law, &symbols], &sizes, &scenes))
+    keys.collect::<Vec<_>>().join(",  ")
+}
+
+/// The sizes played, in one unit: `G = 1e-16 m³/(s Pa)`.
+fn sizes(spec: &EffectSpec, one: &Influence) -> Vec<String> {
+    let p = &spec.parameters[0];
+    let greatest = one.sizes.iter().fold(0.0_f64, |m, size| m.max(size.abs()));
+    let scale = Scale::of(p.key, one.effect.channel.as_deref(), greatest);
+    one.sizes.iter().map(|size| format!("{} = {}", greek(p.symbol), scale.short(*size))).collect()
+}
+
+fn value_of(p: &ParameterSpec, channel: Option<&str>, value: f64) -> String {
+    format!("{} = {}", greek(p.symbol), Scale::of(p.key, channel, value).short(value))
 }
 
 /// On every rig that can have it, else on the first stock scene that can.
@@ -99,25 +126,38 @@ fn influences(spec: &'static EffectSpec) -> Result<Vec<Influence>, CliError> {
     Ok(shown)
 }
 
-fn affected(spec: &EffectSpec, one: Influence) -> AffectedScene {
+fn affected(spec: &EffectSpec, one: &Influence, size: String) -> AffectedScene {
     let on = one.effect.channel.clone().unwrap_or_else(|| one.effect.element.to_string());
+    let numbers = std::iter::once(size).chain(other_numbers(&one.effect)).filter(|text| !text.is_empty());
     AffectedScene {
         name: format!("{}, {} in {on}", one.scene, spec.name),
-        remark: other_numbers(&one.effect),
-        time_s: one.time_s,
-        input: one.input,
-        output: one.output,
-        with: one.with.into_iter().map(|(_, values)| values).collect(),
+        remark: numbers.collect::<Vec<_>>().join(", "),
+        time_s: one.time_s.clone(),
+        input: one.input.clone(),
+        output: (one.output.column.clone(), one.output.stock.clone()),
+        with: one.output.with.clone(),
+        pressure: one.pressure.as_ref().map(|p| (p.column.clone(), p.stock.clone(), p.with.clone())),
     }
 }
 
-/// The numbers besides the size: `relaxation_time_s = 4e0`.
-fn other_numbers(effect: &Effect<f64>) -> String {
+/// The numbers besides the size: `τ = 4 s`.
+fn other_numbers(effect: &Effect<f64>) -> impl Iterator<Item = String> {
     let others = effect.spec().parameters.iter().zip(&effect.values).skip(1);
-    others.map(|(p, value)| format!("{} = {}", p.key, number(*value))).collect::<Vec<_>>().join(", ")
+    others.map(|(p, value)| value_of(p, effect.channel.as_deref(), *value))
 }
 
-/// As short as it is exact: `0.06`, `2e-16`.
-fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use smam::effects::EffectTable;
+
+    #[test]
+    fn every_table_that_is_printed_can_stand_in_a_scene() {
+        for spec in CATALOGUE {
+            let text = table(spec).replace("[[effect]]", "");
+            let parsed: EffectTable = toml::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", spec.name));
+            let effect = parsed.effect().unwrap_or_else(|e| panic!("{}: {}", spec.name, e.message));
+            assert_eq!((effect.kind, effect.values), (spec.kind, spec.typical()), "{}", spec.name);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The page of an identification: loop, history, residual, parameters, warnings.
 
 use smam::identify::loops::{Identification, LoopRun};
-use smam::report::{BLUE, GREY, HtmlPage, ORANGE, Panel, Series, VERMILION, figure_svg};
+use smam::report::{BLUE, GREY, HtmlPage, ORANGE, Panel, Series, VERMILION, figure_svg, quantity, to_place};
 
 use super::identify::{Loops, unseen};
 
@@ -10,6 +10,9 @@ const SIZE: (f64, f64) = (860.0, 300.0);
 /// The whole page.
 pub fn page(found: &[Identification], loops: &Loops) -> String {
     let mut page = HtmlPage::new(&format!("Hysteresis models of {}", loops.name));
+    if let Some(best) = best(found, loops) {
+        page.verdict(best.form.name(), &verdict(best, found.len(), loops), false);
+    }
     page.paragraph(
         "F is the mean squared error between model and measured elongation, mm². Each model starts every run at rest. \
          Noise: standard deviation of the output's white noise, from the output alone.",
@@ -22,6 +25,35 @@ pub fn page(found: &[Identification], loops: &Loops) -> String {
         one(&mut page, identification, loops);
     }
     page.finish()
+}
+
+/// The model with the least error on runs that it has not seen; without such runs, on those it was fitted to.
+fn best<'a>(found: &'a [Identification], loops: &Loops) -> Option<&'a Identification> {
+    let error = |f: &Identification| unseen(f, loops).unwrap_or(f.mean_square_mm2);
+    found.iter().min_by(|a, b| error(a).total_cmp(&error(b)))
+}
+
+/// What a reader takes along who reads no further.
+fn verdict(best: &Identification, models: usize, loops: &Loops) -> String {
+    let root_mm = |f: f64| quantity("", None, f.sqrt());
+    let rank = if models > 1 { format!("fits best of {models} models") } else { "was fitted".to_owned() };
+    let mut text = format!(
+        "{rank}: F = {} mm², that is {} mm RMS",
+        quantity("", None, best.mean_square_mm2),
+        root_mm(best.mean_square_mm2)
+    );
+    if let Some(f) = unseen(best, loops) {
+        text += &format!("; {} mm on runs that it has not seen", root_mm(f));
+    }
+    if let Some(noise_mm) = best.noise_mm {
+        text += &format!("; noise {} mm", quantity("", None, noise_mm));
+    }
+    let alike: Vec<&str> =
+        best.warnings.iter().filter_map(|w| Some(w.split_once(" cannot be told apart")?.0)).collect();
+    match alike.as_slice() {
+        [] => text + ". Every parameter can be told from the others.",
+        pairs => format!("{text}. Cannot be told apart by this loop: {}.", pairs.join("; ")),
+    }
 }
 
 fn summary(found: &[Identification], loops: &Loops) -> Vec<Vec<String>> {
@@ -41,16 +73,16 @@ fn summary(found: &[Identification], loops: &Loops) -> Vec<Vec<String>> {
 
 fn one(page: &mut HtmlPage, found: &Identification, loops: &Loops) {
     page.heading(found.form.name());
+    page.table(&["parameter", "value", "95 % interval", "searched", "bounds because"], &parameters(found));
+    found.warnings.iter().for_each(|w| {
+        page.paragraph(&format!("Note: {w}."));
+    });
     let runs = loops.fit.iter().map(|r| (r, "fitted")).chain(loops.holdout.iter().map(|r| (r, "not seen by the fit")));
     for (run, part) in runs {
         let svg = figure_svg(&panels(found, run), SIZE.0, SIZE.1);
         page.figure(&svg, &format!("{}, {part}: measured (broad) and model; history; model minus measured.", run.name));
     }
-    page.table(&["parameter", "value", "95 % interval", "searched", "bounds because"], &parameters(found));
     page.paragraph(&how_certain(found));
-    found.warnings.iter().for_each(|w| {
-        page.paragraph(&format!("Note: {w}."));
-    });
     let header: Vec<&str> = std::iter::once("correlation").chain(found.free.iter().map(String::as_str)).collect();
     page.table(&header, &correlations(found));
 }
@@ -87,12 +119,13 @@ fn panels(found: &Identification, run: &LoopRun) -> Vec<Panel> {
 
 fn parameters(found: &Identification) -> Vec<Vec<String>> {
     let row = |p: &smam::identify::loops::Identified| {
-        let searched = format!("{:.4} .. {:.4}", p.spec.min, p.spec.max);
+        let searched = format!("{} to {}", quantity("", None, p.spec.min), quantity("", None, p.spec.max));
         let (interval, searched, why) = match (p.half_width, p.spec.fixed) {
-            (Some(h), _) => (format!("± {h:.2e}"), searched, p.spec.why),
-            (None, fixed) => ("fixed".to_owned(), "–".to_owned(), fixed.map_or("", |(_, why)| why)),
+            (Some(h), _) => (format!("± {}", to_place(h, h)), searched, p.spec.why),
+            (None, fixed) => ("– (fixed)".to_owned(), "–".to_owned(), fixed.map_or("", |(_, why)| why)),
         };
-        vec![p.spec.name.clone(), format!("{:.6}", p.value), interval, searched, why.to_owned()]
+        let value = to_place(p.value, p.half_width.unwrap_or(f64::NAN));
+        vec![p.spec.name.clone(), value, interval, searched, why.to_owned()]
     };
     found.parameters.iter().map(row).collect()
 }

@@ -117,7 +117,9 @@ fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, CliError> {
 pub fn run() -> Result<ExitCode, CliError> {
     let code = run_command()?;
     if UNPRINTED.load(Ordering::Relaxed) {
-        return Err(CliError::Failed("standard output: cannot be written\n  remedy: is the disk full that it goes to?".to_owned()));
+        return Err(CliError::Failed(
+            "standard output: cannot be written\n  remedy: is the disk full that it goes to?".to_owned(),
+        ));
     }
     Ok(code)
 }
@@ -163,9 +165,9 @@ fn print_line(words: std::fmt::Arguments<'_>) {
 fn print_text(text: &str) -> Result<(), CliError> {
     use std::io::{ErrorKind, Write};
     match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(CliError::Failed(format!("standard output: cannot be written: {e}\n  remedy: is the disk full that it goes to?")))
-        }
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(CliError::Failed(format!(
+            "standard output: cannot be written: {e}\n  remedy: is the disk full that it goes to?"
+        ))),
         _ => Ok(()),
     }
 }

@@ -47,7 +47,9 @@ pub struct ProofArguments {
 pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let nothing = arguments.nothing.unwrap_or(arguments.cases);
     if arguments.cases + nothing == 0 {
-        return Err(CliError::Usage("--cases 0: there is nothing to prove\n  remedy: ask for one case or more".to_owned()));
+        return Err(CliError::Usage(
+            "--cases 0: there is nothing to prove\n  remedy: ask for one case or more".to_owned(),
+        ));
     }
     let planned = Plan { hiding: arguments.cases, nothing, seed: arguments.seed }.cases();
     let folders = Folders::below(&arguments.out);

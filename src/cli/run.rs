@@ -160,7 +160,10 @@ fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Res
                 inputs.join(", ")
             )));
         }
-        simulation.set_input(input, InputSource::Recorded(recording.piecewise_si(input).map_err(|e| e.in_file(path.display().to_string()))?));
+        simulation.set_input(
+            input,
+            InputSource::Recorded(recording.piecewise_si(input).map_err(|e| e.in_file(path.display().to_string()))?),
+        );
     }
     let others: Vec<&str> = recording.columns().into_iter().filter(|c| !inputs.iter().any(|i| i == c)).collect();
     if !others.is_empty() {

@@ -7,7 +7,7 @@ use smam::sweep::{Goal, MeasureSpec, Plan, Sensitivity, Table, best, sensitivity
 
 use super::CliError;
 use super::files::write;
-use super::sweep_panels::{bars, broken, front_panel, panels, short};
+use super::sweep_panels::{bars, broken, front_panel, panels, scale_of, short};
 
 const SIZE: (f64, f64) = (860.0, 260.0);
 /// Rows of the table of the best; `best.csv` has them all.
@@ -16,8 +16,12 @@ const BEST_SHOWN: usize = 20;
 /// Writes `sweep.html` and, for use elsewhere, its figures.
 pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliError> {
     let file = &plan.file;
-    let mut page = HtmlPage::new(if file.title.is_empty() { &file.name } else { &file.title });
     let keys: Vec<String> = file.vary.iter().map(|v| v.key.clone()).collect();
+    let what = what(plan);
+    let mut page = HtmlPage::new(if file.title.is_empty() { &what } else { &file.title });
+    if !file.title.is_empty() {
+        page.paragraph(&what);
+    }
     let failed = table.failed().count();
     page.paragraph(&format!(
         "{} of {} points of the scene {}, {failed} of them failed. Varied: {}.",
@@ -46,6 +50,16 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
     write(&folder.join("sweep.svg"), &svg)?;
     write(&folder.join("sweep.html"), &page.finish())
+}
+
+/// What was measured and what was varied: `range_mm, peak_kpa of muscle_bench over bore_m`.
+fn what(plan: &Plan) -> String {
+    let file = &plan.file;
+    let scene =
+        Path::new(&file.scene).file_stem().map_or_else(|| file.scene.clone(), |s| s.to_string_lossy().into_owned());
+    let measures: Vec<&str> = file.measure.iter().map(|m| m.name.as_str()).collect();
+    let keys: Vec<&str> = file.vary.iter().map(|v| short(&v.key)).collect();
+    format!("{} of {scene} over {}", measures.join(", "), keys.join(", "))
 }
 
 /// A number to five digits.
@@ -105,7 +119,7 @@ fn influences(page: &mut HtmlPage, found: &Sensitivity, svg: &str) {
     let header = [&["measure", "key", "samples"][..], &names].concat();
     let row = |i: &smam::sweep::Influence| {
         let numbers =
-            i.numbers.iter().flat_map(|n| [format!("{:.4}", n.value), format!("{:.4} .. {:.4}", n.low, n.high)]);
+            i.numbers.iter().flat_map(|n| [format!("{:.4}", n.value), format!("{:.4} to {:.4}", n.low, n.high)]);
         [i.measure.clone(), i.key.clone(), i.samples.to_string()].into_iter().chain(numbers).collect()
     };
     page.table(&header, &found.influences.iter().map(row).collect::<Vec<_>>());
@@ -114,7 +128,11 @@ fn influences(page: &mut HtmlPage, found: &Sensitivity, svg: &str) {
 /// Values of the keys at a row, in words.
 fn at(plan: &Plan, table: &Table, row: usize) -> String {
     let keys = plan.file.vary.iter().zip(&table.rows[row].values);
-    keys.map(|(v, value)| format!("{} {}", short(&v.key), digits(*value))).collect::<Vec<_>>().join(", ")
+    let words = keys.map(|(v, value)| {
+        let scale = scale_of(&v.key, &table.column(&v.key).unwrap_or_default());
+        format!("{} = {}", short(&v.key), scale.short(*value))
+    });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
@@ -123,11 +141,18 @@ fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
         let there = || values.iter().enumerate().filter(|(_, v)| v.is_finite());
         let least = there().min_by(|a, b| a.1.total_cmp(b.1));
         let greatest = there().max_by(|a, b| a.1.total_cmp(b.1));
-        let words = |found: Option<(usize, &f64)>| match found {
+        let at_row = |found: Option<(usize, &f64)>| match found {
             Some((row, value)) => [digits(*value), at(plan, table, row)],
             None => ["-".to_owned(), "-".to_owned()],
         };
-        [vec![m.name.clone()], words(least).to_vec(), words(greatest).to_vec()].concat()
+        let cells = match (least, greatest) {
+            (Some((_, low)), Some((_, high))) if high - low <= 1e-9 * high.abs().max(low.abs()) && values.len() > 1 => {
+                let same = digits(*low);
+                [same.clone(), "does not change".to_owned(), same, "does not change".to_owned()].to_vec()
+            }
+            _ => [at_row(least), at_row(greatest)].concat(),
+        };
+        [vec![m.name.clone()], cells].concat()
     };
     plan.file.measure.iter().map(row).collect()
 }

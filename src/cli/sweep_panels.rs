@@ -1,6 +1,7 @@
 //! The pictures of a sweep's page.
 
-use smam::report::{BLUE, Bar, BarPanel, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
+use smam::recording::parse_column;
+use smam::report::{BLUE, Bar, BarPanel, GREEN, ORANGE, PURPLE, Panel, Scale, Series, VERMILION, quantity};
 use smam::sweep::{LimitSpec, Mark, MeasureSpec, ObjectiveSpec, Plan, SamplingSpec, Sensitivity, Table, excess};
 
 /// Lines of one panel; more values of a second key are thinned to so many.
@@ -12,25 +13,52 @@ const TRIED: &str = "#bdbdbd";
 /// Each measure over the first key.
 pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
     let Some(first) = plan.file.vary.first() else { return Vec::new() };
-    let x = table.column(&first.key).unwrap_or_default();
+    let si = table.column(&first.key).unwrap_or_default();
+    let scale = scale_of(&first.key, &si);
+    let x: Vec<f64> = si.iter().map(|v| v / scale.factor).collect();
     let panel = |m: &MeasureSpec| {
         let y = table.column(&m.name).unwrap_or_default();
         let mut behind = if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() };
-        behind.extend(first.mark.iter().map(|mark| upright(mark, "#9e9e9e", &y)));
+        behind.extend(first.mark.iter().map(|mark| upright(mark, mark.at / scale.factor, "#9e9e9e", &y)));
         if let ([best], true) = (best, is_line(plan)) {
-            let mark = Mark { at: x[*best], label: format!("best: {}", x[*best]) };
-            behind.push(upright(&mark, GREEN, &y));
+            let mark = Mark { at: si[*best], label: format!("best: {}", scale.short(si[*best])) };
+            behind.push(upright(&mark, x[*best], GREEN, &y));
         }
         Panel {
-            title: vec![m.name.clone(), m.of.clone()],
-            x_label: first.key.clone(),
-            y_label: m.name.clone(),
+            title: [Some(m.name.clone()), Some(m.of.clone()), constant(&y)].into_iter().flatten().collect(),
+            x_label: key_label(&first.key, &scale),
+            y_label: measure_label(&m.name),
             behind,
             series: lines(plan, table, &x, &y),
             ..Panel::default()
         }
     };
     plan.file.measure.iter().map(panel).collect()
+}
+
+/// How the values of a key are shown, all of them in one unit.
+pub fn scale_of(key: &str, values: &[f64]) -> Scale {
+    let greatest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
+    Scale::of(key, None, greatest)
+}
+
+/// A key as it stands in the scene, and the unit in which it is shown.
+fn key_label(key: &str, scale: &Scale) -> String {
+    if scale.symbol.is_empty() { key.to_owned() } else { format!("{key}, shown in {}", scale.symbol) }
+}
+
+/// `peak_kpa` as `peak (kPa)`.
+fn measure_label(name: &str) -> String {
+    parse_column(name).map_or_else(|_| name.to_owned(), |n| n.axis_label())
+}
+
+/// Said of a measure that the sweep does not move by more than rounding errors.
+fn constant(y: &[f64]) -> Option<String> {
+    let finite = || y.iter().copied().filter(|v| v.is_finite());
+    let size = finite().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let is_constant = finite().count() > 1 && (reach(y) <= 1e-9 * size || size == 0.0);
+    is_constant
+        .then(|| format!("does not change: {} at every point", quantity("", None, finite().next().unwrap_or(0.0))))
 }
 
 /// The first two objectives against each other: what was tried, and the best of it.
@@ -48,8 +76,8 @@ pub fn front_panel(plan: &Plan, table: &Table, best: &[usize]) -> Option<Panel> 
     (tried.label, tried.colour) = ("all points".to_owned(), TRIED);
     Some(Panel {
         title: vec![format!("{} and {}", one.measure, other.measure)],
-        x_label: one.measure.clone(),
-        y_label: other.measure.clone(),
+        x_label: measure_label(&one.measure),
+        y_label: measure_label(&other.measure),
         series: vec![tried, front],
         ..Panel::default()
     })
@@ -59,7 +87,7 @@ pub fn front_panel(plan: &Plan, table: &Table, best: &[usize]) -> Option<Panel> 
 pub fn bars(plan: &Plan, found: &Sensitivity) -> Vec<BarPanel> {
     let (legend, label): (Vec<(&str, &'static str)>, &str) = match plan.file.sampling {
         SamplingSpec::Morris { .. } => {
-            (vec![("mu*: mean size of the effect", BLUE), ("sigma: its spread", ORANGE)], "change over the key's range")
+            (vec![("μ*: mean size of the effect", BLUE), ("σ: its spread", ORANGE)], "change over the key's range")
         }
         _ => (vec![("first order: alone", BLUE), ("total: with all others", ORANGE)], "share of the variance"),
     };
@@ -125,6 +153,7 @@ fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
     }
     let Some(second) = plan.file.vary.get(1) else { return vec![line(String::new(), BLUE, x.to_vec(), y.to_vec())] };
     let of_second = table.column(&second.key).unwrap_or_default();
+    let scale = scale_of(&second.key, &of_second);
     let mut values = of_second.clone();
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -134,19 +163,19 @@ fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
         .map(|(value, colour)| {
             let own: Vec<usize> = (0..x.len()).filter(|i| of_second[*i] == value).collect();
             let pick = |from: &[f64]| own.iter().map(|&i| from[i]).collect();
-            line(format!("{} = {value:.4}", short(&second.key)), colour, pick(x), pick(y))
+            line(format!("{} = {}", short(&second.key), scale.short(value)), colour, pick(x), pick(y))
         })
         .collect()
 }
 
-/// A marked value as an upright line over what a measure reaches.
-fn upright(mark: &Mark, colour: &'static str, y: &[f64]) -> Series {
+/// A marked value as an upright line at its place on the axis, over what a measure reaches.
+fn upright(mark: &Mark, at: f64, colour: &'static str, y: &[f64]) -> Series {
     let finite = || y.iter().copied().filter(|v| v.is_finite());
     if finite().next().is_none() {
         return line(mark.label.clone(), colour, Vec::new(), Vec::new());
     }
     let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
-    line(mark.label.clone(), colour, vec![mark.at; 2], vec![low, high])
+    line(mark.label.clone(), colour, vec![at; 2], vec![low, high])
 }
 
 /// Last words of a key.
@@ -181,6 +210,26 @@ fn crosses(x: &[f64], y: &[f64], reach: (f64, f64)) -> Series {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_does_not_change_is_said_so() {
+        assert_eq!(constant(&[3.0, 3.0, f64::NAN]).as_deref(), Some("does not change: 3.00 at every point"));
+        assert_eq!(constant(&[0.0, 0.0]).as_deref(), Some("does not change: 0 at every point"));
+        assert_eq!([constant(&[3.0, 3.1]), constant(&[3.0])], [None, None]);
+    }
+
+    #[test]
+    fn keys_and_measures_carry_their_units() {
+        let key = "hydraulics.line.bore_m";
+        let scale = scale_of(key, &[3e-4, 8e-4, f64::NAN]);
+        assert_eq!(key_label(key, &scale), "hydraulics.line.bore_m, shown in mm");
+        assert_eq!(scale.short(3e-4), "0.3 mm");
+        assert_eq!(
+            key_label("muscles.pre_elongation_ratio", &scale_of("x_ratio", &[0.5])),
+            "muscles.pre_elongation_ratio"
+        );
+        assert_eq!(measure_label("peak_kpa"), "peak (kPa)");
+    }
 
     #[test]
     fn a_single_value_has_a_stretch_of_its_own() {

@@ -152,7 +152,7 @@ pub const CATALOGUE: &[EffectSpec] = &[
         name: "tendon_friction",
         title: "the cable loses tension along its wrap",
         element: ElementKind::Cable,
-        law: "T_i = T_0 exp(-mu z sum |theta|), ds/dz Dahl",
+        law: "T_i = T_0 exp(-mu z sum |theta|), dz/dt = |v|/s0 (sgn v - z)",
         source: "Euler and Eytelwein",
         parameters: &[
             fitted("friction_coefficient", "mu", 0.0, 1.0, 0.1),

@@ -2,17 +2,20 @@
 
 use super::axis::three_digits;
 use super::panel::{Band, Panel, Series, draw_legend};
+use super::quantity::with;
 use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to};
 use crate::recording::{gap_limit_s, parse_column};
 
 /// Runs beside each other; more wrap to the next row.
 const RUNS_PER_ROW: usize = 4;
 const CELL_WIDTH: f64 = 430.0;
-const SIGNAL_HEIGHT: f64 = 236.0;
+const SIGNAL_HEIGHT: f64 = 252.0;
 const RESIDUAL_HEIGHT: f64 = 140.0;
 const CELL_HEIGHT: f64 = SIGNAL_HEIGHT + RESIDUAL_HEIGHT + 18.0;
 const HEADER_HEIGHT: f64 = 76.0;
 const EDGE: f64 = 10.0;
+/// Measured lines are broad and pale: the simulated ones lie on them and must not hide them.
+const MEASURED: &str = "#8fc4e8";
 
 /// One run of the figure.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +74,7 @@ fn draw_header(svg: &mut Svg, width: f64, title: &str, remark: &str) {
     svg.text((EDGE + 12.0, 24.0), Anchor::Start, 15.0, &cut_to(title, 15.0, room));
     svg.text((EDGE + 12.0, 43.0), Anchor::Start, 11.0, &cut_to(remark, 11.0, room));
     let entries = [
-        ("measured", BLUE, 1.0),
+        ("measured (broad, pale)", MEASURED, 1.0),
         ("simulated", VERMILION, 1.0),
         ("measured - simulated", GREY, 1.0),
         ("± 2 noise sd", BLUE, 0.25),
@@ -89,26 +92,30 @@ fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &Com
 fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
     let name = parse_column(&channel.column).ok();
     Panel {
-        title: vec![format!("{}: {}", run.name, channel.column), accuracy(channel)],
+        title: [vec![format!("{}: {}", run.name, channel.column)], accuracy(channel)].concat(),
         y_label: name.map_or(channel.column.clone(), |n| n.axis_label()),
-        series: vec![line(&run.time_s, &channel.measured, BLUE), line(&run.time_s, &channel.simulated, VERMILION)],
+        behind: vec![line(&run.time_s, &channel.measured, MEASURED)],
+        series: vec![line(&run.time_s, &channel.simulated, VERMILION)],
         ..Panel::default()
     }
 }
 
-/// `RMSE 0.0312 mm = 0.116 % of the range = 1.56 noise sd`.
-fn accuracy(channel: &ComparedChannel) -> String {
+/// `RMSE 0.0312 mm = 0.116 % of the range` and `= 1.56 x noise (sd 0.0200 mm)`.
+fn accuracy(channel: &ComparedChannel) -> Vec<String> {
     let symbol = parse_column(&channel.column).map_or("", |name| name.unit.symbol);
     let values = channel.measured.iter().filter(|v| v.is_finite());
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-    let mut text = format!("RMSE {} {symbol}", three_digits(channel.rmse));
+    let mut text = format!("RMSE {}", with(&three_digits(channel.rmse), symbol));
     if high > low {
         text += &format!(" = {} % of the range", three_digits(100.0 * channel.rmse / (high - low)));
     }
-    match channel.noise_sd {
-        Some(sd) => text + &format!(" = {} noise sd", three_digits(channel.rmse / sd)),
-        None => text + ", noise unknown",
-    }
+    let noise = match channel.noise_sd {
+        Some(sd) => {
+            format!("= {} × noise (sd {})", three_digits(channel.rmse / sd), with(&three_digits(sd), symbol))
+        }
+        None => "noise unknown".to_owned(),
+    };
+    vec![text, noise]
 }
 
 fn residual_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
@@ -165,7 +172,8 @@ mod tests {
         );
         assert_eq!(svg.matches("<polyline").count(), 3 * 3);
         assert!(svg.contains(">sine: pressure_kpa<") && svg.contains(">steps: elongation_mm<"));
-        assert!(svg.contains(">RMSE 0.0300 mm = 1.50 % of the range = 1.50 noise sd<"));
+        assert!(svg.contains(">RMSE 0.0300 mm = 1.50 % of the range<"));
+        assert!(svg.contains(">= 1.50 × noise (sd 0.0200 mm)<"));
         assert!(svg.contains(">elongation (mm)<") && svg.contains(">residual (kPa)<"));
         assert!(svg.contains(">time (s)<"));
     }

@@ -1,16 +1,16 @@
-//! Where and how much, as pictures: windows of mismatch on time lines, a map over state, bars by channel.
+//! Where, as pictures: windows of mismatch on time lines, a map over state.
 
 use crate::diagnose::{CaseRun, Direction, Outcome};
 use crate::recording::parse_column;
 
-use super::axis::three_digits;
-use super::svg::{Anchor, BLUE, GREY, Rect, Svg, VERMILION, cut_to, text_width};
+use super::axis::Axis;
+use super::svg::{Anchor, GREY, Rect, Svg, VERMILION, cut_to, text_width};
 
-const WIDTH: f64 = 900.0;
-const LABELS: f64 = 220.0;
-const TEXT: f64 = 11.0;
-const ROW: f64 = 22.0;
-const EDGE: f64 = 14.0;
+pub(super) const WIDTH: f64 = 900.0;
+pub(super) const LABELS: f64 = 220.0;
+pub(super) const TEXT: f64 = 11.0;
+pub(super) const ROW: f64 = 22.0;
+pub(super) const EDGE: f64 = 14.0;
 const PALE: &str = "#eef2f5";
 
 /// Every run as a line over time, with the stretches marked in which the baseline is off by more than noise.
@@ -35,11 +35,9 @@ pub fn time_lines_svg(outcome: &Outcome) -> String {
         windows.for_each(|(_, from, to)| svg.fill(bar(from.max(start), to.min(end)), VERMILION, 0.8));
     }
     let bottom = EDGE + ROW * runs.len() as f64;
-    let step_s = tick_s(longest_s);
-    for k in 0..=(longest_s / step_s) as usize {
-        let t = step_s * k as f64;
+    for (t, text) in Axis::over([0.0, longest_s].into_iter(), 0.0, 10).ticks() {
         svg.line((LABELS + scale * t, bottom), (LABELS + scale * t, bottom + 4.0), GREY, 1.0);
-        svg.text((LABELS + scale * t, bottom + 16.0), Anchor::Middle, TEXT, &three_digits(t));
+        svg.text((LABELS + scale * t, bottom + 16.0), Anchor::Middle, TEXT, &text);
     }
     svg.text((LABELS - 12.0, bottom + 16.0), Anchor::End, TEXT, "time from the start of the run (s)");
     svg.finish()
@@ -50,14 +48,7 @@ fn span_s(run: &CaseRun) -> (f64, f64) {
     (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0))
 }
 
-/// A round interval that cuts a span into six to twelve.
-fn tick_s(span_s: f64) -> f64 {
-    let rough = span_s / 8.0;
-    let ten = 10f64.powf(rough.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * ten).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * ten)
-}
-
-fn label(svg: &mut Svg, y: f64, text: &str) {
+pub(super) fn label(svg: &mut Svg, y: f64, text: &str) {
     svg.text((LABELS - 12.0, y + 14.0), Anchor::End, TEXT, &cut_to(text, TEXT, LABELS - 20.0));
 }
 
@@ -69,7 +60,7 @@ pub fn state_map_svg(outcome: &Outcome, residuals: &[Vec<Vec<f64>>]) -> String {
     let case = &outcome.case;
     let rows: Vec<(usize, Direction)> =
         (0..case.channels.len()).flat_map(|c| Direction::ALL.map(|direction| (c, direction))).collect();
-    let mut svg = Svg::new(WIDTH, 2.0 * EDGE + ROW * (rows.len() as f64 + 2.0));
+    let mut svg = Svg::new(WIDTH, 2.0 * EDGE + ROW * (rows.len() as f64 + 3.0));
     let Some((low, high)) = input_range(outcome) else { return svg.finish() };
     let cell_width = (WIDTH - LABELS - 2.0 * EDGE) / LEVELS as f64;
     for (row, (channel, direction)) in rows.iter().enumerate() {
@@ -94,15 +85,37 @@ pub fn state_map_svg(outcome: &Outcome, residuals: &[Vec<Vec<f64>>]) -> String {
         }
     }
     let bottom = EDGE + ROW * rows.len() as f64;
-    let unit = parse_column(&case.scene.file.input[0].channel).ok();
-    for k in 0..=LEVELS {
-        let value = low + (high - low) * k as f64 / LEVELS as f64;
-        let text = unit.as_ref().map_or(three_digits(value), |u| three_digits(u.unit.from_si(value)));
-        svg.text((LABELS + cell_width * k as f64, bottom + 16.0), Anchor::Middle, TEXT, &text);
-    }
-    let name = unit.map_or_else(|| case.scene.file.input[0].channel.clone(), |u| u.axis_label());
-    svg.text((LABELS + cell_width * LEVELS as f64 / 2.0, bottom + 34.0), Anchor::Middle, TEXT, &name);
+    input_axis(&mut svg, bottom, &case.scene.file.input[0].channel, (low, high));
+    colour_key(&mut svg, bottom + 52.0);
     svg.finish()
+}
+
+/// The axis of the first input (SI), in the unit of its column.
+fn input_axis(svg: &mut Svg, bottom: f64, column: &str, (low, high): (f64, f64)) {
+    let name = parse_column(column).ok();
+    let shown = |value: f64| name.as_ref().map_or(value, |n| n.unit.from_si(value));
+    let axis = Axis::over([shown(low), shown(high)].into_iter(), 0.0, LEVELS);
+    let width = WIDTH - LABELS - 2.0 * EDGE;
+    for (value, text) in axis.ticks() {
+        let x = LABELS + width * axis.share(value);
+        svg.line((x, bottom), (x, bottom + 4.0), GREY, 1.0);
+        svg.text((x, bottom + 16.0), Anchor::Middle, TEXT, &text);
+    }
+    let label = name.map_or_else(|| column.to_owned(), |n| n.axis_label());
+    svg.text((LABELS + width / 2.0, bottom + 34.0), Anchor::Middle, TEXT, &label);
+}
+
+/// What the colours stand for.
+fn colour_key(svg: &mut Svg, y: f64) {
+    const SWATCH: f64 = 46.0;
+    const SHOWN: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 30.0];
+    let text = "RMS of the residual / noise (1)";
+    svg.text((LABELS, y + 15.0), Anchor::Start, TEXT, text);
+    let left = LABELS + text_width(text, TEXT) + 12.0;
+    for (k, over_noise) in SHOWN.into_iter().enumerate() {
+        let rect = Rect { x: left + SWATCH * k as f64, y, width: SWATCH - 1.0, height: ROW - 1.0 };
+        paint(svg, rect, over_noise, &format!("{over_noise:.0}"));
+    }
 }
 
 fn input_range(outcome: &Outcome) -> Option<(f64, f64)> {
@@ -111,42 +124,14 @@ fn input_range(outcome: &Outcome) -> Option<(f64, f64)> {
     (high > low).then_some((low, high))
 }
 
-/// White where there is noise only, darker by the logarithm of what is more.
 fn cell(svg: &mut Svg, rect: Rect, over_noise: f64) {
+    paint(svg, rect, over_noise, &format!("{over_noise:.1}"));
+}
+
+/// Pale where there is noise only, darker by the logarithm of what is more.
+fn paint(svg: &mut Svg, rect: Rect, over_noise: f64, text: &str) {
     let opacity = (over_noise.max(1.0).log10() / 1.5).clamp(0.0, 0.9);
     svg.fill(rect, PALE, 1.0);
     svg.fill(rect, VERMILION, opacity);
-    let at = (rect.x + rect.width / 2.0, rect.y + 15.0);
-    svg.text(at, Anchor::Middle, TEXT, &format!("{over_noise:.1}"));
-}
-
-/// Error over noise on the sealed runs by channel, before and after, on a logarithmic axis.
-pub fn bars_svg(outcome: &Outcome) -> String {
-    let channels = &outcome.diagnosis.fit.channels;
-    let mut svg = Svg::new(WIDTH, 2.0 * EDGE + 2.0 * ROW * (channels.len() as f64 + 1.0));
-    let ratios = |p: &crate::diagnose::ChannelProof| [p.rmse_baseline / p.noise_sd, p.rmse_corrected / p.noise_sd];
-    let greatest = channels.values().flat_map(ratios).fold(10.0, f64::max);
-    let room = WIDTH - LABELS - 2.0 * EDGE - 60.0;
-    let (low, high) = (0.5f64.log10(), greatest.log10());
-    let x = |ratio: f64| LABELS + room * ((ratio.max(0.5).log10() - low) / (high - low));
-    for (i, (column, proof)) in channels.iter().enumerate() {
-        let y = EDGE + 2.0 * ROW * i as f64;
-        label(&mut svg, y + ROW / 2.0, column);
-        for (k, (ratio, colour)) in ratios(proof).into_iter().zip([VERMILION, BLUE]).enumerate() {
-            let y = y + ROW * 0.85 * k as f64;
-            svg.fill(Rect { x: LABELS, y: y + 3.0, width: x(ratio) - LABELS, height: ROW - 7.0 }, colour, 0.8);
-            svg.text((x(ratio) + 6.0, y + 15.0), Anchor::Start, TEXT, &format!("{ratio:.2}"));
-        }
-    }
-    let bottom = EDGE + 2.0 * ROW * channels.len() as f64;
-    svg.line((x(1.0), EDGE), (x(1.0), bottom), GREY, 1.0);
-    svg.text((x(1.0), bottom + 14.0), Anchor::Middle, TEXT, "noise");
-    let mut at = LABELS + 60.0;
-    for (text, colour) in [("calibrated scene", VERMILION), ("corrected scene", BLUE)] {
-        svg.fill(Rect { x: at, y: bottom + 22.0, width: 12.0, height: 12.0 }, colour, 0.8);
-        svg.text((at + 18.0, bottom + 32.0), Anchor::Start, TEXT, text);
-        at += 40.0 + text_width(text, TEXT);
-    }
-    svg.text((at + 10.0, bottom + 32.0), Anchor::Start, TEXT, "error of sealed runs in units of the noise (log)");
-    svg.finish()
+    svg.text((rect.x + rect.width / 2.0, rect.y + 15.0), Anchor::Middle, TEXT, text);
 }

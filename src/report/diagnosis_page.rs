@@ -1,21 +1,30 @@
 //! The page of a diagnosis: verdict, where, what, how much better, what next.
 
-use crate::diagnose::{Estimate, NamedEffect, Outcome};
+use crate::diagnose::{NamedEffect, Outcome};
+use crate::recording::parse_column;
 
 use super::HtmlPage;
 use super::axis::three_digits;
 use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
-use super::diagnosis_map::{bars_svg, state_map_svg, time_lines_svg};
+use super::diagnosis_bars::bars_svg;
+use super::diagnosis_map::{state_map_svg, time_lines_svg};
+use super::diagnosis_words::{
+    estimate, is_good, last_name, next_words, region_words, sensor_words, size_key, smallest_words, verdict_word,
+};
+use super::quantity::with;
+use super::symbols::greek;
 
-/// One self-contained page, readable by a person who was not there.
+/// One self-contained page, readable by a person who was not there: what it comes to and what to do stand first.
 pub fn diagnosis_page(outcome: &Outcome) -> String {
     let d = &outcome.diagnosis;
-    let mut page = HtmlPage::new(&format!("Diagnosis of {} ({})", d.recordings.join(", "), d.scene));
-    page.paragraph(&d.summary);
+    let names: Vec<&str> = d.recordings.iter().map(|folder| last_name(folder)).collect();
+    let mut page = HtmlPage::new(&format!("Diagnosis of {}", names.join(", ")));
+    page.small(&format!("recordings: {}; scene: {}", d.recordings.join(", "), d.scene));
+    page.verdict(verdict_word(d.verdict), &d.summary, is_good(d.verdict));
+    next(&mut page, outcome);
     location(&mut page, outcome);
     what(&mut page, outcome);
     better(&mut page, outcome);
-    next(&mut page, outcome);
     detectable(&mut page, outcome);
     if !d.warnings.is_empty() {
         page.heading("What to know besides");
@@ -35,13 +44,14 @@ fn location(page: &mut HtmlPage, outcome: &Outcome) {
     let rows: Vec<Vec<String>> = location.ranked.iter().map(|(e, p)| vec![e.clone(), format!("{p:.3}")]).collect();
     page.table(&["element", "probability"], &rows);
     if !location.state_region.is_empty() {
-        page.paragraph(&format!("The calibrated scene is furthest off at {}.", location.state_region));
+        page.paragraph(&format!("The calibrated scene is furthest off at {}.", region_words(&location.state_region)));
     }
     let windows: Vec<String> =
         location.time_windows_s.iter().take(12).map(|(f, a, b)| format!("{f} {a:.1} to {b:.1} s")).collect();
     if let Some([before, after]) = &outcome.residuals {
         page.figure(&time_lines_svg(outcome), "Marked: where the calibrated scene is off by more than noise.");
-        let caption = "Calibrated scene: residual in units of the noise, by level and motion of the first input.";
+        let caption = "Calibrated scene: how far off it is (RMS of the residual over the noise), by level and motion of \
+                       the first input. 1.0: noise only. Empty: nothing was recorded there.";
         page.figure(&state_map_svg(outcome, before), caption);
         if !outcome.diagnosis.effects.is_empty() {
             page.figure(&state_map_svg(outcome, after), "The same with what was found in place.");
@@ -62,7 +72,7 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
     if !d.effects.is_empty() {
         page.heading("What");
         let rows: Vec<Vec<String>> = d.effects.iter().flat_map(effect_rows).collect();
-        page.table(&["effect", "element", "probability", "number (SI)", "value", "95 % interval", "law"], &rows);
+        page.table(&["effect", "element", "probability", "number", "value", "95 % interval", "law"], &rows);
     }
     from_run_to_run(page, &d.effects);
     if !outcome.rivals.is_empty() {
@@ -70,43 +80,44 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
         let rows: Vec<Vec<String>> =
             outcome.rivals.iter().map(|(title, cost)| vec![title.clone(), format!("{:.0}", cost - best)]).collect();
         page.heading("Rivals, refitted jointly, and why they lost");
+        page.paragraph(
+            "chi² is the squared misfit in units of the noise, summed over all samples: with every 2 above the answer a \
+             rival is 2.7 times less likely.",
+        );
         page.table(&["instead", "chi² above the answer"], &rows);
     }
     page.heading("Calibration with it");
-    let rows: Vec<Vec<String>> = d.calibration.iter().map(|(k, e)| [vec![k.clone()], estimate(e)].concat()).collect();
-    page.table(&["number (SI)", "value", "95 % interval"], &rows);
+    let rows: Vec<Vec<String>> =
+        d.calibration.iter().map(|(k, e)| [vec![k.clone()], estimate(k, None, e)].concat()).collect();
+    page.table(&["number", "value", "95 % interval"], &rows);
 }
 
 /// The size of each effect as every run by itself would have it.
 fn from_run_to_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
-    let row = |e: &NamedEffect, (file, size): (&String, &Estimate)| {
-        [vec![e.name.clone(), file.clone()], estimate(size)].concat()
-    };
-    let rows: Vec<Vec<String>> =
-        effects.iter().flat_map(|e| e.size_by_run.iter().map(move |one| row(e, one))).collect();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for e in effects {
+        let key = size_key(e);
+        let sizes = e.size_by_run.iter().map(|(file, size)| (file, estimate(key, e.channel.as_deref(), size)));
+        rows.extend(sizes.map(|(file, size)| [vec![e.name.clone(), file.clone(), key.to_owned()], size].concat()));
+    }
     if !rows.is_empty() {
         page.heading("From run to run");
-        page.table(&["effect", "by itself", "size (SI)", "95 % interval"], &rows);
+        page.paragraph("The size of each effect as every run by itself would have it: one rig should give one number.");
+        page.table(&["effect", "run", "number", "value", "95 % interval"], &rows);
     }
 }
 
 fn effect_rows(e: &NamedEffect) -> Vec<Vec<String>> {
     let element = e.channel.as_ref().map_or_else(|| e.element.clone(), |c| format!("{} {c}", e.element));
-    let row = |(i, (key, number)): (usize, (&String, &Estimate))| {
+    let row = |(i, (key, number)): (usize, (&String, &crate::diagnose::Estimate))| {
         let head = match i {
             0 => vec![e.name.clone(), element.clone(), format!("{:.3}", e.probability)],
             _ => vec![String::new(); 3],
         };
-        let law = if i == 0 { e.law.clone() } else { String::new() };
-        [head, vec![key.clone()], estimate(number), vec![law]].concat()
+        let law = if i == 0 { greek(&e.law) } else { String::new() };
+        [head, vec![key.clone()], estimate(key, e.channel.as_deref(), number), vec![law]].concat()
     };
     e.parameters.iter().enumerate().map(row).collect()
-}
-
-fn estimate(e: &Estimate) -> Vec<String> {
-    let fixed = e.ci95[0] == e.ci95[1];
-    let interval = if fixed { "not fitted".to_owned() } else { format!("{:.3e} to {:.3e}", e.ci95[0], e.ci95[1]) };
-    vec![format!("{:.4e}", e.value), interval]
 }
 
 fn better(page: &mut HtmlPage, outcome: &Outcome) {
@@ -117,11 +128,15 @@ fn better(page: &mut HtmlPage, outcome: &Outcome) {
         .channels
         .iter()
         .map(|(channel, p)| {
-            let numbers = [p.rmse_baseline, p.rmse_corrected, p.noise_sd, p.rmse_corrected / p.noise_sd];
-            [vec![channel.clone()], numbers.map(three_digits).to_vec()].concat()
+            let symbol = parse_column(channel).map_or("", |name| name.unit.symbol);
+            let numbers = [p.rmse_baseline, p.rmse_corrected, p.noise_sd].map(|v| with(&three_digits(v), symbol));
+            let ratios = [p.rmse_baseline, p.rmse_corrected].map(|rmse| format!("{:.2}", rmse / p.noise_sd));
+            [vec![channel.clone()], numbers.to_vec(), ratios.to_vec()].concat()
         })
         .collect();
-    page.table(&["sealed runs", "RMSE calibrated", "RMSE corrected", "noise", "corrected / noise"], &rows);
+    let header =
+        ["sealed runs", "RMSE calibrated", "RMSE corrected", "noise", "calibrated / noise", "corrected / noise"];
+    page.table(&header, &rows);
     page.figure(&bars_svg(outcome), "Runs that had no part in choosing or fitting.");
     full_scene(page, outcome);
     placebos(page, outcome);
@@ -173,12 +188,14 @@ fn placebos(page: &mut HtmlPage, outcome: &Outcome) {
 fn next(page: &mut HtmlPage, outcome: &Outcome) {
     let next = &outcome.diagnosis.next_experiment;
     page.heading("What to do next");
-    page.paragraph(&format!("{}.", next.why));
+    page.paragraph(&next_words(&outcome.diagnosis));
     if let Some(file) = &next.file {
         page.paragraph(&format!(
-            "{file} holds the inputs for the rig; `smam run scene.toml --input {file}` shows what the corrected scene \
-             expects."
+            "Play `{file}` on the rig; `smam run scene.toml --input {file}` shows what the corrected scene expects."
         ));
+    }
+    if let Some(words) = sensor_words(next) {
+        page.paragraph(&words);
     }
 }
 
@@ -213,8 +230,7 @@ fn detectable(page: &mut HtmlPage, outcome: &Outcome) {
         return;
     }
     page.heading("What would have been seen");
-    page.paragraph("The smallest size (SI) of each effect that these recordings would have shown.");
-    let rows: Vec<Vec<String>> =
-        smallest.iter().map(|(title, size)| vec![title.clone(), format!("{size:.2e}")]).collect();
-    page.table(&["effect", "size"], &rows);
+    page.paragraph("The smallest size of each effect that these recordings would have shown.");
+    let rows: Vec<Vec<String>> = smallest.iter().map(|(title, size)| smallest_words(title, *size)).collect();
+    page.table(&["effect", "number", "size"], &rows);
 }

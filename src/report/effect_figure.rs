@@ -2,13 +2,17 @@
 
 use super::axis::three_digits;
 use super::panel::{Panel, Series, draw_legend};
+use super::quantity::with;
 use super::svg::{Anchor, BLUE, ORANGE, Rect, Svg, cut_to};
 use crate::recording::parse_column;
 
 const CELL_WIDTH: f64 = 450.0;
-const TIME_HEIGHT: f64 = 270.0;
-const LOOP_HEIGHT: f64 = 270.0;
-const CHANGE_HEIGHT: f64 = 190.0;
+/// What changes is what there is to see: its row is the tall one.
+const CHANGE_HEIGHT: f64 = 290.0;
+const TIME_HEIGHT: f64 = 205.0;
+const LOOP_HEIGHT: f64 = 190.0;
+/// Between the x label of a row and the title of the next.
+const GAP: f64 = 14.0;
 const HEADER_HEIGHT: f64 = 110.0;
 const EDGE: f64 = 10.0;
 const LARGE: f64 = 16.0;
@@ -34,29 +38,46 @@ pub struct AffectedScene {
     pub output: (String, Vec<f64>),
     /// The output with the effect: as many as `sizes` of [`effect_svg`].
     pub with: Vec<Vec<f64>>,
+    /// A pressure, where fluid drives the scene: column, samples without the effect, samples with it.
+    pub pressure: Option<(String, Vec<f64>, Vec<Vec<f64>>)>,
 }
 
-/// Draws the scenes as columns: output over time, output over input, and what the effect changes over time.
+/// Draws the scenes as columns: output over time, output over input, pressure over output, and what the effect changes
+/// over time.
 ///
 /// `title` names the effect, `law` (its formula, then its symbols) is written below it, `sizes` says of each coloured
 /// line with which numbers.
 pub fn effect_svg(title: &str, law: [&str; 2], sizes: &[String], scenes: &[AffectedScene]) -> String {
     let width = 2.0 * EDGE + CELL_WIDTH * scenes.len().max(2) as f64;
     let cell_width = (width - 2.0 * EDGE) / scenes.len().max(1) as f64;
-    let height = HEADER_HEIGHT + TIME_HEIGHT + LOOP_HEIGHT + CHANGE_HEIGHT + EDGE;
+    let has_pressure = scenes.iter().any(|scene| scene.pressure.is_some());
+    let rows: Vec<(Draw, f64)> = [
+        (over_time as Draw, TIME_HEIGHT),
+        (change, CHANGE_HEIGHT),
+        (over_input, LOOP_HEIGHT),
+        (pressure_over_output, if has_pressure { LOOP_HEIGHT } else { 0.0 }),
+    ]
+    .into_iter()
+    .filter(|(_, height)| *height > 0.0)
+    .collect();
+    let height = HEADER_HEIGHT + rows.iter().map(|(_, height)| height + GAP).sum::<f64>() + EDGE;
     let mut svg = Svg::new(width, height);
     draw_header(&mut svg, width, title, law, sizes);
     for (column, scene) in scenes.iter().enumerate() {
         let mut y = HEADER_HEIGHT;
-        let panels =
-            [(over_time(scene), TIME_HEIGHT), (over_input(scene), LOOP_HEIGHT), (change(scene), CHANGE_HEIGHT)];
-        for (panel, height) in panels {
-            panel.draw(&mut svg, Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height });
-            y += height;
+        for (draw, height) in &rows {
+            let area = Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height: *height };
+            if let Some(panel) = draw(scene) {
+                panel.draw(&mut svg, area);
+            }
+            y += height + GAP;
         }
     }
     svg.finish()
 }
+
+/// A row of the figure; `None` where a scene has nothing to show in it.
+type Draw = fn(&AffectedScene) -> Option<Panel>;
 
 fn draw_header(svg: &mut Svg, width: f64, title: &str, law: [&str; 2], sizes: &[String]) {
     let left = EDGE + 12.0;
@@ -70,32 +91,45 @@ fn draw_header(svg: &mut Svg, width: f64, title: &str, law: [&str; 2], sizes: &[
     draw_legend(svg, (left, 92.0), f64::INFINITY, &entries);
 }
 
-fn over_time(scene: &AffectedScene) -> Panel {
-    Panel {
+fn over_time(scene: &AffectedScene) -> Option<Panel> {
+    Some(Panel {
         title: [&scene.name, &scene.remark].into_iter().filter(|line| !line.is_empty()).cloned().collect(),
         x_label: "time (s)".to_owned(),
         ..output_over(&scene.time_s, scene)
-    }
+    })
 }
 
-fn over_input(scene: &AffectedScene) -> Panel {
-    Panel { x_label: axis_label(&scene.input.0), ..output_over(&scene.input.1, scene) }
+fn over_input(scene: &AffectedScene) -> Option<Panel> {
+    Some(Panel { x_label: axis_label(&scene.input.0), ..output_over(&scene.input.1, scene) })
+}
+
+/// Lost fluid moves along the stock curve or nearly so; a force more leaves it.
+fn pressure_over_output(scene: &AffectedScene) -> Option<Panel> {
+    let (column, stock, with) = scene.pressure.as_ref()?;
+    let coloured = scene.with.iter().zip(with).zip(COLOURS).map(|((x, y), colour)| line(x, y, colour));
+    Some(Panel {
+        x_label: axis_label(&scene.output.0),
+        y_label: axis_label(column),
+        behind: vec![line(&scene.output.1, stock, STOCK)],
+        series: coloured.rev().collect(),
+        ..Panel::default()
+    })
 }
 
 /// With the effect minus without it, and the greatest change in words.
-fn change(scene: &AffectedScene) -> Panel {
+fn change(scene: &AffectedScene) -> Option<Panel> {
     let changes: Vec<Vec<f64>> =
         scene.with.iter().map(|with| with.iter().zip(&scene.output.1).map(|(a, b)| a - b).collect()).collect();
     let symbol = parse_column(&scene.output.0).map_or("", |name| name.unit.symbol);
     let series = changes.iter().zip(COLOURS).map(|(change, colour)| line(&scene.time_s, change, colour));
-    Panel {
+    Some(Panel {
         title: vec![greatest(&changes, &scene.output.1, symbol)],
         x_label: "time (s)".to_owned(),
         y_label: format!("change ({symbol})"),
         // The larger one first: the smaller must not vanish behind it.
         series: series.rev().collect(),
         ..Panel::default()
-    }
+    })
 }
 
 /// `up to 2.31 and 4.50 mm (8.6 and 16.7 % of range)`.
@@ -108,7 +142,7 @@ fn greatest(changes: &[Vec<f64>], stock: &[f64], symbol: &str) -> String {
         true => format!(" ({} % of range)", list(&|m| format!("{:.1}", 100.0 * m / (high - low)))),
         false => String::new(),
     };
-    format!("up to {} {symbol}{share}", list(&three_digits))
+    format!("up to {}{share}", with(&list(&three_digits), symbol))
 }
 
 /// The stock output broad and grey; before it the coloured ones, the larger first.
@@ -143,6 +177,7 @@ mod tests {
             remark: String::new(),
             input: ("plunger_mm".to_owned(), time_s.clone()),
             output: ("elongation_mm".to_owned(), stock),
+            pressure: None,
             with,
             time_s,
         }
@@ -162,6 +197,21 @@ mod tests {
             assert!(svg.contains(text), "{text}");
         }
         assert!(svg.contains(">up to 0.500 and 1.00 mm (2.5 and 5.0 % of range)<"), "{svg}");
+    }
+
+    #[test]
+    fn a_pressure_has_a_row_of_its_own_where_there_is_one() {
+        let mut bench = scene("muscle_bench");
+        let stock = bench.output.1.clone();
+        bench.pressure = Some(("pressure_kpa".to_owned(), stock.clone(), vec![stock.clone(), stock]));
+        let sizes = ["one".to_owned(), "two".to_owned()];
+        let height =
+            |svg: &str| svg.split_once("height=\"").and_then(|(_, h)| h.split('"').next()?.parse::<f64>().ok());
+        let [with, without] = [&[bench, scene("muscle_free")][..], &[scene("muscle_bench"), scene("muscle_free")][..]]
+            .map(|scenes| effect_svg("leak", ["", ""], &sizes, scenes));
+        assert!(with.contains(">pressure (kPa)<") && !without.contains("pressure"));
+        assert_eq!(with.matches("<polyline").count(), 2 * 8 + 3);
+        assert!(height(&with) > height(&without));
     }
 
     #[test]

@@ -3,10 +3,13 @@
 use super::axis::Axis;
 use super::decimate::decimate;
 use super::svg::{Anchor, GREY, Rect, Svg, cut_to, text_width};
+use super::thin::{TOLERANCE_PX, thin};
 
 const TITLE_SIZE: f64 = 12.0;
 const TEXT_SIZE: f64 = 11.0;
+/// Room for the y label and ticks of five letters; longer ones take more.
 const LEFT_MARGIN: f64 = 66.0;
+const Y_LABEL_ROOM: f64 = 24.0;
 const RIGHT_MARGIN: f64 = 14.0;
 const LINE_HEIGHT: f64 = 16.0;
 const TICK_ROOM: f64 = 18.0;
@@ -66,9 +69,8 @@ impl Panel {
 
     /// Draws title, axes and lines within a rectangle.
     pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
-        let plot = self.plot_area(outer);
+        let (plot, y_axis) = self.plot_area(outer);
         let x_axis = Axis::over(self.lines().flat_map(|(s, _)| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
-        let y_axis = Axis::over(self.y_values(), 0.05, (plot.height / 32.0) as usize);
         self.draw_text(svg, outer, plot);
         draw_x_ticks(svg, plot, &x_axis);
         draw_y_ticks(svg, plot, &y_axis);
@@ -84,7 +86,7 @@ impl Panel {
         for (series, width) in self.lines() {
             for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
                 let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&points, series.colour, width);
+                svg.polyline(&thin(&points, TOLERANCE_PX), series.colour, width);
             }
         }
         svg.frame(plot, GREY);
@@ -100,15 +102,16 @@ impl Panel {
         lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
     }
 
-    fn plot_area(&self, outer: Rect) -> Rect {
+    /// The plot within the panel, and its y axis: how long the ticks are decides what room is left of them.
+    fn plot_area(&self, outer: Rect) -> (Rect, Axis) {
         let above = LINE_HEIGHT * self.title.len() as f64 + 8.0;
         let label_room = if self.x_label.is_empty() { 0.0 } else { LINE_HEIGHT };
-        Rect {
-            x: outer.x + LEFT_MARGIN,
-            y: outer.y + above,
-            width: outer.width - LEFT_MARGIN - RIGHT_MARGIN,
-            height: outer.height - above - TICK_ROOM - label_room,
-        }
+        let height = outer.height - above - TICK_ROOM - label_room;
+        let y_axis = Axis::over(self.y_values(), 0.05, (height / 32.0) as usize);
+        let widest = y_axis.ticks().iter().map(|(_, text)| text_width(text, TEXT_SIZE)).fold(0.0, f64::max);
+        let left = LEFT_MARGIN.max(widest + Y_LABEL_ROOM);
+        let plot = Rect { x: outer.x + left, y: outer.y + above, width: outer.width - left - RIGHT_MARGIN, height };
+        (plot, y_axis)
     }
 
     fn draw_text(&self, svg: &mut Svg, outer: Rect, plot: Rect) {
@@ -213,6 +216,17 @@ mod tests {
         let entries = [("first line", BLUE, 1.0), ("second line", BLUE, 1.0), ("third line", BLUE, 1.0)];
         assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 1000.0, &entries), 0.0);
         assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 150.0, &entries), 2.0 * LINE_HEIGHT);
+    }
+
+    #[test]
+    fn long_ticks_stand_clear_of_the_label() {
+        let with = |y: Vec<f64>| Panel {
+            series: vec![Series { label: String::new(), colour: BLUE, x: vec![0.0, 1.0], y }],
+            ..Panel::default()
+        };
+        let left = |y: Vec<f64>| with(y).plot_area(Rect { x: 0.0, y: 0.0, width: 600.0, height: 300.0 }).0.x;
+        assert_eq!(left(vec![0.0, 1.0]), LEFT_MARGIN);
+        assert!(left(vec![0.123_456_78, 0.123_456_9]) > LEFT_MARGIN + 10.0);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::report::{HtmlPage, figure_svg};
 
 use super::chapter::YES_NO;
-use super::{Chapter, Figure, Row};
+use super::{Chapter, Figure, Row, Standing};
 
 const SIZE: (f64, f64) = (720.0, 300.0);
 
@@ -15,15 +15,16 @@ pub type Made = (&'static Figure, Chapter);
 /// One HTML page: the table of all numbers, then each figure.
 pub fn page(made: &[Made]) -> String {
     let mut page = HtmlPage::new("Thai et al. 2021, made again");
+    let (judged, text) = tally(made);
+    page.verdict(&judged, &text, count(made, Standing::NotMet) == 0);
     page.paragraph(
         "Every number that the paper prints beside ours. The paper published no raw data: shapes are compared with its \
          printed hysteresis model and printed parameters. 'given' was taken over as an input; 'shown' has nothing to be \
          compared with, or was printed about recordings that nobody else has.",
     );
-    page.table_of_remarks(
-        &HEADER,
-        &made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| cells(f, r))).collect::<Vec<_>>(),
-    );
+    let rows: Vec<Vec<String>> =
+        made.iter().flat_map(|(f, c)| c.rows.iter().map(|r| standing_first(cells(f, r)))).collect();
+    page.table(&standing_first(HEADER.to_vec()), &rows);
     for (figure, chapter) in made {
         page.heading(&format!("{}: {}", figure.name, figure.title));
         chapter.text.iter().for_each(|text| {
@@ -36,8 +37,32 @@ pub fn page(made: &[Made]) -> String {
     page.finish()
 }
 
+fn count(made: &[Made], standing: Standing) -> usize {
+    made.iter().flat_map(|(_, chapter)| &chapter.rows).filter(|row| row.standing == standing).count()
+}
+
+/// `58 of 70 met`, and what else there is.
+fn tally(made: &[Made]) -> (String, String) {
+    let [met, missed, given, shown] =
+        [Standing::Met, Standing::NotMet, Standing::Given, Standing::Shown].map(|standing| count(made, standing));
+    let besides = format!("of the numbers that can be judged; {missed} not met. {given} given, {shown} shown besides.");
+    (format!("{met} of {} met", met + missed), besides)
+}
+
+/// Whether it is met stands behind the figure's name: on a phone the first columns are what is seen.
+fn standing_first<T>(mut cells: Vec<T>) -> Vec<T> {
+    if cells.len() > STANDING {
+        let standing = cells.remove(STANDING);
+        cells.insert(1, standing);
+    }
+    cells
+}
+
+/// Place of the standing in [`HEADER`].
+const STANDING: usize = 5;
+
 /// Heads of the table of numbers.
-pub const HEADER: [&str; 7] = ["figure", "quantity", "paper", "ours", "deviation", "", "remark"];
+pub const HEADER: [&str; 7] = ["figure", "quantity", "paper", "ours", "deviation", "met?", "remark"];
 
 /// A row as text, unit included.
 pub fn cells(figure: &Figure, row: &Row) -> Vec<String> {
@@ -48,7 +73,7 @@ pub fn cells(figure: &Figure, row: &Row) -> Vec<String> {
         number(row.paper),
         number(row.ours),
         match row.deviation() {
-            Some(d) if row.unit != YES_NO => format!("{}{}", if d > 0.0 { "+" } else { "" }, short(d)),
+            Some(d) if row.unit != YES_NO => format!("{}{}", if d > 0.0 { "+" } else { "" }, with_unit(d, row.unit)),
             _ => "-".to_owned(),
         },
         row.standing.word().to_owned(),
@@ -90,4 +115,23 @@ pub fn json(made: &[Made]) -> Value {
         json!({ "figure": figure.name, "title": figure.title, "text": chapter.text, "rows": rows })
     });
     json!({ "format": 1, "source": "Thai et al. 2021, doi 10.1109/LRA.2021.3072599", "figures": figures.collect::<Vec<_>>() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_count_stands_on_top_and_the_standing_near_the_front() {
+        let figure = &crate::reproduce::FIGURES[0];
+        let rows = vec![
+            Row::compared("range", "mm", 27.0, 27.5, 1.0, "near"),
+            Row::compared("width", "mm", 4.0, 6.0, 1.0, "far"),
+            Row::given("bore", "mm", 4.5, "scene"),
+        ];
+        let text = page(&[(figure, Chapter { rows, ..Chapter::default() })]);
+        assert!(text.contains("<strong>1 of 2 met</strong> of the numbers that can be judged; 1 not met. 1 given"));
+        assert!(text.contains("<td class=\"l\">not met</td><td class=\"l\">width</td><td>4.000 mm</td>"), "{text}");
+        assert!(text.contains("<td>+0.5000 mm</td>"), "{text}");
+    }
 }

@@ -1,6 +1,7 @@
-//! What an effect of the catalogue does to a scene: its main output over the stock programme, without it and with it.
+//! What an effect of the catalogue does to a scene: its main output over the stock programme, and where fluid drives it
+//! a pressure, without it and with it.
 
-use crate::effects::{Effect, EffectSpec, Element, ElementKind};
+use crate::effects::{Effect, EffectSpec, Element, ElementKind, Kind};
 use crate::recording::parse_column;
 use crate::scene::Scene;
 
@@ -11,6 +12,19 @@ const SIZES: [f64; 2] = [1.0, 2.0];
 /// A threshold that the programme does not reach is lowered so often, to this share each time.
 const LOWERINGS: usize = 3;
 const LOWERED: f64 = 0.7;
+/// A drift that can be seen on any channel: this share of the channel's range, 1/s.
+const DRIFT_SHARE_1_S: f64 = 4e-4;
+/// What comes earlier is not shown, s: the scene starts at its own rest, and with a force more it first swings to another.
+const SETTLED_S: f64 = 1.0;
+
+/// An output without and with an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influenced {
+    pub column: String,
+    pub stock: Vec<f64>,
+    /// One for each size.
+    pub with: Vec<Vec<f64>>,
+}
 
 /// A scene's first output over its stock programme, at several sizes of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +35,12 @@ pub struct Influence {
     pub time_s: Vec<f64>,
     /// Column of the first input with its values, in its unit.
     pub input: (String, Vec<f64>),
-    /// Column of the first output, and its values without the effect.
-    pub output: (String, Vec<f64>),
-    /// The effect's first number, and the output with it.
-    pub with: Vec<(f64, Vec<f64>)>,
+    /// The effect's first number at each size.
+    pub sizes: Vec<f64>,
+    /// The first output.
+    pub output: Influenced,
+    /// The first pressure among the outputs: it tells a lost fluid from a force.
+    pub pressure: Option<Influenced>,
 }
 
 /// Plays the fast model of a scene without and with an effect; `None` where the scene cannot have it.
@@ -40,23 +56,26 @@ pub fn influence(scene: &Scene, spec: &'static EffectSpec) -> Result<Option<Infl
     }
     let stage = Stage::new(scene)?;
     let stock = stage.play(None)?;
+    if effect.kind == Kind::SensorDrift {
+        effect.values[0] = visible_drift(&stock[0]);
+    }
     let mut with = stage.play_sizes(&effect)?;
     for _ in 0..LOWERINGS {
-        let is_seen = with.iter().any(|(_, values)| *values != stock);
+        let is_seen = with.iter().any(|outputs| outputs[0] != stock[0]);
         if is_seen || effect.values.len() < 2 {
             break;
         }
         effect.values[1] *= LOWERED;
         with = stage.play_sizes(&effect)?;
     }
-    Ok(Some(Influence {
-        scene: scene.file.name.clone(),
-        effect,
-        input: stage.input()?,
-        output: (scene.file.output[0].channel.clone(), stock),
-        with,
-        time_s: stage.run.times_s,
-    }))
+    Ok(Some(stage.influence(effect, &stock, &with)?))
+}
+
+/// A drift per second that fits a channel, to one digit.
+fn visible_drift(values: &[f64]) -> f64 {
+    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+    let rate = DRIFT_SHARE_1_S * (high - low);
+    format!("{rate:.0e}").parse().unwrap_or(rate)
 }
 
 /// The effect at its typical size on the first element of its kind.
@@ -91,23 +110,51 @@ impl<'a> Stage<'a> {
         Ok(Self { scene, twin: Twin::new(scene)?, run: TwinRun { times_s, inputs, plan: None } })
     }
 
-    /// The first output with the scene's own effects and one more.
-    fn play(&self, more: Option<Effect<f64>>) -> Result<Vec<f64>, SystemError> {
+    /// All outputs with the scene's own effects and one more.
+    fn play(&self, more: Option<Effect<f64>>) -> Result<Vec<Vec<f64>>, SystemError> {
         let own = self.scene.file.effect.iter().filter_map(|t| t.effect().ok());
         let setting = TwinSetting { parameters: Vec::new(), effects: own.chain(more).collect() };
-        let shown = self.twin.simulate(&self.run, &setting).and_then(|outputs| outputs.into_iter().next());
+        let shown = self.twin.simulate(&self.run, &setting).filter(|outputs| !outputs.is_empty());
         let end_s = self.run.times_s.last().copied().unwrap_or(0.0);
         shown.ok_or_else(|| SystemError::Diverged { time_s: end_s, what: "the fast model's motion".to_owned() })
     }
 
-    fn play_sizes(&self, effect: &Effect<f64>) -> Result<Vec<(f64, Vec<f64>)>, SystemError> {
-        let range = effect.spec().parameters[0].range;
-        let at = |multiple: &f64| {
+    fn play_sizes(&self, effect: &Effect<f64>) -> Result<Vec<Vec<Vec<f64>>>, SystemError> {
+        let sized = |size: f64| {
             let mut sized = effect.clone();
-            sized.values[0] = (multiple * effect.values[0]).clamp(range.min, range.max);
-            Ok((sized.values[0], self.play(Some(sized))?))
+            sized.values[0] = size;
+            self.play(Some(sized))
         };
-        SIZES.iter().map(at).collect()
+        sizes(effect).into_iter().map(sized).collect()
+    }
+
+    /// What was played from where it has settled.
+    fn influence(
+        &self,
+        effect: Effect<f64>,
+        stock: &[Vec<f64>],
+        with: &[Vec<Vec<f64>>],
+    ) -> Result<Influence, SystemError> {
+        let times_s = &self.run.times_s;
+        let from = times_s.partition_point(|t| *t < times_s[0] + SETTLED_S).min(times_s.len() - 1);
+        let outputs = &self.scene.file.output;
+        let of = |i: usize| Influenced {
+            column: outputs[i].channel.clone(),
+            stock: stock[i][from..].to_vec(),
+            with: with.iter().map(|one| one[i][from..].to_vec()).collect(),
+        };
+        let is_pressure = |column: &str| parse_column(column).is_ok_and(|name| name.unit.si_suffix == "pa");
+        let pressure = (1..outputs.len()).find(|i| is_pressure(&outputs[*i].channel));
+        let (column, input) = self.input()?;
+        Ok(Influence {
+            scene: self.scene.file.name.clone(),
+            sizes: sizes(&effect),
+            effect,
+            time_s: times_s[from..].to_vec(),
+            input: (column, input[from..].to_vec()),
+            output: of(0),
+            pressure: pressure.map(of),
+        })
     }
 
     fn input(&self) -> Result<(String, Vec<f64>), SystemError> {
@@ -117,33 +164,57 @@ impl<'a> Stage<'a> {
     }
 }
 
+/// The sizes that are tried, within the law's range.
+fn sizes(effect: &Effect<f64>) -> Vec<f64> {
+    let range = effect.spec().parameters[0].range;
+    SIZES.iter().map(|multiple| (multiple * effect.values[0]).clamp(range.min, range.max)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Kind, find};
+    use crate::effects::find;
 
     fn of(scene: &str, kind: Kind) -> Option<Influence> {
         let scene = Scene::load(scene, &[]).unwrap_or_else(|e| panic!("{e}"));
         influence(&scene, find(kind)).unwrap_or_else(|e| panic!("{e}"))
     }
 
+    fn greatest_changes(shown: &Influenced) -> Vec<f64> {
+        let change = |with: &Vec<f64>| with.iter().zip(&shown.stock).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        shown.with.iter().map(change).collect()
+    }
+
     #[test]
     fn a_leak_shows_and_grows_with_its_size() {
         let leak = of("muscle_bench", Kind::Leak).expect("the bench has a line");
-        let change = |values: &[f64]| {
-            let pairs = values.iter().zip(&leak.output.1);
-            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-        };
-        let changes: Vec<f64> = leak.with.iter().map(|(_, values)| change(values)).collect();
-        assert_eq!(leak.output.0, "elongation_mm");
+        let changes = greatest_changes(&leak.output);
+        assert_eq!(leak.output.column, "elongation_mm");
         assert!(changes[0] > 0.1 && changes[1] > 1.5 * changes[0], "{changes:?}");
+    }
+
+    #[test]
+    fn fluid_that_is_lost_shows_in_the_pressure_and_a_slow_start_does_not() {
+        let leak = of("antagonistic_pulley", Kind::Leak).expect("the pulley has lines");
+        let pressure = leak.pressure.expect("the pulley shows pressures");
+        assert_eq!(pressure.column, "pressure_1_kpa");
+        assert!(greatest_changes(&pressure)[0] > 1.0, "{:?}", greatest_changes(&pressure));
+        assert!(leak.time_s[0] >= SETTLED_S && leak.time_s.len() == pressure.stock.len());
+        assert_eq!(of("tendon_sheath", Kind::CableSlack).expect("it has cables").pressure, None);
+    }
+
+    #[test]
+    fn a_drift_fits_its_channel() {
+        let drift = |scene: &str| of(scene, Kind::SensorDrift).expect("a sensor").sizes[0];
+        assert_eq!(drift("muscle_bench"), 0.01);
+        assert!(drift("antagonistic_pulley") >= 0.03, "{}", drift("antagonistic_pulley"));
     }
 
     #[test]
     fn a_threshold_out_of_reach_is_lowered() {
         let closed = of("bending_catheter", Kind::NotchClosure).expect("the catheter has notches");
         assert!(closed.effect.values[1] < find(Kind::NotchClosure).typical()[1]);
-        assert!(closed.with.iter().all(|(_, values)| *values != closed.output.1));
+        assert!(closed.output.with.iter().all(|values| *values != closed.output.stock));
     }
 
     #[test]

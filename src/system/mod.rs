@@ -56,7 +56,7 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
-pub use influence::{Influence, influence};
+pub use influence::{Influence, Influenced, influence};
 pub use inputs::InputSource;
 pub use measured_pose::measured_poses;
 pub use plant::{

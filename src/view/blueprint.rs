@@ -160,15 +160,15 @@ fn loop_view(graph: &SceneGraph, number: usize) -> Pane {
 
 fn legend_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let strips = strip_count(graph);
-    let bottom = f64::from(SPACING) * strips as f64 - 0.1;
+    let bottom = f64::from(SPACING) * strips as f64;
     let pane = || plane("Colours", path(["legend"]), bounds([-0.15, 1.15], [-0.1, bottom]));
-    (strips > 0).then(|| (0.55, pane()))
+    (strips > 0).then(|| (0.62, pane()))
 }
 
 fn headline_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let channel = headline(&graph.channels, graph.input_count)?;
     let title = axis_title(&graph.channels[channel]);
-    Some((0.45, view(Kind::Document, &title, path(["headline"]), Vec::new())))
+    Some((0.38, view(Kind::Document, &title, path(["headline"]), Vec::new())))
 }
 
 /// Path and level are the same for all events: only time and text are shown.
