@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::effects::CATALOGUE;
+
 /// The whole answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
@@ -76,6 +78,22 @@ pub struct NamedEffect {
     pub size_by_run: BTreeMap<String, Estimate>,
     pub law: String,
     pub hypothetical: bool,
+}
+
+impl NamedEffect {
+    /// The key of the number that is its size; two laws may share a name.
+    pub fn size_key(&self) -> &'static str {
+        size_keys(&self.name).find(|key| self.parameters.contains_key(*key)).unwrap_or_else(|| size_key(&self.name))
+    }
+}
+
+/// The key of the number that is the size of an effect of the catalogue; empty for what is none.
+pub fn size_key(name: &str) -> &'static str {
+    size_keys(name).next().unwrap_or("")
+}
+
+fn size_keys(name: &str) -> impl Iterator<Item = &'static str> {
+    CATALOGUE.iter().filter(move |spec| spec.name == name).map(|spec| spec.parameters[0].key)
 }
 
 /// A number with its interval.

@@ -55,7 +55,9 @@ mod without;
 
 use std::collections::BTreeMap;
 
-pub use answer::{ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict};
+pub use answer::{
+    ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict, size_key,
+};
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Sealed};
 pub use error::DiagnoseError;
 pub use files::write_answer;

@@ -9,7 +9,7 @@ use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
 use super::diagnosis_bars::bars_svg;
 use super::diagnosis_map::{state_map_svg, time_lines_svg};
 use super::diagnosis_words::{
-    estimate, is_good, last_name, next_words, region_words, sensor_words, size_key, smallest_words, verdict_word,
+    estimate, is_good, last_name, next_words, region_words, sensor_words, smallest_words, verdict_word,
 };
 use super::quantity::with;
 use super::symbols::greek;
@@ -96,7 +96,7 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
 fn from_run_to_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for e in effects {
-        let key = size_key(e);
+        let key = e.size_key();
         let sizes = e.size_by_run.iter().map(|(file, size)| (file, estimate(key, e.channel.as_deref(), size)));
         rows.extend(sizes.map(|(file, size)| [vec![e.name.clone(), file.clone(), key.to_owned()], size].concat()));
     }

@@ -1,7 +1,6 @@
 //! What the page of a diagnosis says in words and numbers. The answer's own texts stay as they are in the JSON.
 
-use crate::diagnose::{Diagnosis, Estimate, NamedEffect, NextExperiment, Verdict};
-use crate::effects::CATALOGUE;
+use crate::diagnose::{Diagnosis, Estimate, NextExperiment, Verdict, size_key};
 
 use super::quantity::{Scale, column_range, quantity};
 
@@ -83,17 +82,11 @@ pub(super) fn estimate(key: &str, channel: Option<&str>, e: &Estimate) -> Vec<St
     scale.with_interval(e.value, low, high).to_vec()
 }
 
-/// The key of the number that is an effect's size; two laws may share a name.
-pub(super) fn size_key(e: &NamedEffect) -> &'static str {
-    let own = CATALOGUE.iter().filter(|spec| spec.name == e.name).map(|spec| spec.parameters[0].key);
-    own.clone().find(|key| e.parameters.contains_key(*key)).or(own.clone().next()).unwrap_or("")
-}
-
 /// A row of what would have been seen: `leak in line`, its number, the size with its unit.
 pub(super) fn smallest_words(title: &str, size: f64) -> Vec<String> {
     let name = title.split(' ').next().unwrap_or(title);
     let channel = title.split_once(" on ").map(|(_, channel)| channel);
-    let key = CATALOGUE.iter().find(|spec| spec.name == name).map_or("", |spec| spec.parameters[0].key);
+    let key = size_key(name);
     vec![title.to_owned(), key.to_owned(), quantity(key, channel, size)]
 }
 
