@@ -162,13 +162,13 @@ fn legend_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let strips = strip_count(graph);
     let bottom = f64::from(SPACING) * strips as f64;
     let pane = || plane("Colours", path(["legend"]), bounds([-0.15, 1.15], [-0.1, bottom]));
-    (strips > 0).then(|| (0.62, pane()))
+    (strips > 0).then(|| (0.58, pane()))
 }
 
 fn headline_view(graph: &SceneGraph) -> Option<(f32, Pane)> {
     let channel = headline(&graph.channels, graph.input_count)?;
     let title = axis_title(&graph.channels[channel]);
-    Some((0.38, view(Kind::Document, &title, path(["headline"]), Vec::new())))
+    Some((0.42, view(Kind::Document, &title, path(["headline"]), Vec::new())))
 }
 
 /// Path and level are the same for all events: only time and text are shown.
