@@ -7,7 +7,10 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-[ $# -eq 1 ] && [ -s "$1/rows.jsonl" ] || { echo "usage: proof/publish.sh OUT, the folder of a run of smam proof" >&2; exit 2; }
+if [ $# -ne 1 ] || [ ! -s "$1/rows.jsonl" ]; then
+    echo "usage: proof/publish.sh OUT, the folder of a run of smam proof" >&2
+    exit 2
+fi
 out=${1%/}
 
 mkdir -p "$here/sealed" "$here/answers"
