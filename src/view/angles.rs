@@ -1,11 +1,12 @@
 //! Joints: a marker in every hinge, and a table of all positions at the cursor.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use rerun::{LineStrip3D, LineStrips3D, Radius, RecordingStream, TextDocument};
+use rerun::{LineStrip3D, LineStrips3D, Radius, RecordingStream};
 
 use super::colour::{MARKER, opaque};
 use super::error::ViewError;
-use super::layer::{Layer, path, time_column};
+use super::headline::log_texts;
+use super::layer::{Layer, path};
 use crate::mechanism::geometry::{Shape, Visual};
 use crate::system::observe::{Frame, JointGraph, SceneGraph};
 
@@ -105,14 +106,6 @@ impl Layer for Angles {
                 texts.push(self.table(frame));
             }
         }
-        if texts.is_empty() {
-            return Ok(());
-        }
-        let count = texts.len();
-        let documents = TextDocument::update_fields()
-            .with_many_text(texts)
-            .with_many_media_type(std::iter::repeat_n(rerun::MediaType::markdown(), count));
-        out.send_columns("angles", [time_column(times_s)], documents.columns_of_unit_batches()?)?;
-        Ok(())
+        log_texts(out, "angles", times_s, texts)
     }
 }

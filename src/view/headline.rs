@@ -39,17 +39,24 @@ impl Layer for Headline {
                 texts.push(text);
             }
         }
-        if texts.is_empty() {
-            return Ok(());
-        }
-        let count = texts.len();
-        let documents = TextDocument::update_fields()
-            .with_many_text(texts)
-            .with_many_media_type(std::iter::repeat_n(rerun::MediaType::markdown(), count));
-        let columns = documents.columns_of_unit_batches()?;
-        out.send_columns("headline", [time_column(times_s)], columns)?;
-        Ok(())
+        log_texts(out, "headline", times_s, texts)
     }
+}
+
+/// Logs a text document's versions with their times, s; none is fine.
+pub(super) fn log_texts(
+    out: &RecordingStream,
+    entity: &str,
+    times_s: Vec<f64>,
+    texts: Vec<String>,
+) -> Result<(), ViewError> {
+    if texts.is_empty() {
+        return Ok(());
+    }
+    let kinds = std::iter::repeat_n(rerun::MediaType::markdown(), texts.len());
+    let documents = TextDocument::update_fields().with_many_text(texts).with_many_media_type(kinds);
+    out.send_columns(entity, [time_column(times_s)], documents.columns_of_unit_batches()?)?;
+    Ok(())
 }
 
 /// Events as log lines.
