@@ -1,12 +1,24 @@
-//! The number type the laws are written over.
+//! The number types the laws are written over.
+
+use std::fmt::Debug;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_dual::DualNum;
 
-/// A real number, or one that carries exact derivatives.
+mod lanes;
+
+pub use lanes::Lanes;
+pub(crate) use lanes::take_disagreement;
+
+/// A real number, one that carries exact derivatives, or several numbers side by side.
 ///
 /// Every law of the hydraulics, the muscle and the hysteresis is generic over this trait: with `f64` it is
 /// the plain law, with a dual number of `num-dual` the same code also yields exact sensitivities to the
-/// calibrated parameters. Branches look only at the real part, [`Scalar::value`].
+/// calibrated parameters, with [`Lanes`] it is evaluated for several parameter sets at once.
+///
+/// Branches look at the real part alone, through [`Scalar::is_above`] and its like where numbers side by side usually
+/// agree, through [`Scalar::select_above`] where each must go its own way.
 ///
 /// ```
 /// use num_dual::Dual64;
@@ -19,18 +31,133 @@ use num_dual::DualNum;
 /// assert!((Scalar::value(&k) - 28.3).abs() < 0.05);
 /// assert!((k.eps / (4.0 * k.re / 0.2e-3) - 1.0).abs() < 1e-12);
 /// ```
-pub trait Scalar: DualNum<Primitive = f64> + Copy + Send + Sync + 'static {
-    /// The number without its derivatives.
+pub trait Scalar:
+    Copy
+    + Debug
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + AddAssign<f64>
+    + SubAssign<f64>
+    + MulAssign<f64>
+    + DivAssign<f64>
+    + Sum
+{
+    /// Orders of derivatives that are carried.
+    const DERIVATIVES: usize;
+
+    /// The number without its derivatives. Of numbers side by side the first, and where they differ that is noted
+    /// ([`Lanes`]).
     fn value(&self) -> f64;
 
     /// A constant: its derivatives are zero.
-    fn constant(value: f64) -> Self {
-        Self::from(value)
+    fn constant(value: f64) -> Self;
+
+    /// Whether the number is above `bound`.
+    fn is_above(&self, bound: f64) -> bool {
+        self.value() > bound
     }
+
+    /// Whether the number is below `bound`.
+    fn is_below(&self, bound: f64) -> bool {
+        self.value() < bound
+    }
+
+    /// Whether the number is `bound`.
+    fn is_at(&self, bound: f64) -> bool {
+        self.value() == bound
+    }
+
+    /// Whether neither infinite nor no number at all.
+    fn is_finite(&self) -> bool {
+        self.value().is_finite()
+    }
+
+    /// `then` where the number is above `bound`, `otherwise` elsewhere.
+    fn select_above(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        if self.value() > bound.value() { then } else { otherwise }
+    }
+
+    /// The row of a table that the number falls into; none outside the table.
+    fn look_up<'a, const N: usize>(self, row: impl Fn(f64) -> Option<&'a [Self; N]>) -> Option<[Self; N]> {
+        row(self.value()).copied()
+    }
+
+    /// The same for a table of plain numbers.
+    fn look_up_plain<'a, const N: usize>(self, row: impl Fn(f64) -> Option<&'a [f64; N]>) -> Option<[Self; N]> {
+        row(self.value()).map(|row| row.map(Self::constant))
+    }
+
+    fn abs(&self) -> Self;
+    fn recip(&self) -> Self;
+    fn sqrt(&self) -> Self;
+    fn exp(&self) -> Self;
+    fn exp_m1(&self) -> Self;
+    fn ln(&self) -> Self;
+    fn ln_1p(&self) -> Self;
+    fn tanh(&self) -> Self;
+    fn powi(&self, n: i32) -> Self;
+    fn powf(&self, n: f64) -> Self;
+    /// A power whose exponent is of the same type.
+    fn powd(&self, n: Self) -> Self;
+}
+
+/// Functions handed on as they are.
+macro_rules! hand_on {
+    ($($function:ident),*) => {
+        $(#[inline]
+        fn $function(&self) -> Self {
+            DualNum::$function(self)
+        })*
+    };
 }
 
 impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
+    const DERIVATIVES: usize = T::NDERIV;
+
+    #[inline]
     fn value(&self) -> f64 {
         self.re()
+    }
+
+    #[inline]
+    fn constant(value: f64) -> Self {
+        Self::from(value)
+    }
+
+    #[inline]
+    fn abs(&self) -> Self {
+        T::abs(self)
+    }
+
+    hand_on!(recip, sqrt, exp, exp_m1, ln, ln_1p, tanh);
+
+    #[inline]
+    fn powi(&self, n: i32) -> Self {
+        DualNum::powi(self, n)
+    }
+
+    #[inline]
+    fn powf(&self, n: f64) -> Self {
+        DualNum::powf(self, n)
+    }
+
+    #[inline]
+    fn powd(&self, n: Self) -> Self {
+        DualNum::powd(self, n)
     }
 }

@@ -127,3 +127,59 @@ fn sensitivities_are_those_of_finite_differences() {
         }
     }
 }
+
+/// Five settings about the effects of a scene: as they are, two parameters a little off, and each effect's numbers larger.
+fn settings_about(scene: &Scene, twin: &Twin) -> Vec<TwinSetting<f64>> {
+    let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
+    let parameters = |share: f64| {
+        let scaled = |key: &str, number: f64| Some((twin.parameter(key)?, number * share));
+        [scaled("tube_c1_pa", 0.255e6), scaled("friction_m0_n", 0.05)].into_iter().flatten().collect()
+    };
+    let enlarged = |share: f64| {
+        let mut effects = effects.clone();
+        effects.iter_mut().for_each(|e| e.values[0] *= share);
+        effects
+    };
+    [(1.0, 1.0), (1.001, 1.0), (0.93, 1.0), (1.0, 1.02), (1.0, 1.5)]
+        .map(|(share, size)| TwinSetting { parameters: parameters(share), effects: enlarged(size) })
+        .to_vec()
+}
+
+#[test]
+fn settings_side_by_side_answer_as_each_by_itself_to_the_bit() {
+    for name in STOCK {
+        let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let times_s = Schedule::even(8.0, 0.01).0;
+        let inputs = stock.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
+        let run = TwinRun { times_s, inputs, plan: None };
+        let plain = std::iter::once((format!("{name} as it is"), stock.clone()));
+        for (title, scene) in plain.chain(with_each_effect(name)) {
+            let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+            let settings = settings_about(&scene, &twin);
+            let together = twin.simulate_many(&run, &settings);
+            for (i, (setting, many)) in settings.iter().zip(&together).enumerate() {
+                let one = twin.simulate(&run, setting);
+                assert!(one.is_some(), "{title}, setting {i}: diverges");
+                assert!(one == *many, "{title}, setting {i}: differs");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_setting_that_diverges_takes_no_other_with_it() {
+    let scene = Scene::load("muscle_bench", &[]).unwrap_or_else(|e| panic!("{e}"));
+    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let times_s = Schedule::even(2.0, 0.01).0;
+    let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
+    let run = TwinRun { times_s, inputs, plan: None };
+    let c1 = twin.parameter("tube_c1_pa").expect("a tube");
+    let settings: Vec<_> = [0.25e6, f64::NAN, 0.26e6]
+        .map(|pa| TwinSetting { parameters: vec![(c1.clone(), pa)], effects: Vec::new() })
+        .to_vec();
+    let together = twin.simulate_many(&run, &settings);
+    assert!(together[1].is_none());
+    for i in [0, 2] {
+        assert!(together[i].is_some() && together[i] == twin.simulate(&run, &settings[i]), "setting {i}");
+    }
+}

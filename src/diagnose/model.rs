@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::effects::{Effect, EffectSpec, Element, Kind};
-use crate::system::TwinSetting;
+use crate::system::{TOGETHER, TwinSetting};
 
 use super::case::{Case, CaseRun};
 
@@ -124,8 +124,16 @@ pub(super) struct Response {
 
 /// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
 pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
-    let series = run.twin.simulate(&run.drive, &model.setting(case, x))?;
-    Some(case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect())
+    simulate_many(case, run, model, &[x.to_vec()]).pop()?
+}
+
+/// Simulates a run at several points, side by side.
+fn simulate_many(case: &Case, run: &CaseRun, model: &Model, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
+    let settings: Vec<_> = points.iter().map(|x| model.setting(case, x)).collect();
+    let compared =
+        |series: Vec<Vec<f64>>| case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect();
+    let many = run.twin.simulate_many(&run.drive, &settings);
+    many.into_iter().map(|series| series.map(compared)).collect()
 }
 
 /// A number of `x` and the step over which its derivative is taken, to one side or to both.
@@ -163,7 +171,8 @@ pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], prob
             Sides::Both => (ahead, end(-probe.step), 2.0 * probe.step),
         });
     }
-    let series: Vec<Option<Vec<Vec<f64>>>> = jobs.par_iter().map(|x| simulate(case, run, model, x)).collect();
+    let series: Vec<_> =
+        jobs.par_chunks(TOGETHER).flat_map_iter(|jobs| simulate_many(case, run, model, jobs)).collect();
     let series = series.into_iter().collect::<Option<Vec<_>>>()?;
     let slope = |(ahead, behind, way): (usize, usize, f64)| -> Vec<Vec<f64>> {
         let channels = series[ahead].iter().zip(&series[behind]);

@@ -27,13 +27,7 @@ impl<D: Scalar> Backlash<D> {
     pub fn follow(&self, ahead_m: D, step_m: f64) -> D {
         let half = self.width_m * 0.5;
         let ahead = ahead_m - step_m;
-        if ahead.value() < -half.value() {
-            -half
-        } else if ahead.value() > half.value() {
-            half
-        } else {
-            ahead
-        }
+        (-half).select_above(ahead, -half, ahead.select_above(half, half, ahead))
     }
 }
 

@@ -25,8 +25,8 @@ impl<D: Scalar> Wall<D> {
 
     /// Whether the spring is touched.
     pub fn is_met(&self, angle_rad: D) -> bool {
-        let depth = angle_rad.value() - self.angle_rad.value();
-        if self.angle_rad.value() >= 0.0 { depth > 0.0 } else { depth < 0.0 }
+        let depth = angle_rad - self.angle_rad;
+        if self.angle_rad.is_below(0.0) { depth.is_below(0.0) } else { depth.is_above(0.0) }
     }
 }
 

@@ -33,9 +33,10 @@ impl<D: Scalar> TrappedAir<D> {
     /// `-dV/dp`, m³/Pa.
     pub fn compliance_m3_pa(&self, pressure_pa: D) -> D {
         let absolute = pressure_pa / ATMOSPHERE_PA + 1.0;
-        let absolute = if absolute.value() > VACUUM_SHARE { absolute } else { D::constant(VACUUM_SHARE) };
+        let bound = D::constant(VACUUM_SHARE);
+        let absolute = absolute.select_above(bound, absolute, bound);
         // The isothermal law needs no power; its derivative to kappa is not carried, as kappa is then not fitted.
-        let share = if self.kappa.value() == 1.0 {
+        let share = if self.kappa.is_at(1.0) {
             (absolute * absolute).recip()
         } else {
             (-(absolute.ln() * (self.kappa.recip() + 1.0))).exp()
@@ -54,7 +55,7 @@ impl<D: Scalar> TrappedAir<D> {
         let absolute = pressure_pa / ATMOSPHERE_PA + 1.0;
         let m = self.kappa.recip();
         let left = (-(absolute.ln() * m)).exp();
-        let expansion = if m.value() == 1.0 { absolute.ln() } else { (absolute * left - 1.0) / (-m + 1.0) };
+        let expansion = if m.is_at(1.0) { absolute.ln() } else { (absolute * left - 1.0) / (-m + 1.0) };
         self.free_volume_m3 * m * ATMOSPHERE_PA * (expansion + (left - 1.0) / m)
     }
 }

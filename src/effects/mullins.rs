@@ -17,19 +17,18 @@ impl<D: Scalar> Mullins<D> {
     /// The factor on the wall's force, and its derivative to `W`, 1/J.
     pub fn factor(&self, energy_j: D, greatest_j: D) -> (D, D) {
         let below = greatest_j - energy_j;
-        if below.value() <= 0.0 {
-            return (D::constant(1.0), D::constant(0.0));
-        }
         let share = (below / self.energy_scale_j).tanh();
         let slope = (-(share * share) + 1.0) * self.softening_ratio / self.energy_scale_j;
-        (-(self.softening_ratio * share) + 1.0, slope)
+        let [zero, one] = [0.0, 1.0].map(D::constant);
+        (below.select_above(zero, -(self.softening_ratio * share) + 1.0, one), below.select_above(zero, slope, zero))
     }
 
     /// Of the energy that the wall took up to its greatest stretch, what it has not given back on the way to `W`, J:
     /// `d W_m ln cosh((W_max - W)/W_m)`.
     pub fn withheld_j(&self, energy_j: D, greatest_j: D) -> D {
         let below = greatest_j - energy_j;
-        let below = if below.value() > 0.0 { below } else { D::constant(0.0) };
+        let zero = D::constant(0.0);
+        let below = below.select_above(zero, below, zero);
         self.softening_ratio * self.energy_scale_j * ln_cosh(below / self.energy_scale_j)
     }
 

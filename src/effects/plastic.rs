@@ -15,7 +15,8 @@ impl<D: Scalar> PlasticSet<D> {
     /// `de_p/dt`, m/s.
     pub fn rate_m_s(&self, elongation_m: D) -> D {
         let beyond = elongation_m - self.threshold_m;
-        if beyond.value() > 0.0 { self.set_rate_1_s * beyond } else { D::constant(0.0) }
+        let zero = D::constant(0.0);
+        beyond.select_above(zero, self.set_rate_1_s * beyond, zero)
     }
 }
 

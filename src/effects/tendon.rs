@@ -41,7 +41,7 @@ impl<D: Scalar> TendonFriction<D> {
 
     /// Whether nothing is lost at any wrap.
     pub fn is_zero(&self) -> bool {
-        self.friction_coefficient.value() == 0.0
+        self.friction_coefficient.is_at(0.0)
     }
 }
 

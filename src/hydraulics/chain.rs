@@ -145,11 +145,11 @@ impl<D: Scalar> Chain<D> {
         for (j, &compliance) in self.compliance_m3_pa.iter().enumerate() {
             let vapour = at.vapour_m3[j];
             let below = D::constant(self.cavitation_pressure_pa) - at.pressure_pa[j];
-            if boils[j] && vapour.value() <= 0.0 {
+            if boils[j] && !vapour.is_above(0.0) {
                 at.pressure_pa[j] -= vapour / compliance;
                 at.vapour_m3[j] = D::constant(0.0);
                 boils[j] = false;
-            } else if !boils[j] && below.value() > 0.0 {
+            } else if !boils[j] && below.is_above(0.0) {
                 at.vapour_m3[j] = below * compliance;
                 at.pressure_pa[j] = D::constant(self.cavitation_pressure_pa);
                 boils[j] = true;

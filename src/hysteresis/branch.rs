@@ -36,7 +36,7 @@ impl<D: Scalar> Branch<D> {
     /// Closed form for `n = 1` in plain numbers. Dual numbers always take the integrator: the closed form
     /// would lose the derivative to `n`.
     pub fn travel(&self, z: D, length: D) -> D {
-        if self.exponent.value() == 1.0 && D::NDERIV == 0 {
+        if self.exponent.value() == 1.0 && D::DERIVATIVES == 0 {
             self.closed_form(z, length)
         } else {
             self.integrate(z, length)

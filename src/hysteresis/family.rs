@@ -185,8 +185,10 @@ impl HysteresisModel<f64> {
                 if weights.len() == m.elements.len() =>
             {
                 let own = m.elements.iter().zip(weights);
-                let element =
-                    |(e, &weight): (&PlayElement<f64>, &E)| PlayElement { weight, half_width: e.half_width.into() };
+                let element = |(e, &weight): (&PlayElement<f64>, &E)| PlayElement {
+                    weight,
+                    half_width: E::constant(e.half_width),
+                };
                 let elements = own.map(element).collect();
                 let (gain, curvature, asymmetry, rate_s) = (*gain, *curvature, *asymmetry, *rate_s);
                 Ok(HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii {
@@ -202,7 +204,7 @@ impl HysteresisModel<f64> {
             {
                 let own = m.elements.iter().zip(stiffnesses);
                 let element =
-                    |(e, &stiffness): (&SlipElement<f64>, &E)| SlipElement { stiffness, reach: e.reach.into() };
+                    |(e, &stiffness): (&SlipElement<f64>, &E)| SlipElement { stiffness, reach: E::constant(e.reach) };
                 let elements = own.map(element).collect();
                 Ok(HysteresisModel::MaxwellSlip(MaxwellSlip {
                     offset: *offset,

@@ -91,7 +91,7 @@ impl<D: Scalar> Stop<D> {
     /// The push at elongation `e` (m) and its rate (m/s).
     pub fn push(&self, elongation_m: D, velocity_m_s: D) -> StopPush<D> {
         let push = -(self.stiffness_n_m * elongation_m + self.damping_n_s_m * velocity_m_s);
-        if elongation_m.value() < 0.0 && push.value() > 0.0 {
+        if elongation_m.is_below(0.0) && push.is_above(0.0) {
             return StopPush { push_n: push, dpush_de: -self.stiffness_n_m, dpush_dv: -self.damping_n_s_m };
         }
         let zero = D::constant(0.0);
@@ -100,7 +100,7 @@ impl<D: Scalar> Stop<D> {
 
     /// Energy stored in the compressed stop, J.
     pub fn energy_j(&self, elongation_m: D) -> D {
-        if elongation_m.value() < 0.0 {
+        if elongation_m.is_below(0.0) {
             self.stiffness_n_m * elongation_m * elongation_m * 0.5
         } else {
             D::constant(0.0)

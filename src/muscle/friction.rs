@@ -80,12 +80,13 @@ impl<D: Scalar> Friction<D> {
 
     /// Force level `m0 + m1 max(p, 0)`, N.
     pub fn level_n(&self, pressure_pa: D) -> D {
-        if pressure_pa.value() > 0.0 { self.m0_n + self.m1_n_pa * pressure_pa } else { self.m0_n }
+        pressure_pa.select_above(D::constant(0.0), self.m0_n + self.m1_n_pa * pressure_pa, self.m0_n)
     }
 
     /// `dF/dp`, N/Pa (0 below gauge zero).
     pub fn force_per_pressure(&self, z: D, pressure_pa: D) -> D {
-        if pressure_pa.value() > 0.0 { self.m1_n_pa * z } else { D::constant(0.0) }
+        let zero = D::constant(0.0);
+        pressure_pa.select_above(zero, self.m1_n_pa * z, zero)
     }
 
     /// Friction force, N, added to the muscle's pull.
@@ -112,7 +113,7 @@ impl<D: Scalar> Friction<D> {
     ///
     /// `z = z0 + (A sgn(de) + rho - nu z0) (1 - exp(-nu |du|))/nu`. Derivatives to `n` are not carried.
     pub fn exact_step(&self, z: D, step_m: D) -> Option<D> {
-        if self.n.value() != 1.0 {
+        if !self.n.is_at(1.0) {
             return None;
         }
         let travel = step_m.abs() / self.presliding_length_m;
@@ -143,21 +144,16 @@ impl<D: Scalar> Friction<D> {
 }
 
 /// -1, 0 or 1.
-fn direction<D: Scalar>(x: D) -> f64 {
-    if x.value() > 0.0 {
-        1.0
-    } else if x.value() < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
+fn direction<D: Scalar>(x: D) -> D {
+    let [minus, zero, plus] = [-1.0, 0.0, 1.0].map(D::constant);
+    x.select_above(zero, plus, zero.select_above(x, minus, zero))
 }
 
 /// `base^exponent` for a base >= 0, its derivatives finite where the power is constant or the base zero.
 fn power<D: Scalar>(base: D, exponent: D) -> D {
-    if exponent.value() == 0.0 {
+    if exponent.is_at(0.0) {
         D::constant(1.0)
-    } else if base.value() == 0.0 {
+    } else if base.is_at(0.0) {
         D::constant(0.0)
     } else {
         base.powd(exponent)
@@ -167,7 +163,7 @@ fn power<D: Scalar>(base: D, exponent: D) -> D {
 /// `(1 - exp(-nu u))/nu`, finite at `nu = 0`.
 fn faded<D: Scalar>(travel: D, nu: D) -> D {
     let x = travel * nu;
-    if x.value().abs() < 1e-5 {
+    if x.abs().is_below(1e-5) {
         return travel * (-(x * (-(x / 3.0) + 1.0)) * 0.5 + 1.0);
     }
     -(-x).exp_m1() / nu

@@ -152,7 +152,7 @@ impl<D: Scalar> Material<D> {
 
 fn gent_profile<D: Scalar>(mu: D, jm: D, j: D) -> [D; 3] {
     let edge = jm * GENT_SHARE;
-    let at = if j.value() < edge.value() { j } else { edge };
+    let at = edge.select_above(j, j, edge);
     let room = -(at / jm) + 1.0;
     let w = -(mu * jm * 0.5 * room.ln());
     let slope = mu * 0.5 / room;

@@ -49,7 +49,8 @@ impl ContactSpring {
     pub(super) fn push<D: Scalar>(&self, y: &[D], w: &[D]) -> D {
         let depth = -dot::<_, 0>(&self.direction, y) + self.offset;
         let push = depth * self.stiffness - dot::<_, 0>(&self.direction, w) * self.damping + self.preload;
-        if push.value() > 0.0 { push } else { D::constant(0.0) }
+        let zero = D::constant(0.0);
+        push.select_above(zero, push, zero)
     }
 }
 
@@ -68,11 +69,11 @@ impl CoordinateStop {
     /// Depth into the stop, and the force it answers with along the coordinate.
     pub(super) fn force<D: Scalar>(&self, y: D, w: D) -> (D, D) {
         let depth = (-y + self.position) * self.side;
-        if depth.value() <= 0.0 {
+        if !depth.is_above(0.0) {
             return (depth, D::constant(0.0));
         }
         let push = depth * self.stiffness - w * (self.side * self.damping);
-        if push.value() <= 0.0 { (depth, D::constant(0.0)) } else { (depth, push * self.side) }
+        if push.is_above(0.0) { (depth, push * self.side) } else { (depth, D::constant(0.0)) }
     }
 }
 
@@ -271,11 +272,11 @@ impl<D: Scalar> CablePlant<D> {
             stretch += gain * now.input(input);
             rate += gain * now.inputs[input].slope;
         }
-        if stretch.value() < 0.0 {
+        if stretch.is_below(0.0) {
             return (stretch, rate, D::constant(0.0));
         }
         let tension = self.stiffness_n_m * stretch + self.damping_n_s_m * rate;
-        (stretch, rate, if tension.value() > 0.0 { tension } else { D::constant(0.0) })
+        (stretch, rate, if tension.is_above(0.0) { tension } else { D::constant(0.0) })
     }
 }
 
@@ -328,14 +329,14 @@ impl<D: Scalar> Plant<D> {
         let (y, w) = (now.at.y(), now.at.w());
         let mut bits = 0;
         let mut note = |acts: bool| bits = bits << 1 | u64::from(acts);
-        self.cables.iter().for_each(|c| note(c.pull(now).2.value() > 0.0));
-        self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.value() > 0.0));
+        self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0)));
+        self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.is_above(0.0)));
         for muscle in self.muscles.iter().filter(|m| m.stop.is_some()) {
-            note(muscle.elongation_m::<N>(y).value() < 0.0);
+            note(muscle.elongation_m::<N>(y).is_below(0.0));
         }
         // A wall without stiffness is none.
         for w in &self.mechanism.walls {
-            note(w.wall.stiffness_n_m_rad.value() != 0.0 && w.wall.is_met(dot::<_, N>(&w.direction, y)));
+            note(!w.wall.stiffness_n_m_rad.is_at(0.0) && w.wall.is_met(dot::<_, N>(&w.direction, y)));
         }
         bits
     }

@@ -44,7 +44,7 @@ pub(super) fn rates<D: Scalar, const N: usize>(
     cable_rates(plant, now, &mut seen.tension_n, &mut out, &mut switches);
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let forces = plant.forces(i, now);
-        switches.note(forces.stop_n.value() > 0.0);
+        switches.note(forces.stop_n.is_above(0.0));
         add_scaled::<_, N>(out.w(), &muscle.jacobian, -forces.pull_n());
         if let Some(friction) = &muscle.friction {
             *out.z(i) = friction.rate(now.at.z(i), forces.speed_m_s);
@@ -82,12 +82,12 @@ fn coordinate_rates<D: Scalar, const N: usize>(
     }
     for stop in &c.stops {
         let force = CoordinateStop::force(stop, y[stop.coordinate], w[stop.coordinate]).1;
-        switches.note(force.value() != 0.0);
+        switches.note(!force.is_at(0.0));
         out.w()[stop.coordinate] += force;
     }
     if let Some(contact) = &c.contact {
         let push = contact.push(y, w);
-        switches.note(push.value() > 0.0);
+        switches.note(push.is_above(0.0));
         add_scaled::<_, N>(out.w(), &contact.direction, push);
     }
 }
@@ -103,7 +103,7 @@ fn cable_rates<D: Scalar, const N: usize>(
     for (i, cable) in plant.cables.iter().enumerate() {
         let (_, _, tension) = cable.pull(now);
         tension_n[i] = tension;
-        switches.note(tension.value() > 0.0);
+        switches.note(tension.is_above(0.0));
         add_scaled::<_, N>(out.w(), &cable.jacobian, -tension);
         if let Some(friction) = &cable.friction {
             let at = plant.mechanism.frictions.len() + i;
@@ -134,7 +134,7 @@ fn mechanism_rates<D: Scalar, const N: usize>(
     }
     for w in &extras.walls {
         let angle = dot::<_, N>(&w.direction, at.y());
-        switches.note(w.wall.is_met(angle) && w.wall.stiffness_n_m_rad.value() != 0.0);
+        switches.note(w.wall.is_met(angle) && !w.wall.stiffness_n_m_rad.is_at(0.0));
         add_scaled::<_, N>(out.w(), &w.direction, w.wall.torque_n_m(angle));
     }
     for load in &extras.loads {

@@ -269,8 +269,7 @@ fn remember_greatest<D: Scalar>(plant: &Plant<D>, state: &mut PlantState<D>) {
         let at = state.parts();
         let elongation = muscle.elongation_m::<0>(at.y()) - muscle.extras.set_m(muscle.slow(&at));
         let energy = muscle.elastic.wall_energy_j(elongation);
-        if energy.value() > state.greatest_j[i].value() {
-            state.greatest_j[i] = energy;
-        }
+        let before = state.greatest_j[i];
+        state.greatest_j[i] = energy.select_above(before, energy, before);
     }
 }

@@ -1,5 +1,7 @@
 //! The state of a plant: one row of numbers, so that a step of all of them is one loop.
 
+mod lanes;
+
 use crate::hydraulics::ChainRow;
 use crate::scalar::Scalar;
 

@@ -91,7 +91,7 @@ impl<D: Scalar> Tangents<D> {
         self.springs.fill(D::constant(0.0));
         self.take_coordinates(plant, now, g);
         for (cable, tension) in plant.cables.iter().zip(&seen.tension_n) {
-            if tension.value() > 0.0 {
+            if tension.is_above(0.0) {
                 self.add_spring::<N>(&cable.jacobian, cable.stiffness_n_m * g, cable.damping_n_s_m * g);
             }
         }
@@ -114,12 +114,12 @@ impl<D: Scalar> Tangents<D> {
         }
         for stop in &c.stops {
             let i = stop.coordinate;
-            if stop.force(y[i], w[i]).1.value() != 0.0 {
+            if !stop.force(y[i], w[i]).1.is_at(0.0) {
                 self.springs[i * (n + 1)] += D::constant(g * stop.stiffness);
                 self.matrix[i * (n + 1)] += D::constant(g * stop.damping);
             }
         }
-        if let Some(contact) = c.contact.as_ref().filter(|c| c.push(y, w).value() > 0.0) {
+        if let Some(contact) = c.contact.as_ref().filter(|c| c.push(y, w).is_above(0.0)) {
             let c = D::constant;
             self.add_spring::<N>(&contact.direction, c(g * contact.stiffness), c(g * contact.damping));
         }
@@ -141,7 +141,7 @@ impl<D: Scalar> Tangents<D> {
         let muscle = &plant.muscles[i];
         let z = now.at.z(i);
         let mut damping = muscle.damping_n_s_m;
-        if let (Some(stop), true) = (&muscle.stop, forces.stop_n.value() > 0.0) {
+        if let (Some(stop), true) = (&muscle.stop, forces.stop_n.is_above(0.0)) {
             damping += stop.damping_n_s_m;
         }
         let mut tangent =
@@ -199,7 +199,7 @@ fn sliding_tangent<D: Scalar, const N: usize>(
 ) -> FrictionTangent<D> {
     let speed = friction.sliding_m_s(now.at.w());
     let pace = speed.abs() / friction.law.presliding_m;
-    let along = if speed.value() < 0.0 { sliding + 1.0 } else { -sliding + 1.0 };
+    let along = D::constant(0.0).select_above(speed, sliding + 1.0, -sliding + 1.0);
     let force_per_z = -friction.slope_n(now.at.y(), tension);
     FrictionTangent::new(force_per_z, -pace, -(along / friction.law.presliding_m), g)
 }

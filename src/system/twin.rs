@@ -7,6 +7,7 @@
 
 mod course;
 mod lump;
+mod many;
 mod output;
 mod parameter;
 mod plan;
@@ -26,6 +27,7 @@ use super::plant::{Drive, InputSpan, Plant, dot};
 use super::state::PlantState;
 
 use course::Course;
+pub use many::TOGETHER;
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::TwinParameter;

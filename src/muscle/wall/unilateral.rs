@@ -56,7 +56,7 @@ impl<D: Scalar> Wall<D> {
 
     /// Further Newton steps, one per order of derivative the number carries: each makes one more exact.
     fn polish(&self, lambda: D, pressure: D, start: D) -> D {
-        (0..D::NDERIV).fold(start, |y, _| {
+        (0..D::DERIVATIVES).fold(start, |y, _| {
             let energy = self.section_energy(lambda, y);
             y - (energy.u_y - pressure * lambda) / energy.u_yy
         })

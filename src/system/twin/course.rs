@@ -40,6 +40,6 @@ impl<D: Scalar> Course<D> {
 
     /// Whether it has not diverged.
     pub fn is_finite(&self) -> bool {
-        self.state.y().iter().all(|y| y.value().is_finite())
+        self.state.y().iter().all(|y| y.is_finite())
     }
 }
