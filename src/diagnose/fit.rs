@@ -38,17 +38,17 @@ const EFFECT_STEP: f64 = 2e-2;
 
 /// Steps to both sides are alike; away from a bound that is near.
 fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
-    which
-        .map(|number| {
-            let n = &numbers[number];
-            let share = if n.prior_weight > 0.0 { CALIBRATION_STEP } else { EFFECT_STEP };
-            // A number grown far beyond its scale is probed in proportion.
-            let size = (share * n.scale).max(1e-3 * x[number].abs());
-            let has_room = x[number] - size >= n.min && x[number] + size <= n.max;
-            let step = if x[number] + size > n.max { -size } else { size };
-            Probe { number, step, sides: if has_room { sides } else { Sides::One } }
-        })
-        .collect()
+    which.map(|number| probe(&numbers[number], x[number], number, sides)).collect()
+}
+
+/// The step over which a number at `x` is differentiated.
+pub(super) fn probe(n: &Number, x: f64, number: usize, sides: Sides) -> Probe {
+    let share = if n.prior_weight > 0.0 { CALIBRATION_STEP } else { EFFECT_STEP };
+    // A number grown far beyond its scale is probed in proportion.
+    let size = (share * n.scale).max(1e-3 * x.abs());
+    let has_room = x - size >= n.min && x + size <= n.max;
+    let step = if x + size > n.max { -size } else { size };
+    Probe { number, step, sides: if has_room { sides } else { Sides::One } }
 }
 
 /// The part of the data that is fitted, with its weights.
@@ -134,17 +134,29 @@ impl Problem<'_> {
         numbers: &[Number],
     ) -> Rows {
         let weight = 1.0 / self.noise[channel].scale();
-        let there: Vec<usize> = (0..residual.len()).filter(|&i| run.measured[channel][i].is_finite()).collect();
-        let mut rows = Rows {
-            slopes: DMatrix::zeros(there.len(), numbers.len()),
-            residual: DVector::from_iterator(there.len(), there.iter().map(|&i| residual[i] * weight)),
-        };
+        let there = |(measured, residual): (&f64, &f64)| measured.is_finite().then_some(residual * weight);
+        let residual: Vec<f64> = run.measured[channel].iter().zip(residual).filter_map(there).collect();
+        let mut rows =
+            Rows { slopes: DMatrix::zeros(residual.len(), numbers.len()), residual: DVector::from_vec(residual) };
         for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
-            let zero = self.zero(run, channel, |i, _| slope[channel][i]);
-            let column = there.iter().map(|&i| (slope[channel][i] - zero) * (weight * number.scale));
+            let column = self.weighted_slope(run, channel, &slope[channel], number);
             rows.slopes.column_mut(k).iter_mut().zip(column).for_each(|(to, from)| *to = from);
         }
         rows
+    }
+
+    /// Derivative of a channel where it was measured, in units of the noise and of the number's scale.
+    pub fn weighted_slope(
+        &self,
+        run: &CaseRun,
+        channel: usize,
+        slope: &[f64],
+        number: &Number,
+    ) -> impl Iterator<Item = f64> {
+        let weight = 1.0 / self.noise[channel].scale();
+        let zero = self.zero(run, channel, |i, _| slope[i]);
+        let there = run.measured[channel].iter().zip(slope).filter(|(measured, _)| measured.is_finite());
+        there.map(move |(_, slope)| (slope - zero) * (weight * number.scale))
     }
 
     /// Sum of squares of the residuals at `x`, in units of the noise.

@@ -44,6 +44,7 @@ mod normal;
 mod preflight;
 pub mod programme;
 mod prove;
+mod screening;
 mod search;
 mod side_by_side;
 mod steady;
@@ -70,7 +71,8 @@ pub use without::Step;
 
 use confirm::Confirmed;
 use fit::Problem;
-use search::{Found, Screened};
+use screening::Screened;
+use search::Found;
 
 use crate::effects::Effect;
 use crate::recording::Recording;

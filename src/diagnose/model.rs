@@ -1,9 +1,7 @@
 //! What is compared with the recordings: calibrated parameters and a set of effects.
 
-use rayon::prelude::*;
-
 use crate::effects::{Effect, EffectSpec, Element, Kind};
-use crate::system::{TOGETHER, TwinSetting};
+use crate::system::TwinSetting;
 
 use super::case::{Case, CaseRun};
 
@@ -124,15 +122,14 @@ pub(super) struct Response {
 
 /// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
 pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
-    simulate_many(case, run, model, &[x.to_vec()]).pop()?
+    simulate_many(case, run, &[model.setting(case, x)]).pop()?
 }
 
-/// Simulates a run at several points, side by side.
-fn simulate_many(case: &Case, run: &CaseRun, model: &Model, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
-    let settings: Vec<_> = points.iter().map(|x| model.setting(case, x)).collect();
+/// Simulates a run at several settings; the compared channels of each.
+pub(super) fn simulate_many(case: &Case, run: &CaseRun, settings: &[TwinSetting<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
     let compared =
         |series: Vec<Vec<f64>>| case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect();
-    let many = run.twin.simulate_many(&run.drive, &settings);
+    let many = run.twin.simulate_many(&run.drive, settings);
     many.into_iter().map(|series| series.map(compared)).collect()
 }
 
@@ -142,6 +139,18 @@ pub(super) struct Probe {
     pub number: usize,
     pub step: f64,
     pub sides: Sides,
+}
+
+impl Probe {
+    /// Derivative of every channel from its values at the probe's step and without it.
+    pub fn slope(&self, ahead: &[Vec<f64>], behind: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        slope(ahead, behind, self.step)
+    }
+}
+
+fn slope(ahead: &[Vec<f64>], behind: &[Vec<f64>], way: f64) -> Vec<Vec<f64>> {
+    let channels = ahead.iter().zip(behind);
+    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
 }
 
 /// Differences to one side cost half; those to both sides are exact enough for narrow valleys.
@@ -171,13 +180,8 @@ pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], prob
             Sides::Both => (ahead, end(-probe.step), 2.0 * probe.step),
         });
     }
-    let series: Vec<_> =
-        jobs.par_chunks(TOGETHER).flat_map_iter(|jobs| simulate_many(case, run, model, jobs)).collect();
-    let series = series.into_iter().collect::<Option<Vec<_>>>()?;
-    let slope = |(ahead, behind, way): (usize, usize, f64)| -> Vec<Vec<f64>> {
-        let channels = series[ahead].iter().zip(&series[behind]);
-        channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
-    };
-    let slopes = ends.into_iter().map(slope).collect();
+    let settings: Vec<_> = jobs.iter().map(|x| model.setting(case, x)).collect();
+    let series = simulate_many(case, run, &settings).into_iter().collect::<Option<Vec<_>>>()?;
+    let slopes = ends.into_iter().map(|(ahead, behind, way)| slope(&series[ahead], &series[behind], way)).collect();
     Some(Response { values: series[0].clone(), slopes })
 }

@@ -1,16 +1,11 @@
 //! Which effects explain the recordings: screening by signature, joint refits, additions, swaps, deletions.
 
-use std::sync::Arc;
-
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-
-use crate::effects::Effect;
 
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::model::{Model, Placed, Sides};
-use super::normal::Rows;
+use super::screening::{Screened, Screening, screen, start_values};
 use super::without::Step;
 
 /// At most this many effects in one answer.
@@ -38,101 +33,9 @@ const FAIR_OF_LEFT: f64 = 0.5;
 /// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
 const BRANCH_TIE: f64 = 0.02;
 
-/// A candidate with what it would gain, by its signature alone.
-#[derive(Clone, Debug)]
-pub struct Screened {
-    pub variant: Variant,
-    /// Fall of chi² that the signature promises, colour of the noise allowed for.
-    pub gain: f64,
-    /// Size at which the promise is met.
-    pub size: f64,
-    /// Size that would gain [`least_gain`]: what could just be seen.
-    pub least_size: f64,
-    /// The signature without what the calibration can imitate, of unit length.
-    direction: Arc<DVector<f64>>,
-}
-
-impl Screened {
-    /// The effect at the size that could just be seen; none where no size could.
-    pub fn just_visible(&self) -> Option<Effect<f64>> {
-        let mut values = self.variant.values.clone();
-        let p = &self.variant.placed.spec().parameters[0];
-        values[0] = if p.range.max > 0.0 { self.least_size } else { -self.least_size };
-        (self.least_size < p.range.max.abs().max(p.range.min.abs())).then(|| self.variant.placed.with(&values))
-    }
-}
-
-impl Screened {
-    /// Cosine of the angle between two signatures: 1 where no recording of this kind tells the effects apart.
-    pub fn likeness(&self, other: &Self) -> f64 {
-        if self.direction.len() == other.direction.len() { self.direction.dot(&other.direction).abs() } else { 0.0 }
-    }
-}
-
 /// Fall of chi² that makes an effect worth naming, for so many samples.
 pub fn least_gain(samples: usize) -> f64 {
     LEAST_GAIN.max(LEAST_SHARE * samples as f64)
-}
-
-/// A fit with its slopes, and what the signatures of all variants promise there, best first.
-pub(super) struct Screening<'a> {
-    from: &'a Fit,
-    slopes: DMatrix<f64>,
-    pub screened: Vec<Screened>,
-}
-
-/// Screens all variants at a fit. `None` when it cannot be simulated there.
-pub(super) fn screen<'a>(problem: &Problem, from: &'a Fit, variants: &[Variant]) -> Option<Screening<'a>> {
-    let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
-    let screened = promises(problem, from, &known, variants);
-    Some(Screening { from, slopes: known.slopes, screened })
-}
-
-/// A signature is the derivative to an effect's size at zero.
-fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
-    let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
-    let basis = known.slopes.clone().qr().q();
-    let left = orthogonal(&basis, &known.residual);
-    let samples = known.residual.len();
-    let mut screened: Vec<Screened> = fresh
-        .par_iter()
-        .filter_map(|variant| Some((*variant, signature(problem, fit, variant)?)))
-        .map(|(variant, raw)| {
-            let signature = orthogonal(&basis, &raw);
-            let length = signature.norm();
-            let scale = variant.placed.spec().parameters[0].typical.abs();
-            let amplitude = if length > 1e-9 * raw.norm() { signature.dot(&left) / length } else { 0.0 };
-            let range = variant.placed.spec().parameters[0].range;
-            let feasible = (amplitude > 0.0 && range.max > 0.0) || (amplitude < 0.0 && range.min < 0.0);
-            Screened {
-                gain: if feasible { amplitude * amplitude } else { 0.0 },
-                size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
-                least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
-                direction: Arc::new(signature / length.max(f64::MIN_POSITIVE)),
-                variant: variant.clone(),
-            }
-        })
-        .collect();
-    screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    screened
-}
-
-/// Derivative of the simulated channels to the size of a variant at zero, in units of the typical size.
-fn signature(problem: &Problem, fit: &Fit, variant: &Variant) -> Option<DVector<f64>> {
-    let mut model = fit.model.clone();
-    let mut values = variant.values.clone();
-    values[0] = 0.0;
-    model.effects.push(variant.placed.clone());
-    model.values.push(values);
-    model.fitted.push(vec![0]);
-    let mut x = fit.x.clone();
-    x.push(0.0);
-    let rows = problem.rows(&model, &x, fit.x.len()..x.len(), Sides::One)?;
-    Some(rows.slopes.column(0).into_owned())
-}
-
-fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
-    v - basis * basis.tr_mul(v)
 }
 
 /// A model with the rivals that were refitted beside it.
@@ -157,17 +60,22 @@ pub(super) fn search(
     variants: &[Variant],
     say: &dyn Fn(String),
 ) -> Found {
-    let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
+    let screening = screen(problem, &baseline, variants);
+    let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
     let is_new = start.model.effects.is_empty();
     let (start, rivals) = match is_new {
         true => (start, Vec::new()),
         false => settle(problem, start, variants, least_gain(problem.samples()), say),
     };
-    let mut found = climb(problem, &baseline, start, rivals, variants, say);
+    let way = match is_new {
+        true => Way { best: start, rivals, first: Vec::new(), screening },
+        false => Way::from(problem, start, rivals, variants),
+    };
+    let mut found = climb(problem, &baseline, way, variants, say);
     if is_new && found.best.model.effects.len() > 1 && leaves_much(problem, &baseline, &found.best) {
         for (other, rivals) in other_beginnings(problem, &baseline, &found.first, variants) {
             say(format!("once more, beginning with {}", title(&other.model)));
-            let way = climb(problem, &baseline, other, rivals, variants, say);
+            let way = climb(problem, &baseline, Way::from(problem, other, rivals, variants), variants, say);
             if way.best.cost < found.best.cost - least_gain(problem.samples()) {
                 (found.best, found.rivals) = (way.best, way.rivals);
             }
@@ -239,22 +147,31 @@ struct Way {
     rivals: Vec<Vec<Fit>>,
     /// The refits with one effect, cheapest first, if it began with none.
     first: Vec<Fit>,
+    /// What the effects promise at `best`.
+    screening: Option<Screening>,
 }
 
-/// Adds effect by effect to `start`, and settles after each.
-fn climb(
-    problem: &Problem,
-    baseline: &Fit,
-    start: Fit,
-    rivals: Vec<Vec<Fit>>,
-    variants: &[Variant],
-    say: &dyn Fn(String),
-) -> Way {
-    let mut way = Way { best: start, rivals, first: Vec::new() };
+impl Way {
+    fn from(problem: &Problem, start: Fit, rivals: Vec<Vec<Fit>>, variants: &[Variant]) -> Self {
+        let mut way = Self { best: start, rivals, first: Vec::new(), screening: None };
+        way.look_around(problem, variants);
+        way
+    }
+
+    /// Screens where the way stands, if it may go on.
+    fn look_around(&mut self, problem: &Problem, variants: &[Variant]) {
+        if self.best.model.effects.len() < MOST_EFFECTS {
+            self.screening = screen(problem, &self.best, variants);
+        }
+    }
+}
+
+/// Adds effect by effect, and settles after each.
+fn climb(problem: &Problem, baseline: &Fit, mut way: Way, variants: &[Variant], say: &dyn Fn(String)) -> Way {
     while way.best.model.effects.len() < MOST_EFFECTS {
         let best = &way.best;
         let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
-        let Some(screening) = screen(problem, best, variants) else { break };
+        let Some(screening) = way.screening.take() else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least));
         if best.model.effects.is_empty() {
             way.first.clone_from(&refits);
@@ -270,6 +187,7 @@ fn climb(
         if way.best.model.effects.len() > 1 {
             (way.best, way.rivals) = settle(problem, way.best, variants, least, say);
         }
+        way.look_around(problem, variants);
     }
     way
 }
@@ -384,19 +302,9 @@ fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits
 }
 
-/// Numbers to start a refit from: the size that the signature promises, kept within reason.
-fn start_values(s: &Screened) -> Vec<f64> {
-    let mut values = s.variant.values.clone();
-    let p = &s.variant.placed.spec().parameters[0];
-    let largest = 30.0 * p.typical.abs();
-    let size = s.size.clamp(-largest, largest).clamp(p.range.min, p.range.max);
-    values[0] = if size == 0.0 { p.typical } else { size };
-    values
-}
-
 /// A rough fit with one effect more, on the slopes of the fit it starts from and those of the effect's numbers.
 fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
-    let (from, values) = (screening.from, start_values(candidate));
+    let (from, values) = (&screening.from, start_values(candidate));
     let model = from.model.plus(&candidate.variant.placed, &values);
     let mut start = from.x.clone();
     start.extend(model.fitted.last()?.iter().map(|&i| values[i]));

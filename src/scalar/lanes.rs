@@ -51,14 +51,20 @@ impl<const L: usize> Lanes<L> {
 
     /// The row of each lane; none where one is outside the table.
     #[inline(always)]
-    fn rows<R: Copy>(&self, row: impl Fn(f64) -> Option<R>) -> Option<[R; L]> {
-        let rows: [Option<R>; L] = self.0.map(row);
-        let inside = rows.iter().filter(|row| row.is_some()).count();
-        if inside != 0 && inside != L {
+    fn rows<'a, R>(&self, row: impl Fn(f64) -> Option<&'a R>) -> Option<[&'a R; L]> {
+        let mut rows = [row(self.0[0]); L];
+        for (own, &x) in rows.iter_mut().zip(&self.0).skip(1) {
+            *own = row(x);
+        }
+        let first = rows[0];
+        if rows.iter().any(|row| row.is_some() != first.is_some()) {
             disagree();
         }
-        let first = rows[0]?;
-        Some(rows.map(|row| row.unwrap_or(first)))
+        let mut found = [first?; L];
+        for (to, row) in found.iter_mut().zip(rows) {
+            *to = row?;
+        }
+        Some(found)
     }
 
     /// The answer of all lanes, or of the first.
@@ -180,13 +186,29 @@ impl<const L: usize> Scalar for Lanes<L> {
     #[inline(always)]
     fn look_up<'a, const N: usize>(self, row: impl Fn(f64) -> Option<&'a [Self; N]>) -> Option<[Self; N]> {
         let rows = self.rows(row)?;
-        Some(std::array::from_fn(|i| Self(std::array::from_fn(|lane| rows[lane][i].0[lane]))))
+        // Sets that differ little are mostly in one row.
+        if rows.iter().all(|row| std::ptr::eq(*row, rows[0])) {
+            return Some(*rows[0]);
+        }
+        let mut found = [Self([0.0; L]); N];
+        for (lane, row) in rows.into_iter().enumerate() {
+            for (to, from) in found.iter_mut().zip(row) {
+                to.0[lane] = from.0[lane];
+            }
+        }
+        Some(found)
     }
 
     #[inline(always)]
     fn look_up_plain<'a, const N: usize>(self, row: impl Fn(f64) -> Option<&'a [f64; N]>) -> Option<[Self; N]> {
         let rows = self.rows(row)?;
-        Some(std::array::from_fn(|i| Self(std::array::from_fn(|lane| rows[lane][i]))))
+        let mut found = [Self([0.0; L]); N];
+        for (lane, row) in rows.into_iter().enumerate() {
+            for (to, from) in found.iter_mut().zip(row) {
+                to.0[lane] = *from;
+            }
+        }
+        Some(found)
     }
 
     each!(abs, recip, sqrt, exp, exp_m1, ln, ln_1p, tanh);

@@ -66,4 +66,4 @@ pub use rosenbrock::Stepper;
 pub use run::{Driver, RunError, Schedule, record, record_driven, run};
 pub use simulation::Simulation;
 pub use state::PlantState;
-pub use twin::{StepPlan, TOGETHER, Twin, TwinParameter, TwinRun, TwinSetting};
+pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -27,7 +27,6 @@ use super::plant::{Drive, InputSpan, Plant, dot};
 use super::state::PlantState;
 
 use course::Course;
-pub use many::TOGETHER;
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::TwinParameter;
@@ -43,7 +42,7 @@ pub struct TwinRun {
 }
 
 /// Parameters that differ from the scene's, and the effects.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TwinSetting<D> {
     pub parameters: Vec<(TwinParameter, D)>,
     pub effects: Vec<Effect<D>>,

@@ -4,7 +4,9 @@
 //! the next the model needs nothing but the state, so an interval in which the settings would not all take the same
 //! branch is taken back and done for each by itself: results are those of [`Twin::simulate`] to the last bit.
 
-use crate::effects::Effect;
+use rayon::prelude::*;
+
+use crate::effects::{Effect, ElementKind};
 use crate::scalar::{Lanes, take_disagreement};
 use crate::system::PlantState;
 use crate::system::plant::Plant;
@@ -14,7 +16,7 @@ use super::output::Sensors;
 use super::{Twin, TwinRun, TwinSetting};
 
 /// Settings taken together, at most.
-pub const TOGETHER: usize = 8;
+const TOGETHER: usize = 8;
 /// And where there are no more than these.
 const FEW: usize = TOGETHER / 2;
 
@@ -24,38 +26,62 @@ const LONGEST_APART: u32 = 16;
 type Outputs = Option<Vec<Vec<f64>>>;
 
 impl Twin {
-    /// Simulates every setting as [`Twin::simulate`] would, several at a time. The settings should differ in their
-    /// numbers alone; others are simulated one by one.
+    /// Simulates every setting as [`Twin::simulate`] would, but together what can be: settings that differ in their sensors
+    /// alone are simulated once, those that differ in numbers side by side, groups on all threads.
     pub fn simulate_many(&self, run: &TwinRun, settings: &[TwinSetting<f64>]) -> Vec<Outputs> {
-        let mut shown = Vec::with_capacity(settings.len());
-        for group in settings.chunks(TOGETHER) {
-            let together = match group.len() {
-                0 | 1 => None,
-                2..=FEW => self.together::<FEW>(run, group),
-                _ => self.together::<TOGETHER>(run, group),
-            };
-            match together {
-                Some(together) => shown.extend(together),
-                None => shown.extend(group.iter().map(|setting| self.simulate(run, setting))),
+        if self.axis.is_some() {
+            return settings.par_iter().map(|setting| self.simulate(run, setting)).collect();
+        }
+        let mut bodies: Vec<TwinSetting<f64>> = Vec::with_capacity(settings.len());
+        let mut body_of = Vec::with_capacity(settings.len());
+        for setting in settings {
+            let body = without_sensors(setting);
+            let known = bodies.iter().position(|b| *b == body);
+            body_of.push(known.unwrap_or(bodies.len()));
+            if known.is_none() {
+                bodies.push(body);
             }
         }
-        shown
+        let series = self.bodies(run, &bodies);
+        let shown = |(setting, body): (&TwinSetting<f64>, &usize)| {
+            series[*body].as_ref().map(|series| self.through_sensors(run, setting, series))
+        };
+        settings.iter().zip(&body_of).map(shown).collect()
+    }
+
+    /// What sensors without error would show.
+    fn bodies(&self, run: &TwinRun, bodies: &[TwinSetting<f64>]) -> Vec<Outputs> {
+        let found = groups(bodies).into_par_iter().map(|group| {
+            let settings: Vec<&TwinSetting<f64>> = group.iter().map(|&i| &bodies[i]).collect();
+            (self.group(run, &settings), group)
+        });
+        let mut series = vec![None; bodies.len()];
+        for (outputs, group) in found.collect::<Vec<_>>() {
+            group.into_iter().zip(outputs).for_each(|(i, outputs)| series[i] = outputs);
+        }
+        series
+    }
+
+    fn group(&self, run: &TwinRun, group: &[&TwinSetting<f64>]) -> Vec<Outputs> {
+        let together = match group.len() {
+            0 | 1 => None,
+            2..=FEW => self.together::<FEW>(run, group),
+            _ => self.together::<TOGETHER>(run, group),
+        };
+        together.unwrap_or_else(|| group.iter().map(|setting| self.simulate(run, setting)).collect())
     }
 
     /// None where the settings cannot go side by side.
-    fn together<const L: usize>(&self, run: &TwinRun, group: &[TwinSetting<f64>]) -> Option<Vec<Outputs>> {
-        let shown = self.bundle::<L>(run, group)?.follow(self, group);
+    fn together<const L: usize>(&self, run: &TwinRun, group: &[&TwinSetting<f64>]) -> Option<Vec<Outputs>> {
+        let shown = self.bundle::<L>(run, group)?.follow(self);
         Some(shown.into_iter().take(group.len()).collect())
     }
 
-    /// The settings as one; none where that does not go.
-    fn bundle<'a, const L: usize>(&self, run: &'a TwinRun, group: &[TwinSetting<f64>]) -> Option<Bundle<'a, L>> {
-        if self.axis.is_some() {
-            return None;
-        }
+    /// The settings as one.
+    fn bundle<'a, const L: usize>(&self, run: &'a TwinRun, group: &[&TwinSetting<f64>]) -> Option<Bundle<'a, L>> {
         // A group that is not full is filled up with its last.
-        let filled: [&TwinSetting<f64>; L] = std::array::from_fn(|i| &group[i.min(group.len() - 1)]);
-        let setting = side_by_side(filled)?;
+        let filled: [&TwinSetting<f64>; L] = std::array::from_fn(|i| group[i.min(group.len() - 1)]);
+        let setting = side_by_side(filled);
         take_disagreement();
         let (plant, state) = self.prepare(&setting);
         if take_disagreement() {
@@ -69,25 +95,52 @@ impl Twin {
         });
         Some(Bundle { run, plant, before: course.state.clone(), course, apart, phase: Phase::Together, patience: 0 })
     }
+
+    fn through_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut sensors = Sensors::new(&self.outputs, &setting.effects);
+        let channels = self.outputs.iter().zip(series);
+        let mut show = |(output, values): (_, &Vec<f64>)| {
+            run.times_s.iter().zip(values).map(|(&time_s, &value)| sensors.show(output, time_s, value)).collect()
+        };
+        channels.map(&mut show).collect()
+    }
 }
 
-/// Settings that differ in their numbers alone, as one setting of lanes.
-fn side_by_side<const L: usize>(settings: [&TwinSetting<f64>; L]) -> Option<TwinSetting<Lanes<L>>> {
-    let first = settings.first()?;
-    let is_like = |other: &TwinSetting<f64>| {
-        let parameters = first.parameters.iter().map(|p| &p.0).eq(other.parameters.iter().map(|p| &p.0));
-        let effects = first.effects.iter().zip(&other.effects).all(|(a, b)| {
-            (a.kind, a.element, &a.channel, a.values.len()) == (b.kind, b.element, &b.channel, b.values.len())
-        });
-        parameters && effects && first.effects.len() == other.effects.len()
-    };
-    if !settings.iter().all(|setting| is_like(setting)) {
-        return None;
+fn without_sensors(setting: &TwinSetting<f64>) -> TwinSetting<f64> {
+    let mut body = setting.clone();
+    body.effects.retain(|effect| effect.element.kind != ElementKind::Sensor);
+    body
+}
+
+/// Settings of the same shape, by their places in the list, at most [`TOGETHER`] in a group.
+fn groups(settings: &[TwinSetting<f64>]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (i, setting) in settings.iter().enumerate() {
+        let has_room = |group: &&mut Vec<usize>| group.len() < TOGETHER && is_like(&settings[group[0]], setting);
+        match groups.iter_mut().find(has_room) {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
     }
+    groups
+}
+
+/// Whether settings differ in their numbers alone.
+fn is_like(one: &TwinSetting<f64>, other: &TwinSetting<f64>) -> bool {
+    let parameters = one.parameters.iter().map(|p| &p.0).eq(other.parameters.iter().map(|p| &p.0));
+    let effects = one.effects.iter().zip(&other.effects).all(|(a, b)| {
+        (a.kind, a.element, &a.channel, a.values.len()) == (b.kind, b.element, &b.channel, b.values.len())
+    });
+    parameters && effects && one.effects.len() == other.effects.len()
+}
+
+/// Settings that are alike, as one of lanes.
+fn side_by_side<const L: usize>(settings: [&TwinSetting<f64>; L]) -> TwinSetting<Lanes<L>> {
+    let first = settings[0];
     let lanes = |number: &dyn Fn(&TwinSetting<f64>) -> f64| Lanes(settings.map(number));
     let parameters = first.parameters.iter().enumerate();
     let effects = first.effects.iter().enumerate();
-    Some(TwinSetting {
+    TwinSetting {
         parameters: parameters.map(|(i, (which, _))| (which.clone(), lanes(&|s| s.parameters[i].1))).collect(),
         effects: effects
             .map(|(i, effect)| Effect {
@@ -97,7 +150,7 @@ fn side_by_side<const L: usize>(settings: [&TwinSetting<f64>; L]) -> Option<Twin
                 values: (0..effect.values.len()).map(|j| lanes(&|s| s.effects[i].values[j])).collect(),
             })
             .collect(),
-    })
+    }
 }
 
 /// One setting by itself.
@@ -130,22 +183,17 @@ struct Bundle<'a, const L: usize> {
 }
 
 impl<const L: usize> Bundle<'_, L> {
-    /// Goes through the run; the outputs of each setting, none where it diverges.
-    fn follow(mut self, twin: &Twin, group: &[TwinSetting<f64>]) -> [Outputs; L] {
-        let last = group.len() - 1;
-        let mut sensors: [Sensors<f64>; L] =
-            std::array::from_fn(|i| Sensors::new(&twin.outputs, &group[i.min(last)].effects));
+    /// Goes through the run; what sensors without error would show of each setting, none where it diverges.
+    fn follow(mut self, twin: &Twin) -> [Outputs; L] {
         let rows = vec![Vec::with_capacity(self.run.times_s.len()); twin.outputs.len()];
         let mut series: [Vec<Vec<f64>>; L] = std::array::from_fn(|_| rows.clone());
         for k in 0..self.run.times_s.len() {
             if k > 0 {
                 self.advance(twin, k);
             }
-            for (o, output) in twin.outputs.iter().enumerate() {
-                let read = self.read(twin, o);
-                for lane in 0..L {
-                    series[lane][o].push(sensors[lane].show(output, self.run.times_s[k], read[lane]));
-                }
+            for output in 0..twin.outputs.len() {
+                let read = self.read(twin, output);
+                series.iter_mut().zip(read).for_each(|(series, read)| series[output].push(read));
             }
         }
         let mut singles = self.apart.iter();
