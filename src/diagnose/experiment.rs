@@ -2,13 +2,17 @@
 
 use std::borrow::Cow;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::answer::NextExperiment;
 use super::case::{Case, CaseChannel, CaseRun};
 use super::fit::{Fit, Problem};
 use super::model::{Sides, simulate};
 use super::noise::Noise;
+use super::normal::Rows;
 use super::programme::{Stroke, chirp, held, sample, sine, strokes};
 use super::search::title;
+use super::verdict::Open;
 use crate::recording::{Recording, RecordingError};
 use crate::system::TwinRun;
 
@@ -16,6 +20,8 @@ use crate::system::TwinRun;
 const DURATION_S: f64 = 60.0;
 /// Separation from which an experiment settles a question, standard errors.
 const SETTLES: f64 = 5.0;
+/// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
+const END: f64 = 0.15;
 /// An added sensor is worth a word when it multiplies the separation by this.
 const SENSOR_WORTH: f64 = 1.5;
 /// Noise that sensors have who knows nothing better, by unit of their column.
@@ -28,40 +34,69 @@ pub struct Experiment {
 }
 
 /// One programme with what it would show.
-struct Candidate {
+struct Candidate<'a> {
     name: &'static str,
     inputs: Recording,
     run: CaseRun,
     separation: f64,
+    /// The rival that it sets apart least.
+    rival: &'a Fit,
 }
 
-/// Ranks programmes by how far they would set two models apart beyond what either could imitate by its own numbers.
+/// The programme that would set the nearest of the rivals apart best, where nothing is open.
 ///
 /// # Errors
 /// Input columns without a known unit.
-pub fn propose(
-    case: &Case,
-    noise: &[Noise],
+pub fn confirm<'a>(
+    whole: &Problem,
     best: &Fit,
-    rival: Option<&Fit>,
-    is_open: bool,
+    rivals: impl Iterator<Item = &'a Fit>,
 ) -> Result<Experiment, RecordingError> {
-    let Some(rival) = rival else {
+    let Some(nearest) = rivals.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
         let why = match best.model.effects.is_empty() {
             true => "nothing stays open that a rival could explain",
             false => "no other effect of the catalogue comes near",
         };
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
-    let mut ranked = candidates(case, noise, best, rival)?;
+    let (case, noise) = (whole.case, whole.noise);
+    let apart = |run: &CaseRun| Some((separation(case, noise, best, nearest, run)?, nearest));
+    propose(whole, best, USUAL, false, apart)
+}
+
+/// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
+/// greatest, counted with the recordings that there are.
+///
+/// # Errors
+/// Input columns without a known unit.
+pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
+    let known = Known::of(whole, best, open);
+    let apart = |run: &CaseRun| known.as_ref()?.least_separation(whole, best, open, run);
+    propose(whole, best, ALL, true, apart)
+}
+
+/// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
+const USUAL: usize = 6;
+const ALL: usize = usize::MAX;
+
+/// Ranks programmes by how far they set the best apart from a rival, which `apart` names.
+fn propose<'a>(
+    whole: &Problem,
+    best: &Fit,
+    most: usize,
+    is_open: bool,
+    apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
+) -> Result<Experiment, RecordingError> {
+    let (case, noise) = (whole.case, whole.noise);
+    let mut ranked = candidates(case, noise, best, most, apart)?;
     ranked.sort_by(|a, b| b.separation.total_cmp(&a.separation));
     let Some(winner) = ranked.into_iter().next() else {
         let why = "no programme within the recorded strokes can be simulated";
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
-    let sensor = best_sensor(case, noise, best, rival, &winner);
+    let sensor = best_sensor(case, noise, best, &winner);
     let next = NextExperiment {
-        why: why(&winner, best, rival, is_open, sensor.as_ref()),
+        why: why(&winner, best, is_open, sensor.as_ref()),
         file: Some("next_experiment.csv".to_owned()),
         separation_sigma: winner.separation,
         sensor: sensor.map(|(column, _)| column),
@@ -69,8 +104,8 @@ pub fn propose(
     Ok(Experiment { next, inputs: Some(winner.inputs) })
 }
 
-fn why(winner: &Candidate, best: &Fit, rival: &Fit, is_open: bool, sensor: Option<&(String, f64)>) -> String {
-    let (best, rival, sigma) = (title(&best.model), title(&rival.model), winner.separation);
+fn why(winner: &Candidate, best: &Fit, is_open: bool, sensor: Option<&(String, f64)>) -> String {
+    let (best, rival, sigma) = (title(&best.model), title(&winner.rival.model), winner.separation);
     let open = match is_open {
         true => format!("{best} and {rival} explain these recordings about equally well"),
         false => format!("{best} is settled; the nearest rival is {rival}"),
@@ -83,16 +118,22 @@ fn why(winner: &Candidate, best: &Fit, rival: &Fit, is_open: bool, sensor: Optio
     format!("{open}; {would}{sensor}")
 }
 
-/// All programmes with their separation; one that cannot be simulated is left out.
-fn candidates(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit) -> Result<Vec<Candidate>, RecordingError> {
+/// The first `most` programmes with their separation; one that cannot be simulated is left out.
+fn candidates<'a>(
+    case: &Case,
+    noise: &[Noise],
+    best: &Fit,
+    most: usize,
+    apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
+) -> Result<Vec<Candidate<'a>>, RecordingError> {
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
     let fast_hz = fastest_hz(case, &strokes);
     let mut list = Vec::new();
-    for (name, inputs) in programmes(&strokes, fast_hz)? {
+    for (name, inputs) in programmes(&strokes, fast_hz)?.into_iter().take(most) {
         let Some(run) = play(case, noise, best, &inputs)? else { continue };
-        let Some(separation) = separation(case, noise, best, rival, &run) else { continue };
-        list.push(Candidate { name, inputs, run, separation });
+        let Some((separation, rival)) = apart(&run) else { continue };
+        list.push(Candidate { name, inputs, run, separation, rival });
     }
     Ok(list)
 }
@@ -109,6 +150,9 @@ fn programmes(strokes: &[Stroke], fast_hz: f64) -> Result<Vec<(&'static str, Rec
         ("one level held for a minute", sample(strokes, DURATION_S, |t, _| held(&[0.95], t))?),
         ("loops that grow from nothing to the whole stroke", sample(strokes, DURATION_S, grown)?),
         ("a chirp", sample(strokes, DURATION_S, |t, own| chirp(t, 0.04 * rate(own), fast_hz * rate(own), DURATION_S))?),
+        ("small steps near rest", sample(strokes, DURATION_S, |t, own| END * held(&levels[own], t))?),
+        ("a slow sine near rest", sample(strokes, DURATION_S, |t, own| END * sine(t, 0.1 * rate(own)))?),
+        ("a slow sine near the far end", sample(strokes, DURATION_S, |t, own| 1.0 - END * sine(t, 0.1 * rate(own)))?),
     ])
 }
 
@@ -148,17 +192,67 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
 
 /// Distance between two models on a run in standard errors, what the best could imitate by other numbers taken off.
 fn separation(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit, run: &CaseRun) -> Option<f64> {
+    let alone = Problem { case, runs: Vec::new(), noise };
+    Some(beyond(played(&alone, best, rival, run)?))
+}
+
+/// What a run would show if a rival were true: residuals of the best, and the derivatives to its numbers.
+fn played(problem: &Problem, best: &Fit, rival: &Fit, run: &CaseRun) -> Option<Rows> {
+    let (case, noise) = (problem.case, problem.noise);
     let mut run = run.clone();
     run.measured = simulate(case, &run, &rival.model, &rival.x)?;
     let problem = Problem { case, runs: vec![Cow::Owned(run)], noise };
-    let rows = problem.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)?;
+    problem.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)
+}
+
+/// Length of the residual less what the slopes can make of it.
+fn beyond(rows: Rows) -> f64 {
     let basis = rows.slopes.qr().q();
-    Some((&rows.residual - &basis * basis.tr_mul(&rows.residual)).norm())
+    (&rows.residual - &basis * basis.tr_mul(&rows.residual)).norm()
+}
+
+/// What the recordings that there are say about the difference between the best and its rivals.
+struct Known {
+    /// Derivatives to the best's numbers, sample by sample.
+    slopes: DMatrix<f64>,
+    /// Rival minus best, of each rival.
+    apart: Vec<DVector<f64>>,
+}
+
+impl Known {
+    fn of(whole: &Problem, best: &Fit, open: &Open) -> Option<Self> {
+        let rows = whole.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)?;
+        let of = |rival: &&Fit| Some(&rows.residual - whole.weighted_residual(&rival.model, &rival.x)?);
+        let apart = open.rivals.iter().map(of).collect::<Option<Vec<_>>>()?;
+        Some(Self { slopes: rows.slopes, apart })
+    }
+
+    /// Distance in standard errors from the rival that a run sets apart least, after the best's numbers have been fitted to
+    /// that rival on all there would then be.
+    fn least_separation<'a>(
+        &self,
+        whole: &Problem,
+        best: &Fit,
+        open: &Open<'a>,
+        run: &CaseRun,
+    ) -> Option<(f64, &'a Fit)> {
+        let mut least: Option<(f64, &'a Fit)> = None;
+        for (rival, known) in open.rivals.iter().zip(&self.apart) {
+            let rows = played(whole, best, rival, run)?;
+            let all = Rows::stack(&[Rows { slopes: self.slopes.clone(), residual: known.clone() }, rows])?;
+            let separation = beyond(all) / open.unit.sqrt();
+            if least.is_none_or(|(s, _)| separation < s) {
+                least = Some((separation, *rival));
+            }
+        }
+        least
+    }
 }
 
 /// The output of the scene that was not recorded and would help most, with the separation that it brings.
-fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit, winner: &Candidate) -> Option<(String, f64)> {
+fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, winner: &Candidate) -> Option<(String, f64)> {
     let mut found: Option<(String, f64)> = None;
+    let without = separation(case, noise, best, winner.rival, &winner.run)?;
     for (output, spec) in case.scene.file.output.iter().enumerate() {
         let sd = TYPICAL_NOISE.iter().find(|(unit, _)| spec.channel.ends_with(unit)).map(|(_, sd)| *sd);
         let Some(sd) = sd.filter(|_| case.channels.iter().all(|c| c.output != output)) else { continue };
@@ -168,7 +262,8 @@ fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit, winner: &C
         let mut run = winner.run.clone();
         run.measured.push(vec![f64::NAN; run.drive.times_s.len()]);
         let noise: Vec<Noise> = noise.iter().copied().chain([Noise::white(sd)]).collect();
-        let Some(separation) = separation(&wider, &noise, best, rival, &run) else { continue };
+        let Some(with) = separation(&wider, &noise, best, winner.rival, &run) else { continue };
+        let separation = winner.separation * (with / without);
         if separation > SENSOR_WORTH * winner.separation && found.as_ref().is_none_or(|(_, s)| separation > *s) {
             found = Some((spec.channel.clone(), separation));
         }

@@ -190,7 +190,8 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     confirm::check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
     let complete = whole.fit(&found.best.model, &found.best.x).unwrap_or_else(|| found.best.clone());
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
-    let mut effects = verdict::named(&found, &complete, excess.best.max(0.0) * whole.samples() as f64);
+    let left = excess.best.max(0.0) * whole.samples() as f64;
+    let mut effects = verdict::named(&found, &complete, left);
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     steady::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
@@ -200,8 +201,10 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     };
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
-    let nearest = found.rivals.iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let experiment = experiment::propose(&case, &noise, &found.best, nearest, verdict == Verdict::Ambiguous)?;
+    let experiment = match verdict {
+        Verdict::Ambiguous => experiment::settle(&whole, &found.best, &verdict::open(&found, left))?,
+        _ => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
+    };
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let rivals = found.rivals.iter().flatten().map(|f| (title(&f.model), f.cost)).collect();
     let mut diagnosis = Diagnosis {

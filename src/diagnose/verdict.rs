@@ -86,6 +86,27 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     effects
 }
 
+/// What keeps an answer from being one answer.
+#[derive(Clone, Debug)]
+pub struct Open<'a> {
+    /// The rivals that the data leave standing beside effects that are not sure.
+    pub rivals: Vec<&'a Fit>,
+    /// Difference in chi² that counts as one: more than 1 where the best's laws leave something themselves.
+    pub unit: f64,
+}
+
+/// What stays open; `left` as for [`named`].
+pub fn open(found: &Found, left: f64) -> Open<'_> {
+    let mut rivals = Vec::new();
+    for (index, placed) in found.best.model.effects.iter().enumerate() {
+        let standing = standing(found, index, placed, left);
+        if standing.iter().any(|(p, probability, _)| p.says_the_same(placed) && *probability < SURE) {
+            rivals.extend(standing.iter().filter(|(p, _, _)| !p.says_the_same(placed)).map(|(_, _, fit)| *fit));
+        }
+    }
+    Open { rivals, unit: unit(found, left) }
+}
+
 /// A further branch of an effect that is named already: its numbers get the next free number as suffix.
 fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
     for (key, number) in numbers {
@@ -107,10 +128,7 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
     // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
     let is_hypothesis = placed.kind.is_hypothetical();
     let rivals = found.rivals.get(index).filter(|_| !is_hypothesis).map_or(&[][..], Vec::as_slice);
-    let worst = found.baseline.cost - best.cost;
-    // Laws are idealised: as far as the best itself leaves something, a difference counts in proportion to that, and at
-    // most to what is explained, not to the number of samples.
-    let unit = (0.005 * worst / best.model.effects.len() as f64).min(left).max(1.0);
+    let unit = unit(found, left);
     let mut all: Vec<(Placed, f64, &Fit)> = vec![(placed.clone(), 1.0, best)];
     for rival in rivals {
         let Some(own) = rival.model.effects.last() else { continue };
@@ -123,6 +141,13 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
     all.iter_mut().for_each(|(_, w, _)| *w /= sum);
     all.retain(|(p, w, _)| *w >= LEAST_PROBABILITY || p == placed);
     all
+}
+
+/// Laws are idealised: as far as the best itself leaves something, a difference counts in proportion to that, and at most to
+/// what is explained, not to the number of samples.
+fn unit(found: &Found, left: f64) -> f64 {
+    let explained = found.baseline.cost - found.best.cost;
+    (0.005 * explained / found.best.model.effects.len() as f64).min(left).max(1.0)
 }
 
 /// Numbers of one effect of a fit, with intervals for those that were fitted.
