@@ -31,6 +31,7 @@ mod run_file;
 mod scenes;
 mod schema;
 mod score;
+mod steps;
 mod sweep;
 mod sweep_page;
 mod sweep_panels;

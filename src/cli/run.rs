@@ -7,12 +7,13 @@ use std::time::Instant;
 use clap::Args;
 use smam::recording::{Recording, read_recording, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
-use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation};
+use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps};
 
 use super::angles::Angles;
 use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
+use super::steps::check_steps;
 use super::{CliError, junit};
 
 /// Arguments of `smam run`.
@@ -56,6 +57,9 @@ pub struct RunArguments {
     /// Print where the plunger's work went
     #[arg(long)]
     energy: bool,
+    /// Play the run once more with half the steps and print how far each channel moves
+    #[arg(long)]
+    check_steps: bool,
     /// Print each [[expect]] of the scene with its figure; exit 1 when one fails
     #[arg(long)]
     check: bool,
@@ -104,10 +108,19 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         eprintln!("interrupted at {reached_s:.3} s: what was computed is written");
         return Ok(ExitCode::from(1));
     }
-    match recording {
-        Some(recording) => check(arguments, &simulation, &recording),
-        None => Ok(ExitCode::SUCCESS),
+    let Some(recording) = recording else { return Ok(ExitCode::SUCCESS) };
+    if arguments.check_steps {
+        let mut halved = Simulation::new(with_half_steps(simulation.scene())?)?;
+        drive_from_input(arguments, &mut halved)?;
+        check_steps(&recording, &mut halved, &schedule)?;
     }
+    if arguments.check { check(arguments, &simulation, &recording) } else { Ok(ExitCode::SUCCESS) }
+}
+
+/// Drives a further simulation from the recording of `--input`, which has been looked at already.
+fn drive_from_input(arguments: &RunArguments, simulation: &mut Simulation) -> Result<(), CliError> {
+    let Some(path) = &arguments.input else { return Ok(()) };
+    drive(simulation, &read_recording(path)?, path).map(|_| ())
 }
 
 fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Schedule, CliError> {
@@ -135,7 +148,10 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     }
     let recording = read_recording(path)?;
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
-    drive(simulation, &recording, path)?;
+    let others = drive(simulation, &recording, path)?;
+    if !others.is_empty() {
+        eprintln!("note: {}: no input of the scene, left alone: {}", path.display(), others.join(", "));
+    }
     let first = recording.time_s().first().copied().unwrap_or(0.0);
     let within = recording.time_s().iter().copied().filter(|t| limit.is_none_or(|l| t - first <= l));
     Ok(Schedule(within.collect()))
@@ -148,8 +164,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
     a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
-/// Drives every input of the scene from the recording; columns that are no input are named in a note.
-fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Result<(), CliError> {
+/// Drives every input of the scene from the recording; returns the columns that are no input.
+fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Result<Vec<String>, CliError> {
     let inputs: Vec<String> = simulation.scene().file.input.iter().map(|i| i.channel.clone()).collect();
     for input in &inputs {
         if recording.find(input).is_none() {
@@ -165,11 +181,8 @@ fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Res
             InputSource::Recorded(recording.piecewise_si(input).map_err(|e| e.in_file(path.display().to_string()))?),
         );
     }
-    let others: Vec<&str> = recording.columns().into_iter().filter(|c| !inputs.iter().any(|i| i == c)).collect();
-    if !others.is_empty() {
-        eprintln!("note: {}: no input of the scene, left alone: {}", path.display(), others.join(", "));
-    }
-    Ok(())
+    let is_other = |column: &&str| !inputs.iter().any(|i| i == column);
+    Ok(recording.columns().into_iter().filter(is_other).map(str::to_owned).collect())
 }
 
 /// Neither file was named: both go to `out/`.
@@ -191,7 +204,7 @@ fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
 fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) -> Result<Observers, CliError> {
     let mut observers = Observers {
         file: file_path(arguments, name).map(|path| RunFile::new(&path)).transpose()?,
-        recorder: arguments.check.then(Recorder::default),
+        recorder: (arguments.check || arguments.check_steps).then(Recorder::default),
         angles: arguments.angles.then(Angles::default),
         progress: Some(Progress::new(end_s)),
         clock: arguments.real_time.then(Clock::default),
@@ -269,6 +282,9 @@ fn say_what_to_open(arguments: &RunArguments, name: &str) {
     }
 }
 
+/// Share of the turnover that may be unaccounted for, %.
+const MOST_UNACCOUNTED: f64 = 1.0;
+
 fn print_energy(book: &smam::system::EnergyBook) {
     say!("energy book, mJ:");
     for (name, joule) in book.lines() {
@@ -276,6 +292,11 @@ fn print_energy(book: &smam::system::EnergyBook) {
     }
     let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
     say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
+    if share > MOST_UNACCOUNTED {
+        eprintln!(
+            "warning: more than {MOST_UNACCOUNTED} % of the turnover is unaccounted for: the steps are too long; remedy: see --check-steps"
+        );
+    }
 }
 
 /// A server goes on until it is interrupted.

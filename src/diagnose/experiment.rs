@@ -10,7 +10,7 @@ use super::fit::{Fit, Problem};
 use super::model::{Sides, simulate};
 use super::noise::Noise;
 use super::normal::Rows;
-use super::programme::{Stroke, chirp, held, sample, sine, strokes};
+use super::programme::{INTERVAL_S, Stroke, chirp, held, sample, sine, strokes};
 use super::search::title;
 use super::verdict::Open;
 use crate::recording::{Recording, RecordingError};
@@ -18,6 +18,8 @@ use crate::system::TwinRun;
 
 /// Length of a proposed run, s.
 const DURATION_S: f64 = 60.0;
+/// And of those that may be tried where shorter ones would not settle what is open, s.
+const LONGER_S: [f64; 2] = [180.0, 300.0];
 /// Separation from which an experiment settles a question, standard errors.
 const SETTLES: f64 = 5.0;
 /// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
@@ -61,18 +63,28 @@ pub fn confirm<'a>(
     };
     let (case, noise) = (whole.case, whole.noise);
     let apart = |run: &CaseRun| Some((separation(case, noise, best, nearest, run)?, nearest));
-    propose(whole, best, USUAL, false, apart)
+    propose(whole, best, (USUAL, DURATION_S), false, apart)
 }
 
 /// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are.
+/// greatest, counted with the recordings that there are. A minute long, or longer where a minute would not do.
 ///
 /// # Errors
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
     let known = Known::of(whole, best, open);
     let apart = |run: &CaseRun| known.as_ref()?.least_separation(whole, best, open, run);
-    propose(whole, best, ALL, true, apart)
+    let mut proposed = propose(whole, best, (ALL, DURATION_S), true, apart)?;
+    for duration_s in LONGER_S {
+        if proposed.next.separation_sigma > SETTLES {
+            break;
+        }
+        let longer = propose(whole, best, (ALL, duration_s), true, apart)?;
+        if longer.next.separation_sigma > proposed.next.separation_sigma {
+            proposed = longer;
+        }
+    }
+    Ok(proposed)
 }
 
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
@@ -83,12 +95,12 @@ const ALL: usize = usize::MAX;
 fn propose<'a>(
     whole: &Problem,
     best: &Fit,
-    most: usize,
+    (most, duration_s): (usize, f64),
     is_open: bool,
     apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
 ) -> Result<Experiment, RecordingError> {
     let (case, noise) = (whole.case, whole.noise);
-    let mut ranked = candidates(case, noise, best, most, apart)?;
+    let mut ranked = candidates(case, noise, best, (most, duration_s), apart)?;
     ranked.sort_by(|a, b| b.separation.total_cmp(&a.separation));
     let Some(winner) = ranked.into_iter().next() else {
         let why = "no programme within the recorded strokes can be simulated";
@@ -110,9 +122,14 @@ fn why(winner: &Candidate, best: &Fit, is_open: bool, sensor: Option<&(String, f
         true => format!("{best} and {rival} explain these recordings about equally well"),
         false => format!("{best} is settled; the nearest rival is {rival}"),
     };
+    let seconds = winner.inputs.time_s().len() as f64 * INTERVAL_S;
+    let programme = match seconds > DURATION_S {
+        true => format!("{seconds:.0} s of {}", winner.name),
+        false => winner.name.to_owned(),
+    };
     let would = match sigma > SETTLES {
-        true => format!("{} would set them {sigma:.1} standard errors apart", winner.name),
-        false => format!("even {} would set them only {sigma:.1} standard errors apart", winner.name),
+        true => format!("{programme} would set them {sigma:.1} standard errors apart"),
+        false => format!("even {programme} would set them only {sigma:.1} standard errors apart"),
     };
     let sensor = sensor.map_or(String::new(), |(column, s)| format!("; with {column} recorded as well, {s:.1}"));
     format!("{open}; {would}{sensor}")
@@ -123,14 +140,14 @@ fn candidates<'a>(
     case: &Case,
     noise: &[Noise],
     best: &Fit,
-    most: usize,
+    (most, duration_s): (usize, f64),
     apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
 ) -> Result<Vec<Candidate<'a>>, RecordingError> {
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
     let fast_hz = fastest_hz(case, &strokes);
     let mut list = Vec::new();
-    for (name, inputs) in programmes(&strokes, fast_hz)?.into_iter().take(most) {
+    for (name, inputs) in programmes(&strokes, fast_hz, duration_s)?.into_iter().take(most) {
         let Some(run) = play(case, noise, best, &inputs)? else { continue };
         let Some((separation, rival)) = apart(&run) else { continue };
         list.push(Candidate { name, inputs, run, separation, rival });
@@ -138,21 +155,30 @@ fn candidates<'a>(
     Ok(list)
 }
 
-fn programmes(strokes: &[Stroke], fast_hz: f64) -> Result<Vec<(&'static str, Recording)>, RecordingError> {
+/// Programmes of a duration, the usual ones first.
+fn programmes(
+    strokes: &[Stroke],
+    fast_hz: f64,
+    duration_s: f64,
+) -> Result<Vec<(&'static str, Recording)>, RecordingError> {
     let levels =
         [[0.2, 0.9, 0.5, 1.0, 0.1, 0.7, 0.3, 0.8, 0.0, 0.6], [0.7, 0.3, 0.8, 0.0, 0.6, 0.2, 0.9, 0.5, 1.0, 0.1]];
+    let minutes = (duration_s / DURATION_S).ceil() as usize;
+    let levels = levels.map(|levels| levels.repeat(minutes));
     let rate = |own: usize| [1.0, 0.7][own];
-    let grown = |t: f64, own: usize| (t / DURATION_S) * sine(t, 0.2 * rate(own));
+    let grown = |t: f64, own: usize| (t / duration_s) * sine(t, 0.2 * rate(own));
+    let swept = |t: f64, own: usize| chirp(t, 0.04 * rate(own), fast_hz * rate(own), duration_s);
+    let played = |wave: &dyn Fn(f64, usize) -> f64| sample(strokes, duration_s, wave);
     Ok(vec![
-        ("a slow sine over the whole stroke", sample(strokes, DURATION_S, |t, own| sine(t, 0.05 * rate(own)))?),
-        ("a fast sine over the whole stroke", sample(strokes, DURATION_S, |t, own| sine(t, fast_hz * rate(own)))?),
-        ("levels held for six seconds", sample(strokes, DURATION_S, |t, own| held(&levels[own], t))?),
-        ("one level held for a minute", sample(strokes, DURATION_S, |t, _| held(&[0.95], t))?),
-        ("loops that grow from nothing to the whole stroke", sample(strokes, DURATION_S, grown)?),
-        ("a chirp", sample(strokes, DURATION_S, |t, own| chirp(t, 0.04 * rate(own), fast_hz * rate(own), DURATION_S))?),
-        ("small steps near rest", sample(strokes, DURATION_S, |t, own| END * held(&levels[own], t))?),
-        ("a slow sine near rest", sample(strokes, DURATION_S, |t, own| END * sine(t, 0.1 * rate(own)))?),
-        ("a slow sine near the far end", sample(strokes, DURATION_S, |t, own| 1.0 - END * sine(t, 0.1 * rate(own)))?),
+        ("a slow sine over the whole stroke", played(&|t, own| sine(t, 0.05 * rate(own)))?),
+        ("a fast sine over the whole stroke", played(&|t, own| sine(t, fast_hz * rate(own)))?),
+        ("levels held for six seconds", played(&|t, own| held(&levels[own], t))?),
+        (if minutes > 1 { "one level held" } else { "one level held for a minute" }, played(&|t, _| held(&[0.95], t))?),
+        ("loops that grow from nothing to the whole stroke", played(&grown)?),
+        ("a chirp", played(&swept)?),
+        ("small steps near rest", played(&|t, own| END * held(&levels[own], t))?),
+        ("a slow sine near rest", played(&|t, own| END * sine(t, 0.1 * rate(own)))?),
+        ("a slow sine near the far end", played(&|t, own| 1.0 - END * sine(t, 0.1 * rate(own)))?),
     ])
 }
 

@@ -19,7 +19,7 @@ use super::preflight::correlation;
 use crate::recording::{Channel, Recording, RecordingError, parse_column};
 
 /// Sampling interval, s, and the time over which the plungers go from rest into the programme.
-const INTERVAL_S: f64 = 0.01;
+pub(super) const INTERVAL_S: f64 = 0.01;
 const ENTRY_S: f64 = 2.0;
 /// Speed between held levels, in strokes per second.
 const STROKES_PER_S: f64 = 0.4;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::mechanism::Contact;
 use crate::muscle::YIELD_STRETCH;
 
 use super::Simulation;
@@ -51,8 +52,35 @@ impl Warnings {
     }
 }
 
+/// Depth from which bodies are said to be inside each other, m: contacts of the stock scenes stay below a tenth of it.
+const DEEP_M: f64 = 1e-4;
+
+/// Slack from which a cable is said to hang, m: one that is just not pulled at the start is none.
+const HANGING_M: f64 = 5e-5;
+
 /// Conditions worth a warning that hold now.
 fn conditions(simulation: &Simulation) -> Vec<String> {
+    let mut present = muscle_conditions(simulation);
+    let (built, spans) = (&simulation.built, simulation.end_spans());
+    for (i, spec) in simulation.scene.file.cable.iter().enumerate() {
+        if built.plant.cable(i, &built.state, &spans, 0.0).0 < -HANGING_M {
+            present.push(format!("{}: slack by more than {} mm", spec.name, 1e3 * HANGING_M));
+        }
+    }
+    if let Some(mechanism) = &simulation.mechanism {
+        let name = |link: usize| mechanism.link_names().get(link).map_or("a body", String::as_str);
+        let deep = |c: &Contact| (c.penetration_m > DEEP_M).then(|| (name(c.link_a), name(c.link_b)));
+        for (a, b) in mechanism.contacts().iter().filter_map(deep) {
+            let words = format!("{a} and {b}: inside each other by more than {} mm", 1e3 * DEEP_M);
+            if !present.contains(&words) {
+                present.push(words);
+            }
+        }
+    }
+    present
+}
+
+fn muscle_conditions(simulation: &Simulation) -> Vec<String> {
     let mut present = Vec::new();
     let state = &simulation.built.state;
     for (i, spec) in simulation.scene.file.muscle.iter().enumerate() {
