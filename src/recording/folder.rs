@@ -3,8 +3,10 @@
 use super::bag_read::read_bag;
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::{Keys, did_you_mean};
+use super::source::open_file;
 use super::{FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use std::collections::{BTreeMap, HashSet};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use toml::Table;
 
@@ -113,7 +115,9 @@ impl RecordingSet {
             true => path.to_owned(),
             false => path.join(SET_FILE_NAME),
         };
-        let text = std::fs::read_to_string(&file).map_err(|source| unreadable(&file, source))?;
+        let mut text = String::new();
+        let read = open_file(&file)?.read_to_string(&mut text);
+        read.map_err(|source| unreadable(&file, source))?;
         Self::parse(&text, &file)
     }
 
