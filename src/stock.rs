@@ -88,7 +88,7 @@ fn read_file(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// No scene, model or sweep is longer; what is, is something else.
-const LONGEST_TEXT_BYTES: u64 = 1 << 26;
+const LONGEST_TEXT_BYTES: u64 = 1 << 24;
 
 /// The text of a file, as [`read`].
 ///
