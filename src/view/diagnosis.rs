@@ -49,7 +49,7 @@ pub fn show_diagnosis(
     let Connection { stream, announcement, file, .. } = sink.open()?;
     if let Err(error) = log_diagnosis(&stream, name, summary, runs, options) {
         return Err(match &file {
-            Some(file) => file.failed(error),
+            Some(file) => file.failed(&stream, error),
             None => error,
         });
     }

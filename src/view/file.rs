@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use rerun::RecordingStream;
+
 use super::error::ViewError;
 use crate::recording::Unfinished;
 
@@ -25,8 +27,9 @@ impl StreamFile {
         self.0.temporary()
     }
 
-    /// What was said of the stream, with the name of the file.
-    pub(super) fn failed(&self, error: ViewError) -> ViewError {
+    /// Gives the stream up; what was said of it, with the name of the file.
+    pub(super) fn failed(&self, stream: &RecordingStream, error: ViewError) -> ViewError {
+        abandon(stream);
         match error {
             ViewError::Unsent { detail, .. } => self.cannot_write(io::Error::other(detail)),
             other => other,
@@ -45,6 +48,12 @@ impl StreamFile {
     fn cannot_write(&self, source: io::Error) -> ViewError {
         ViewError::CannotWrite { path: self.0.path().to_owned(), source }
     }
+}
+
+/// Leaves a stream to the end of the program. Dropped, it would wait for its writer, and where a full disk has ended that
+/// thread, for ever.
+pub(super) fn abandon(stream: &RecordingStream) {
+    std::mem::forget(stream.clone());
 }
 
 fn check_end(path: &Path) -> io::Result<()> {

@@ -9,7 +9,7 @@ use super::blueprint;
 use super::cables::Cables;
 use super::contacts::Contacts;
 use super::error::ViewError;
-use super::file::StreamFile;
+use super::file::{StreamFile, abandon};
 use super::headline::{Events, Headline};
 use super::layer::{Layer, WORLD};
 use super::legend::Legend;
@@ -102,15 +102,14 @@ impl Viewer {
 
 /// Waits until everything has arrived; a file gets its footer, and then its name.
 pub(super) fn close(stream: &RecordingStream, file: Option<StreamFile>) -> Result<(), ViewError> {
-    let flushed = flush(stream);
-    stream.finalize_deferred_sinks();
-    match file {
-        None => flushed,
-        Some(file) => {
-            flushed.map_err(|error| file.failed(error))?;
-            file.place()
-        }
+    if let Err(error) = flush(stream) {
+        return Err(match file {
+            Some(file) => file.failed(stream, error),
+            None => error,
+        });
     }
+    stream.finalize_deferred_sinks();
+    file.map_or(Ok(()), StreamFile::place)
 }
 
 /// Waits until everything sent so far has arrived.
@@ -149,7 +148,9 @@ impl Observer for Viewer {
 impl Drop for Viewer {
     /// A run that stopped with an error is the one whose last frames are wanted. A file would look like that of a whole run.
     fn drop(&mut self) {
-        if self.file.is_none() && self.run.as_ref().is_some_and(|run| !run.frames.is_empty()) {
+        if self.file.is_some() {
+            abandon(&self.stream);
+        } else if self.run.as_ref().is_some_and(|run| !run.frames.is_empty()) {
             let _ = self.finish();
         }
     }
