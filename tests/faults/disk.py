@@ -156,9 +156,9 @@ def streams(smam, place, recordings):
     CHECKS.add("closed standard input", [] if done.code == 0 and content(folder / "run.csv") == whole else [f"exit code {done.code}: {done.err!r}"])
 
 
-def check(smam, place, recordings):
+def check(smam, place, recordings, is_long):
     """Everything about where results go."""
-    for command in [*QUICK, named("proof")]:
+    for command in [*QUICK, *([named("proof")] if is_long else [])]:
         own = place / command.name.replace(" ", "_").replace(",", "")
         whole = whole_of(smam, command, own, recordings)
         if command.share == 1.0:

@@ -94,7 +94,7 @@ def changing(smam, folder):
         CHECKS.add(f"a recording {name} while it is read", faults, "used as it was" if done.code == 0 else "refused")
 
 
-def check(smam, place, recordings):
+def check(smam, place, recordings, is_long):
     """Everything about what is read."""
     folder = prepare(place, recordings)
     no_files(smam, folder)
