@@ -1,7 +1,6 @@
 """What all checks share: running the program, and knowing which files it left."""
 
 import hashlib
-import json
 import os
 import re
 import resource
@@ -187,6 +186,3 @@ def sane(done):
         faults.append(f"took {done.memory_kb >> 10} MiB of memory")
     return faults
 
-
-def json_of(path):
-    return json.loads(Path(path).read_text())
