@@ -67,6 +67,13 @@ for test in cluster/slurm/test.sh cluster/hyperqueue/test.sh; do
     [ "$status" -eq 0 ] || { echo "$test failed (exit code $status)" >&2; exit 1; }
 done
 
+say "kills, full disks, pipes, two at once: nothing lost"
+status=0
+python3 tests/faults/check.py --smam "$smam" || status=$?
+if [ "$status" -ne 77 ] || [ -n "${SMAM_REQUIRE_FAULTS:-}" ]; then
+    [ "$status" -eq 0 ] || { echo "tests/faults/check.py failed (exit code $status)" >&2; exit 1; }
+fi
+
 say "the README's first command"
 rm -f out/bending_catheter.csv out/bending_catheter.rrd
 cargo run --release -- run scenes/bending_catheter.toml

@@ -37,6 +37,28 @@ fn a_bending_catheter_becomes_a_complete_file() {
     assert!(bytes.len() < 4_000_000, "{} bytes for 1001 frames", bytes.len());
 }
 
+/// Half a stream opens in the viewer like a whole one: it must not have the file's name, nor take the former file's place.
+#[test]
+fn a_run_that_is_cut_off_leaves_the_former_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    std::fs::write(&file, "former").unwrap();
+    let mut viewer = Viewer::open(&ViewSink::File(file.clone()), ViewOptions::default()).unwrap();
+    viewer.begin(&graph()).unwrap();
+    (0..=2000).for_each(|n| viewer.frame(&frame(f64::from(n) * 0.01)).unwrap());
+    assert_eq!(std::fs::read(&file).unwrap(), b"former");
+    drop(viewer);
+    assert_eq!(std::fs::read(&file).unwrap(), b"former");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "what was begun is gone");
+
+    let mut viewer = Viewer::open(&ViewSink::File(file.clone()), ViewOptions::default()).unwrap();
+    viewer.begin(&graph()).unwrap();
+    viewer.frame(&frame(0.0)).unwrap();
+    viewer.finish().unwrap();
+    let bytes = std::fs::read(&file).unwrap();
+    assert!(bytes.starts_with(b"RRF2") && bytes[..bytes.len() - 4].ends_with(b"RRF2FOOT"), "a whole stream");
+}
+
 /// Two runs of ten seconds: what was measured bends further than the calibrated scene, the corrected one almost so.
 #[test]
 fn a_diagnosis_becomes_a_complete_file() {

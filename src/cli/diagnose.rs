@@ -5,13 +5,13 @@ use std::process::ExitCode;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
-use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer};
+use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer_with};
 use smam::report::diagnosis_page;
 use smam::scene::Override;
 
 use super::CliError;
 use super::diagnose_view::Shown;
-use super::files::{make_folder, write};
+use super::files::take_folder;
 
 /// Arguments of `smam diagnose`.
 #[derive(Args)]
@@ -86,10 +86,10 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
         case.leave_out(step.step());
     }
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
-    make_folder(&out)?;
+    let _held = take_folder(&out)?;
     let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
-    write_answer(&outcome, &out)?;
-    write(&out.join("report.html"), &diagnosis_page(&outcome))?;
+    let page = diagnosis_page(&outcome);
+    write_answer_with(&outcome, &[("report.html", page.as_str())], &out)?;
     print_diagnosis(&outcome.diagnosis);
     eprintln!("written: {}", out.display());
     shown.show(&outcome, &out)?;

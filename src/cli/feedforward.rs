@@ -112,7 +112,7 @@ fn read_model(path: &Path) -> Result<HysteresisModel<f64>, CliError> {
             path.display()
         ))
     };
-    let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let text = smam::stock::read_text(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
     let file: ModelFile = toml::from_str(&text).map_err(|e| refuse(e.to_string().trim_end().to_owned()))?;
     let model = file.muscles.displacement;
     model.check().map_err(|e| {

@@ -2,13 +2,26 @@
 
 use std::path::Path;
 
-use smam::recording::write_whole;
+use smam::recording::{Held, hold_folder, write_whole};
 
 use super::CliError;
 
 /// Makes a folder for results before the work: that it cannot be made is better said now than after it.
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(path).map_err(|source| CliError::Write { file: path.to_owned(), source })
+}
+
+/// Makes a folder and takes it for this program alone, as long as what is returned lives: two that write into one folder
+/// would mix their results.
+pub fn take_folder(path: &Path) -> Result<Held, CliError> {
+    make_folder(path)?;
+    match hold_folder(path) {
+        Held::Taken => Err(CliError::Usage(format!(
+            "{}: another smam is writing here\n  remedy: wait for it, or give another folder with --out",
+            path.display()
+        ))),
+        ours => Ok(ours),
+    }
 }
 
 /// Writes a file that appears under its name whole or not at all; its folder is made.

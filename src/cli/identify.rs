@@ -13,7 +13,7 @@ use smam::identify::loops::{
 use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 
 use super::CliError;
-use super::files::{make_folder, write};
+use super::files::{take_folder, write};
 use super::identify_page::page;
 
 /// Arguments of `smam identify`.
@@ -70,7 +70,7 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
     }
     let loops = load(arguments)?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("identify_{}", loops.name)));
-    make_folder(&out)?;
+    let _held = take_folder(&out)?;
     let options = SearchOptions {
         method: arguments.method,
         seed: arguments.seed,

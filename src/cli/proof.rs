@@ -14,6 +14,7 @@ use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_
 use super::CliError;
 use super::ceiling::write_ceiling;
 use super::diagnose::StepName;
+use super::files::take_folder;
 use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
 
 /// Arguments of `smam proof`.
@@ -60,6 +61,7 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
         }
         None => (folders, arguments.out.clone()),
     };
+    let _held = take_folder(&out)?;
     let journal = out.join("rows.jsonl");
     let former = former_rows(&journal, &planned)?;
     let seals = conceal_all(&planned, &former, &folders)?;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use smam::reproduce::{FIGURES, Figure, Made, ReproduceError, Standing, cells, json, page};
 
 use super::CliError;
-use super::files::write;
+use super::files::{take_folder, write};
 
 /// Arguments of `smam reproduce`.
 #[derive(Args)]
@@ -29,8 +29,7 @@ pub struct ReproduceArguments {
 pub fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, CliError> {
     let wanted = wanted(&arguments.figures)?;
     // A folder that cannot be made is better said before the work than after it.
-    std::fs::create_dir_all(&arguments.out)
-        .map_err(|source| CliError::Write { file: arguments.out.clone(), source })?;
+    let _held = take_folder(&arguments.out)?;
     let progress = ProgressBar::new(wanted.len() as u64);
     progress.set_style(
         ProgressStyle::with_template("{bar:30} {pos}/{len} figures {msg}")

@@ -7,7 +7,9 @@ use std::time::Instant;
 use clap::Args;
 use smam::recording::{Recording, read_recording, survey, write_whole};
 use smam::scene::{Override, Scene, ViewSpec};
-use smam::system::{InputSource, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps};
+use smam::system::{
+    InputSource, RunError, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps,
+};
 
 use super::angles::Angles;
 use super::interrupt::{interrupted, stop_flag};
@@ -90,7 +92,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         progress.finish();
     }
     let angles = observers.angles.take();
-    let recording = finish(&mut observers)?;
+    // What could not be written leaves nothing under its name: half a file looks like a whole one.
+    let recording = match &outcome {
+        Err(RunError::Observer(_)) => None,
+        _ => finish(&mut observers)?,
+    };
     let mut warnings = outcome?;
     eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.0.first().unwrap_or(&0.0));
     warnings.summary(reached_s).iter().for_each(|w| eprintln!("warning: {w}"));

@@ -13,7 +13,7 @@ use smam::recording::did_you_mean;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case};
 
 use super::CliError;
-use super::files::write;
+use super::files::{take_folder, write};
 
 /// Arguments of `smam trial`.
 #[derive(Args)]
@@ -61,6 +61,7 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     }
     let missing: Vec<&TrialCase> = cases.iter().filter(|c| !done.iter().any(|r| r.name == c.name)).collect();
     eprintln!("{} cases, {} of them known already", cases.len(), cases.len() - missing.len());
+    let _held = take_folder(&arguments.out)?;
     let file = Mutex::new(open(&path)?);
     let failed = |source: std::io::Error| CliError::Write { file: path.clone(), source };
     missing.par_iter().try_for_each(|case| -> Result<(), CliError> {
@@ -68,7 +69,7 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
         eprintln!("{:<70} {:?} {:?} {:.0} s", row.name, row.judgement, row.answer, row.seconds);
         let line = serde_json::to_string(&row).map_err(|e| CliError::Failed(e.to_string()))?;
         let mut file = file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        writeln!(file, "{line}").and_then(|()| file.flush()).map_err(failed)
+        file.write_all(format!("{line}\n").as_bytes()).map_err(failed)
     })?;
     let all = read_rows(&path)?;
     let mut rows: Vec<Row> = cases.iter().filter_map(|c| all.iter().find(|r| r.name == c.name)).cloned().collect();
@@ -111,9 +112,6 @@ fn read_rows(path: &Path) -> Result<Vec<Row>, CliError> {
 
 fn open(path: &Path) -> Result<fs::File, CliError> {
     let failed = |source: std::io::Error| CliError::Write { file: path.to_owned(), source };
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(failed)?;
-    }
     let mut file = OpenOptions::new().create(true).append(true).read(true).open(path).map_err(failed)?;
     let ends_well = fs::read(path).map_err(failed)?.last().is_none_or(|b| *b == b'\n');
     if !ends_well {

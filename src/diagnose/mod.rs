@@ -61,7 +61,7 @@ pub use answer::{
 };
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Sealed};
 pub use error::DiagnoseError;
-pub use files::write_answer;
+pub use files::{write_answer, write_answer_with};
 pub use fit::Fit;
 pub use model::{Model, Placed};
 pub use noise::Noise;

@@ -1,9 +1,9 @@
 //! Reading a recording from a ROS 2 bag.
 
-use std::fs::File;
 use std::path::Path;
 
 use super::one_clock::{Sampled, on_one_clock};
+use super::source::open_file;
 use super::{Channel, ChannelSpec, LoadedRun, Recording, RecordingError, Role, Unit, parse_column};
 use crate::bag::{self, Clock, FLOAT64, Pick, Series, Topic};
 
@@ -17,7 +17,7 @@ const FLUID_PRESSURE: &str = "sensor_msgs/msg/FluidPressure";
 /// What [`bag::read`] says; a declared channel that the bag does not have; units that do not go together.
 pub(super) fn read_bag(path: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
     let refuse = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
-    let source = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
+    let source = open_file(path)?;
     let bag = bag::read(source, &|topic| picks(topic, declared)).map_err(refuse)?;
     let sampled = match declared.is_empty() {
         true => undeclared(&bag),

@@ -1,9 +1,9 @@
 //! Reading a recording from CSV: header line, `time_s`, one column per channel.
 
+use super::source::{read_lines, read_settled};
 use super::{Channel, Recording, RecordingError, TIME_COLUMN};
 use ::csv::{ErrorKind, Position, Reader, ReaderBuilder, StringRecord, Trim};
 use std::collections::HashSet;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -28,8 +28,7 @@ use std::path::Path;
 /// # Errors
 /// File, line, column, cause and remedy of the first thing that is wrong.
 pub fn read_csv(path: &Path) -> Result<Recording, RecordingError> {
-    let file = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
-    read_csv_from(file, &path.display().to_string())
+    parse(&read_settled(path)?, &path.display().to_string())
 }
 
 /// Reads CSV from anywhere; `name` stands for the file in errors.
@@ -44,11 +43,12 @@ pub fn read_csv(path: &Path) -> Result<Recording, RecordingError> {
 ///
 /// # Errors
 /// As [`read_csv`].
-pub fn read_csv_from(mut source: impl Read, name: &str) -> Result<Recording, RecordingError> {
-    let mut bytes = Vec::new();
-    let read = source.read_to_end(&mut bytes);
-    read.map_err(|source| RecordingError::Read { file: name.into(), source })?;
-    let text = Text { file: name, bytes: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes) };
+pub fn read_csv_from(source: impl Read, name: &str) -> Result<Recording, RecordingError> {
+    parse(&read_lines(source).map_err(|e| e.in_reading(Path::new(name)))?, name)
+}
+
+fn parse(bytes: &[u8], name: &str) -> Result<Recording, RecordingError> {
+    let text = Text { file: name, bytes: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes) };
     text.check_bytes()?;
     let mut reader = ReaderBuilder::new()
         // Ragged rows are found here, to say what to do.

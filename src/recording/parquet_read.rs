@@ -1,8 +1,8 @@
 //! Reading a recording from Parquet: the columns of a CSV file by the same names.
 
-use std::fs::File;
 use std::path::Path;
 
+use super::source::open_file;
 use super::{Channel, Recording, RecordingError, TIME_COLUMN};
 use crate::columns::decode;
 
@@ -10,7 +10,7 @@ use crate::columns::decode;
 pub(super) fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     let file = path.display().to_string();
     let refuse = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
-    let source = File::open(path).map_err(|source| RecordingError::Read { file: path.to_owned(), source })?;
+    let source = open_file(path)?;
     let mut columns = Vec::new();
     for (name, column) in decode(source).map_err(|e| refuse(unreadable(&e)))? {
         let values = column.numbers();

@@ -1,9 +1,9 @@
 //! Files that appear under their name complete or not at all.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 /// Writes a text under `path`, making its folder where it is missing. A former file of that name stays until the new
 /// one is complete.
@@ -28,12 +28,95 @@ pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {
 
 /// The same for a file that is no text.
 pub fn write_whole_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)?;
+    Staged::write(path, bytes)?.place()
+}
+
+/// A file that is written, and has no name yet: of several that belong together none gets its name before all are on
+/// the disk.
+///
+/// ```
+/// use smam::recording::Staged;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("answer.json");
+/// let staged = Staged::write(&path, b"{}")?;
+/// assert!(!path.exists());
+/// staged.place()?;
+/// assert!(path.exists());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Staged {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl Staged {
+    /// Writes what shall stand under `path`, making its folder where it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be made or written to, or there is no room.
+    pub fn write(path: &Path, bytes: &[u8]) -> io::Result<Self> {
+        if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
+            std::fs::create_dir_all(folder)?;
+        }
+        let mut file = temporary_beside(path)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        Ok(Self { file, path: path.to_owned() })
     }
-    let mut file = temporary_beside(path)?;
-    file.write_all(bytes)?;
-    put_in_place(file, path)
+
+    /// Where it will stand.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// The folder is gone, or something that is no file has that name.
+    pub fn place(self) -> io::Result<()> {
+        self.file.persist(&self.path).map_err(|e| e.error)?;
+        Ok(())
+    }
+}
+
+/// A file that somebody else writes, by its path: it has another name until it is complete. Dropped before, it is gone.
+#[derive(Debug)]
+pub struct Unfinished {
+    temporary: TempPath,
+    path: PathBuf,
+}
+
+impl Unfinished {
+    /// An empty file in the folder where `path` shall stand.
+    ///
+    /// # Errors
+    /// The folder does not exist or cannot be written to.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        Ok(Self { temporary: temporary_beside(path)?.into_temp_path(), path: path.to_owned() })
+    }
+
+    /// Where to write.
+    pub fn temporary(&self) -> &Path {
+        &self.temporary
+    }
+
+    /// Where it will stand.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// The file or its folder is gone, or it cannot be brought to the disk.
+    pub fn place(self) -> io::Result<()> {
+        std::fs::OpenOptions::new().write(true).open(&self.temporary)?.sync_all()?;
+        self.temporary.persist(&self.path).map_err(|e| e.error)
+    }
 }
 
 /// An empty file in the folder where `path` shall stand; gone when dropped.
@@ -74,5 +157,25 @@ mod tests {
         write_whole(&path, "two").unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_others_write_has_its_name_when_it_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.rrd");
+        std::fs::write(&path, "former").unwrap();
+        let dropped = Unfinished::beside(&path).unwrap();
+        std::fs::write(dropped.temporary(), "half").unwrap();
+        drop(dropped);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "former");
+        let file = Unfinished::beside(&path).unwrap();
+        std::fs::write(file.temporary(), "whole").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "former");
+        file.place().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "whole");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        let gone = Unfinished::beside(&path).unwrap();
+        std::fs::remove_file(gone.temporary()).unwrap();
+        assert_eq!(gone.place().unwrap_err().kind(), io::ErrorKind::NotFound);
     }
 }

@@ -1,7 +1,7 @@
 //! What is done of a sweep: one line per point, appended as it ends. A kill loses the points that were running.
 
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::SweepError;
 use super::plan::Plan;
 use super::point::Row;
+use crate::recording::{Held, hold_folder};
 
 /// Name of the journal in a sweep's folder.
 const NAME: &str = "journal.jsonl";
@@ -102,15 +103,13 @@ impl Journal {
 
 /// Takes a folder for this sweep alone. Where folders cannot be locked (some file systems) it goes on without.
 fn hold(folder: &Path) -> Result<Option<File>, SweepError> {
-    let Ok(held) = File::open(folder) else { return Ok(None) };
-    match held.try_lock() {
-        Err(TryLockError::WouldBlock) => Err(SweepError::Journal {
+    match hold_folder(folder) {
+        Held::Ours(held) => Ok(held),
+        Held::Taken => Err(SweepError::Journal {
             file: folder.to_owned(),
             message: "another sweep is writing here".to_owned(),
             remedy: "wait for it, or give another folder with --out".to_owned(),
         }),
-        Err(TryLockError::Error(_)) => Ok(None),
-        Ok(()) => Ok(Some(held)),
     }
 }
 

@@ -154,7 +154,7 @@ impl SweepFile {
     pub fn load(path: &Path) -> Result<Self, SweepError> {
         let syntax = |message: String| SweepError::Syntax { file: path.to_owned(), message };
         let text =
-            std::fs::read_to_string(path).map_err(|source| SweepError::Read { file: path.to_owned(), source })?;
+            crate::stock::read_text(path).map_err(|source| SweepError::Read { file: path.to_owned(), source })?;
         let mut file: Self = toml::from_str(&text).map_err(|e| match is_scene(&text) {
             true => SweepError::IsScene { file: path.to_owned() },
             false => syntax(e.to_string().trim_end().to_owned()),

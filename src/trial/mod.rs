@@ -54,7 +54,9 @@ pub enum TrialError {
 /// # Errors
 /// A scene that cannot be run, a folder that cannot be written.
 pub fn try_case(case: &TrialCase) -> Result<Row, TrialError> {
-    let folder = tempfile::tempdir().map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
+    // By this name it is known after a kill.
+    let folder = tempfile::Builder::new().prefix("smam-trial-").tempdir();
+    let folder = folder.map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
     make_specimen(&case.scene, case.effect.as_ref(), 1.0, case.seed, folder.path())?;
     let begun = std::time::Instant::now();
     let loaded = Case::load(&[folder.path()], None, &[])?;

@@ -63,7 +63,8 @@ pub fn plan(scene: &str, nulls: usize, only: Option<&str>, seed: u64) -> Result<
 
 /// Every effect at the size from which the recordings of a scene could show it; of two equal elements the first.
 fn just_visible(scene: &str, seed: u64) -> Result<Vec<Effect<f64>>, TrialError> {
-    let folder = tempfile::tempdir().map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
+    let folder = tempfile::Builder::new().prefix("smam-trial-").tempdir();
+    let folder = folder.map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
     make_specimen(scene, None, 1.0, seed, folder.path())?;
     let outcome = diagnose(Case::load(&[folder.path()], None, &[])?, Options { seed }, &|_| {})?;
     let mut least: Vec<Effect<f64>> = Vec::new();

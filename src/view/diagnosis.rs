@@ -15,7 +15,7 @@ use super::links::Links;
 use super::muscles::Muscles;
 use super::options::ViewOptions;
 use super::shape;
-use super::sink::ViewSink;
+use super::sink::{Connection, ViewSink};
 use super::viewer::{close, flush};
 use crate::mechanism::geometry::Pose;
 use crate::system::observe::{Frame, SceneGraph, SideBySide};
@@ -46,10 +46,15 @@ pub fn show_diagnosis(
     runs: &[SideBySide],
     options: &ViewOptions,
 ) -> Result<String, ViewError> {
-    let connection = sink.open()?;
-    log_diagnosis(&connection.stream, name, summary, runs, options)?;
-    close(&connection.stream)?;
-    Ok(connection.announcement)
+    let Connection { stream, announcement, file, .. } = sink.open()?;
+    if let Err(error) = log_diagnosis(&stream, name, summary, runs, options) {
+        return Err(match &file {
+            Some(file) => file.failed(&stream, error),
+            None => error,
+        });
+    }
+    close(&stream, file)?;
+    Ok(announcement)
 }
 
 pub(super) fn log_diagnosis(

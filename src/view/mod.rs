@@ -20,6 +20,7 @@ mod contacts;
 mod diagnosis;
 mod diagnosis_page;
 mod error;
+mod file;
 mod headline;
 mod layer;
 mod layout;

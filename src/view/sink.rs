@@ -7,6 +7,7 @@ use std::time::Duration;
 use rerun::{RecordingStream, RecordingStreamBuilder, ServerOptions, SpawnError, SpawnOptions};
 
 use super::error::ViewError;
+use super::file::StreamFile;
 use super::options::Pace;
 
 /// Port of Rerun viewers unless told otherwise.
@@ -20,7 +21,7 @@ const APPLICATION: &str = "smam";
 /// Where a run is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ViewSink {
-    /// Save to this `.rrd` file.
+    /// Save to this `.rrd` file, which appears when it is complete.
     File(PathBuf),
     /// Open a viewer window on this machine (or use the one that is open).
     Window,
@@ -33,6 +34,8 @@ pub(super) struct Connection {
     pub(super) stream: RecordingStream,
     pub(super) announcement: String,
     pub(super) pace: Pace,
+    /// What the stream is written to, if to a file. Last: the stream lets go of it first.
+    pub(super) file: Option<StreamFile>,
 }
 
 impl ViewSink {
@@ -51,11 +54,13 @@ fn builder() -> RecordingStreamBuilder {
 }
 
 fn open_file(path: &std::path::Path) -> Result<Connection, ViewError> {
-    let stream = builder().save(path).map_err(|error| ViewError::opening(path, error))?;
+    let file = StreamFile::beside(path)?;
+    let stream = builder().save(file.temporary()).map_err(|error| ViewError::opening(path, error))?;
     Ok(Connection {
         stream,
         announcement: format!("{0}: open it with `rerun {0}`", path.display()),
         pace: Pace::Frames(1024),
+        file: Some(file),
     })
 }
 
@@ -64,7 +69,7 @@ fn open_window() -> Result<Connection, ViewError> {
     let info = rerun::spawn(&window_options()).map_err(spawn_error)?;
     let url = proxy_url(info.port);
     let stream = builder().connect_grpc_opts(url.as_str())?;
-    Ok(Connection { stream, announcement: format!("viewer at {url}"), pace: live_pace() })
+    Ok(Connection { stream, announcement: format!("viewer at {url}"), pace: live_pace(), file: None })
 }
 
 /// The viewer listens on all interfaces unless told otherwise.
@@ -98,7 +103,8 @@ fn serve(port: u16) -> Result<Connection, ViewError> {
     let port = free_port(port)?;
     let stream = builder().serve_grpc_opts(LOOPBACK, port, ServerOptions::default())?;
     let url = proxy_url(port);
-    Ok(Connection { stream, announcement: format!("serving at {url}: open it with `rerun {url}`"), pace: live_pace() })
+    let announcement = format!("serving at {url}: open it with `rerun {url}`");
+    Ok(Connection { stream, announcement, pace: live_pace(), file: None })
 }
 
 /// Rerun binds in a thread of its own and would only log a taken port; so try it first.

@@ -145,7 +145,7 @@ fn run(stretch: usize) -> Vec<Chunk> {
 
 fn viewer(stretch: usize) -> (Viewer, MemorySinkStorage) {
     let (stream, storage) = RecordingStreamBuilder::new("smam").enabled(true).memory().unwrap();
-    let connection = Connection { stream, announcement: String::new(), pace: Pace::Frames(stretch) };
+    let connection = Connection { stream, announcement: String::new(), pace: Pace::Frames(stretch), file: None };
     (Viewer::new(connection, ViewOptions::default()), storage)
 }
 

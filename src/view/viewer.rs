@@ -9,6 +9,7 @@ use super::blueprint;
 use super::cables::Cables;
 use super::contacts::Contacts;
 use super::error::ViewError;
+use super::file::{StreamFile, abandon};
 use super::headline::{Events, Headline};
 use super::layer::{Layer, WORLD};
 use super::legend::Legend;
@@ -33,14 +34,16 @@ const FLUSH: Duration = Duration::from_secs(30);
 /// Shows a run while it goes on.
 ///
 /// Give it to a run as its [`Observer`], then call [`Viewer::finish`]. A served run stays available
-/// until the `Viewer` is dropped. Dropping without `finish` still sends what was seen, but
-/// swallows errors.
+/// until the `Viewer` is dropped. Dropping without `finish` still sends what was seen to who watches, but
+/// swallows errors; a file is then not written.
 pub struct Viewer {
     stream: RecordingStream,
     announcement: String,
     pace: Pace,
     options: ViewOptions,
     run: Option<Run>,
+    /// Last: the stream lets go of it first.
+    file: Option<StreamFile>,
 }
 
 /// What became of a run.
@@ -73,6 +76,7 @@ impl Viewer {
             announcement: connection.announcement,
             options,
             run: None,
+            file: connection.file,
         }
     }
 
@@ -81,7 +85,7 @@ impl Viewer {
         &self.announcement
     }
 
-    /// Sends the rest and waits until it has arrived; a file gets its footer and is complete.
+    /// Sends the rest and waits until it has arrived; a file gets its footer, and then its name.
     pub fn finish(&mut self) -> Result<ViewSummary, ViewError> {
         let frames = match &mut self.run {
             Some(run) => {
@@ -91,16 +95,21 @@ impl Viewer {
             }
             None => 0,
         };
-        close(&self.stream)?;
+        close(&self.stream, self.file.take())?;
         Ok(ViewSummary { frames })
     }
 }
 
-/// Waits until everything has arrived; a file gets its footer.
-pub(super) fn close(stream: &RecordingStream) -> Result<(), ViewError> {
-    flush(stream)?;
+/// Waits until everything has arrived; a file gets its footer, and then its name.
+pub(super) fn close(stream: &RecordingStream, file: Option<StreamFile>) -> Result<(), ViewError> {
+    if let Err(error) = flush(stream) {
+        return Err(match file {
+            Some(file) => file.failed(stream, error),
+            None => error,
+        });
+    }
     stream.finalize_deferred_sinks();
-    Ok(())
+    file.map_or(Ok(()), StreamFile::place)
 }
 
 /// Waits until everything sent so far has arrived.
@@ -137,9 +146,11 @@ impl Observer for Viewer {
 }
 
 impl Drop for Viewer {
-    /// A run that stopped with an error is the one whose last frames are wanted.
+    /// A run that stopped with an error is the one whose last frames are wanted. A file would look like that of a whole run.
     fn drop(&mut self) {
-        if self.run.as_ref().is_some_and(|run| !run.frames.is_empty()) {
+        if self.file.is_some() {
+            abandon(&self.stream);
+        } else if self.run.as_ref().is_some_and(|run| !run.frames.is_empty()) {
             let _ = self.finish();
         }
     }
