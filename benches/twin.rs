@@ -6,15 +6,13 @@
 use std::time::Duration;
 
 use cpu_time::ProcessTime;
+use smam::bench::TwinSpeed;
 use smam::scene::Scene;
 use smam::system::{Schedule, Twin, TwinRun, TwinSetting};
 
 const SCENES: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_catheter"];
 /// Shares of the step that the fast model chooses by itself; errors are counted from the first.
 const STEPS: [f64; 6] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
-
-/// Parameter sets of the comparison.
-const SETS: usize = 16;
 
 fn run(twin: &Twin, run: &TwinRun) -> (Option<Vec<Vec<f64>>>, Duration) {
     let begun = ProcessTime::now();
@@ -26,30 +24,6 @@ fn error_percent(reference: &[f64], series: &[f64]) -> f64 {
     let (low, high) = reference.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
     let pairs = reference[50..].iter().zip(&series[50..]);
     100.0 * pairs.map(|(r, s)| (r - s).abs()).fold(0.0, f64::max) / (high - low).max(f64::MIN_POSITIVE)
-}
-
-/// Parameter sets that differ by a per mille, as the differences of a fit do: all at once against one after the other.
-fn side_by_side(name: &str, twin: &Twin, run: &TwinRun) {
-    let Some(c1) = twin.parameter("tube_c1_pa") else { return };
-    let setting = |i: usize| TwinSetting {
-        parameters: vec![(c1.clone(), 0.255e6 * (1.0 + 1e-3 * i as f64))],
-        effects: Vec::new(),
-    };
-    let settings: Vec<_> = (0..SETS).map(setting).collect();
-    let begun = ProcessTime::now();
-    let single: Vec<_> = settings.iter().map(|s| twin.simulate(run, s)).collect();
-    let singly = begun.elapsed();
-    let begun = ProcessTime::now();
-    let many = twin.simulate_many(run, &settings);
-    let together = begun.elapsed();
-    assert!(many == single, "{name}: sets side by side differ from each by itself");
-    let speed = |took: Duration| 60.0 * SETS as f64 / took.as_secs_f64();
-    println!(
-        "{name:<20} {SETS} sets: {:.0} x real time each by itself, {:.0} side by side, ratio {:.2}",
-        speed(singly),
-        speed(together),
-        singly.as_secs_f64() / together.as_secs_f64()
-    );
 }
 
 fn main() {
@@ -73,7 +47,7 @@ fn main() {
             let speed = 60.0 / took.as_secs_f64();
             println!("{name:<20} step {:.3} ms: {speed:>6.0} x real time, error {worst:.4} %", 1e3 * twin.step_s);
         }
-        twin.step_s = chosen_s;
-        side_by_side(name, &twin, &drive);
+        let TwinSpeed { singly, side_by_side, .. } = TwinSpeed::of(name, 3).unwrap_or_else(|e| panic!("{e}"));
+        println!("{name:<20} sets one by one {singly:.0} x real time, side by side {side_by_side:.0}");
     }
 }

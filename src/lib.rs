@@ -22,6 +22,7 @@
 //! ```
 
 pub mod bag;
+pub mod bench;
 pub mod columns;
 pub mod conceal;
 pub mod diagnose;

@@ -29,6 +29,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sweep", &["columns", "mechanism", "muscle", "recording", "scene", "stock", "system"]),
     ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
+    ("bench", &["recording", "scene", "stock", "system"]),
     (
         "reproduce",
         &["effects", "feedforward", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"],
@@ -38,6 +39,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "bench",
             "conceal",
             "diagnose",
             "effects",

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use smam::bench::BenchError;
 use smam::conceal::ConcealError;
 use smam::diagnose::DiagnoseError;
 use smam::identify::IdentifyError;
@@ -38,6 +39,8 @@ pub enum CliError {
     Conceal(#[from] ConcealError),
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
+    #[error(transparent)]
+    Bench(#[from] BenchError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]

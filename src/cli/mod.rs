@@ -7,6 +7,7 @@ macro_rules! say {
 }
 
 mod angles;
+mod bench;
 mod ceiling;
 mod check;
 mod compare;
@@ -91,6 +92,8 @@ enum Command {
     Feedforward(feedforward::FeedforwardArguments),
     /// Make the paper's figures again, each printed number beside ours
     Reproduce(reproduce::ReproduceArguments),
+    /// Measure what simulating costs
+    Bench(bench::BenchArguments),
     /// Generate a model file
     Model(model::ModelArguments),
     /// Print a script that completes commands and options in a shell
@@ -131,6 +134,7 @@ fn run_command() -> Result<ExitCode, CliError> {
             say!("{}", first_words());
             Ok(ExitCode::SUCCESS)
         }
+        Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),

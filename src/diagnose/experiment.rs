@@ -67,24 +67,25 @@ pub fn confirm<'a>(
 }
 
 /// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are. A minute long, or longer where a minute would not do.
+/// greatest, counted with the recordings that there are. A minute long, or longer where that settles what a minute would not.
 ///
 /// # Errors
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
     let known = Known::of(whole, best, open);
     let apart = |run: &CaseRun| known.as_ref()?.least_separation(whole, best, open, run);
-    let mut proposed = propose(whole, best, (ALL, DURATION_S), true, apart)?;
+    let minute = propose(whole, best, (ALL, DURATION_S), true, apart)?;
+    if minute.next.separation_sigma > SETTLES {
+        return Ok(minute);
+    }
     for duration_s in LONGER_S {
-        if proposed.next.separation_sigma > SETTLES {
-            break;
-        }
         let longer = propose(whole, best, (ALL, duration_s), true, apart)?;
-        if longer.next.separation_sigma > proposed.next.separation_sigma {
-            proposed = longer;
+        if longer.next.separation_sigma > SETTLES {
+            return Ok(longer);
         }
     }
-    Ok(proposed)
+    // What would not do either is not worth the time.
+    Ok(minute)
 }
 
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.

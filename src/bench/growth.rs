@@ -1,0 +1,149 @@
+//! How cost grows with a scene's parts: a power law through what is measured.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::{BenchError, cpu_time, made, median_cpu_s};
+use crate::recording::figures::line_of_best_fit;
+use crate::scene::{Override, Scene};
+use crate::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting};
+
+/// One kind of part, in growing numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    pub part: &'static str,
+    /// What the cost is taken of.
+    pub of: &'static str,
+    /// Exponent that a count of operations gives for many parts.
+    pub expected: f64,
+    pub reason: &'static str,
+    /// Number of parts, and CPU time, s.
+    pub costs: Vec<(f64, f64)>,
+}
+
+impl Growth {
+    /// Exponent of the power law through the upper half, where what does not grow weighs least.
+    pub fn exponent(&self) -> f64 {
+        let upper = &self.costs[self.costs.len() / 2 - usize::from(self.costs.len() > 3)..];
+        let (n, t): (Vec<f64>, Vec<f64>) = upper.iter().map(|(n, t)| (n.ln(), t.ln())).unzip();
+        line_of_best_fit(&n, &t).slope
+    }
+}
+
+/// Measures every kind of part; scenes that are made for it go to `folder`.
+///
+/// # Errors
+/// Files that cannot be written, runs that diverge.
+pub fn grow(folder: &Path, times: usize) -> Result<Vec<Growth>, BenchError> {
+    let engine = |counts: &[usize], scene: &dyn Fn(usize) -> Result<Scene, BenchError>| {
+        let cost = |&n: &usize| Ok((n as f64, run_s(&scene(n)?, times)?));
+        counts.iter().map(cost).collect::<Result<Vec<_>, BenchError>>()
+    };
+    Ok(vec![
+        Growth {
+            part: "segments of the line",
+            of: "a second of the bench",
+            expected: 1.0,
+            reason: "a tridiagonal system",
+            costs: engine(&[1, 4, 16, 64, 128], &|n| bench_with_segments(n))?,
+        },
+        Growth {
+            part: "hinges",
+            of: "a second of a bending tube",
+            expected: 3.0,
+            reason: "a factorisation of the inertia matrix in each step",
+            costs: engine(&[8, 16, 32, 64], &|n| made::hinges(folder, n))?,
+        },
+        Growth {
+            part: "muscles",
+            of: "a second of muscles side by side",
+            expected: 3.0,
+            reason: "the same, of one slider each",
+            costs: engine(&[2, 4, 8, 16], &|n| made::muscles(folder, n))?,
+        },
+        Growth {
+            part: "samples",
+            of: "a run of the fast bench",
+            expected: 1.0,
+            reason: "one after the other",
+            costs: [1_000, 4_000, 16_000]
+                .iter()
+                .map(|&n| Ok((n as f64, samples_s(n, times)?)))
+                .collect::<Result<_, BenchError>>()?,
+        },
+        Growth {
+            part: "parameter sets",
+            of: "runs of the fast bench side by side",
+            expected: 1.0,
+            reason: "eight at a time",
+            costs: [8, 32, 128]
+                .iter()
+                .map(|&n| Ok((n as f64, sets_s(n, times)?)))
+                .collect::<Result<_, BenchError>>()?,
+        },
+    ])
+}
+
+/// CPU time of one simulated second.
+fn run_s(scene: &Scene, times: usize) -> Result<f64, BenchError> {
+    let mut runs: Vec<Duration> = Vec::with_capacity(times);
+    for _ in 0..times.max(1) {
+        let mut simulation = Simulation::new(scene.clone())?;
+        let (done, took) = cpu_time(|| simulation.advance_to(1.0));
+        done?;
+        runs.push(took);
+    }
+    let mut runs = runs.into_iter();
+    Ok(median_cpu_s(times, || runs.next().unwrap_or_default()))
+}
+
+fn bench_with_segments(segments: usize) -> Result<Scene, BenchError> {
+    let segments = Override { key: "hydraulics.line.segments".to_owned(), value: (segments as i64).into() };
+    let compliance = Override::number("hydraulics.line.compliance_m3_pa", 1e-15);
+    Ok(Scene::load("muscle_bench", &[segments, compliance])?)
+}
+
+fn fast_bench(samples: usize) -> Result<(Twin, TwinRun), BenchError> {
+    let scene = Scene::load("muscle_bench", &[])?;
+    let times_s = Schedule::even(0.01 * samples as f64, 0.01).0;
+    let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
+    Ok((Twin::new(&scene)?, TwinRun { times_s, inputs, plan: None }))
+}
+
+fn samples_s(samples: usize, times: usize) -> Result<f64, BenchError> {
+    let (twin, run) = fast_bench(samples)?;
+    let setting = TwinSetting::<f64>::default();
+    Ok(median_cpu_s(times, || cpu_time(|| twin.simulate(&run, &setting)).1))
+}
+
+fn sets_s(count: usize, times: usize) -> Result<f64, BenchError> {
+    let (twin, run) = fast_bench(1_000)?;
+    let c1 = twin.parameter("tube_c1_pa");
+    let set = |i: usize| TwinSetting {
+        parameters: c1.iter().map(|c1| (c1.clone(), 0.255e6 * (1.0 + 1e-4 * i as f64))).collect(),
+        effects: Vec::new(),
+    };
+    let sets: Vec<TwinSetting<f64>> = (0..count).map(set).collect();
+    Ok(median_cpu_s(times, || cpu_time(|| twin.simulate_many(&run, &sets)).1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponent_is_that_of_many_parts() {
+        let costs = [8.0, 16.0, 32.0, 64.0].map(|n: f64| (n, 1e-5 + 1e-6 * n * n)).to_vec();
+        let growth = Growth { part: "", of: "", expected: 2.0, reason: "", costs };
+        assert!((1.9..2.0).contains(&growth.exponent()), "{}", growth.exponent());
+    }
+
+    #[test]
+    fn made_scenes_run() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for scene in [made::hinges(folder.path(), 8), made::muscles(folder.path(), 2), bench_with_segments(4)] {
+            let mut simulation = Simulation::new(scene.expect("a valid scene")).expect("it can be built");
+            simulation.advance_to(0.2).expect("it runs");
+        }
+    }
+}

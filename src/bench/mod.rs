@@ -1,0 +1,48 @@
+//! What simulating costs: the stock scenes, the fast model, and how cost grows with a scene's parts.
+//!
+//! Times are CPU times of this process, medians of several runs, so that another program on the machine changes them
+//! little. Figures and what they mean: `docs/performance.md`.
+
+mod growth;
+mod made;
+mod scenes;
+mod twin;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use cpu_time::ProcessTime;
+
+use crate::scene::SceneError;
+use crate::system::SystemError;
+
+pub use growth::{Growth, grow};
+pub use scenes::{CASES, SceneCase, SceneSpeed, worst_errors};
+pub use twin::{TWINS, TwinSpeed};
+
+/// What can keep a figure from being taken.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    System(#[from] SystemError),
+    #[error("{}: cannot be read: {source}", file.display())]
+    Read { file: PathBuf, source: std::io::Error },
+    #[error("{}: cannot be written: {source}\n  remedy: set TMPDIR to a folder that can be written to", file.display())]
+    Write { file: PathBuf, source: std::io::Error },
+}
+
+/// CPU time of one call.
+fn cpu_time<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let begun = ProcessTime::now();
+    let done = work();
+    (done, begun.elapsed())
+}
+
+/// Median of the CPU times of several calls, s.
+fn median_cpu_s(times: usize, mut work: impl FnMut() -> Duration) -> f64 {
+    let mut seconds: Vec<f64> = (0..times.max(1)).map(|_| work().as_secs_f64()).collect();
+    seconds.sort_by(f64::total_cmp);
+    seconds[seconds.len() / 2]
+}
