@@ -7,14 +7,18 @@ use urdf_rs::Robot;
 use super::error::MechanismError;
 use super::xml_scan::{XmlScan, scan};
 
-/// The parsed URDF and what its reader dropped.
-pub(super) fn read(file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
-    let text = crate::stock::read_text(file).map_err(|error| MechanismError::Read {
+/// The text of a URDF file.
+pub(super) fn text(file: &Path) -> Result<String, MechanismError> {
+    crate::stock::read_text(file).map_err(|error| MechanismError::Read {
         file: file.to_path_buf(),
         reason: error.to_string(),
         remedy: "check `urdf` in the scene; it is relative to the scene file".into(),
-    })?;
-    let robot = urdf_rs::read_from_string(&text)
+    })
+}
+
+/// The parsed URDF and what its reader dropped; `file` is where the text stands.
+pub(super) fn parse(text: &str, file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
+    let robot = urdf_rs::read_from_string(text)
         .map_err(|error| MechanismError::Parse { file: file.to_path_buf(), reason: error.to_string() })?;
-    Ok((robot, scan(&text)))
+    Ok((robot, scan(text)))
 }
