@@ -510,6 +510,32 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     }
 }
 
+/// A reader that calls itself for each would run out of stack.
+#[test]
+fn elements_too_deep_in_each_other_are_refused() {
+    let urdf = format!("<robot name=\"r\">{}{}</robot>", "<link>".repeat(200_000), "</link>".repeat(200_000));
+    let message = load_urdf(&urdf, "").err().unwrap().to_string();
+    assert!(message.contains("stand 200001 deep in each other, which is more than 100\n  remedy: "), "{message}");
+}
+
+/// Each multiplier is finite, what the third joint makes of the first one's position is not.
+#[test]
+fn followers_of_followers_must_multiply_to_a_number() {
+    let follows = |leader: &str| format!("<mimic joint=\"{leader}\" multiplier=\"1e200\"/>");
+    let urdf = format!(
+        "<robot name=\"r\"><link name=\"base\"/>{}{}{}{}{}{}</robot>",
+        rod("a", 1e-3, 1e-3, 1e-8),
+        rod("b", 1e-3, 1e-3, 1e-8),
+        rod("c", 1e-3, 1e-3, 1e-8),
+        joint("j1", "revolute", ["base", "a"], 0.0, ""),
+        joint("j2", "revolute", ["a", "b"], 0.0, &follows("j1")),
+        joint("j3", "revolute", ["b", "c"], 0.0, &follows("j2")),
+    );
+    let message = load_urdf(&urdf, "").err().unwrap().to_string();
+    assert!(message.contains("joint \"j3\": follows others with multiplier = inf"), "{message}");
+    assert!(load_urdf(&urdf.replace("1e200", "1.5"), "").is_ok());
+}
+
 #[test]
 fn loops_are_refused() {
     let urdf = format!(

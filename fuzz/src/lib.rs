@@ -89,7 +89,11 @@ pub fn urdf(bytes: &[u8]) {
     let plain = MechanismSpec { contact: None, ..spec.clone() };
     for spec in [spec, plain] {
         match Mechanism::parse(&text, &Path::new(FOLDER).join("fuzz.urdf"), &spec) {
-            Ok(mechanism) => assert!(!mechanism.link_names().is_empty()),
+            Ok(mut mechanism) => {
+                let count = mechanism.coordinates().len();
+                mechanism.advance(1e-3, &vec![0.1; count], &mut vec![0.0; count]);
+                assert_eq!(mechanism.link_poses().len(), mechanism.link_names().len());
+            }
             Err(e) => check_words(&e.to_string(), "remedy: "),
         }
     }

@@ -170,6 +170,11 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
             offset: whole.multiplier * offset + whole.offset,
             multiplier: whole.multiplier * multiplier,
         };
+        // Followers of followers: numbers that are finite each can multiply to none.
+        if !whole.multiplier.is_finite() || whole.multiplier == 0.0 || !whole.offset.is_finite() {
+            let problem = format!("follows others with multiplier = {}, offset = {}", whole.multiplier, whole.offset);
+            return Err(error(problem, "give multipliers near 1"));
+        }
     }
     Err(error("mimics itself through others".into(), "cut the circle"))
 }
