@@ -20,13 +20,12 @@ const SLOWEST: Duration = Duration::from_secs(60);
 #[cfg(target_os = "linux")]
 const MOST_BYTES: u64 = 1 << 30;
 
-/// How many inputs are made of a target's corpus: about as many as take five seconds.
+/// How many inputs are made of a target's corpus: together a few seconds' work.
 fn made(target: &str) -> usize {
     match target {
-        "scene_built" => 100,
-        "urdf" | "scene_toml" => 1000,
-        "parquet" => 500,
-        _ => 3000,
+        "scene_built" => 200,
+        "urdf" | "parquet" => 2000,
+        _ => 5000,
     }
 }
 

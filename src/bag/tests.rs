@@ -145,11 +145,12 @@ fn a_chunk_that_would_fill_the_memory_is_refused() {
         uncompressed_size: (1 << 28) + 1,
         uncompressed_crc: 0,
         compression: "zstd".to_owned(),
+        compressed_size: 0,
     };
     let said = unpack(&header, &[]).unwrap_err();
     assert!(said.starts_with("a chunk of 268435457 bytes is more than the 268435456 that are read; record"), "{said}");
     header.uncompressed_size = 0;
-    assert_eq!(unpack(&header, &[]).unwrap(), []);
+    assert!(unpack(&header, &[]).unwrap().is_empty());
 }
 
 #[test]
