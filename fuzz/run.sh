@@ -14,7 +14,7 @@ target=$1 runs=$2
 shift 2
 
 case $target in
-scene_*) length=6144 dictionary=scene ;;
+scene_*) length=8192 dictionary=scene ;;
 bag | parquet) length=4096 dictionary=$target ;;
 *) length=2048 dictionary=$target ;;
 esac

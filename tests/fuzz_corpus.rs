@@ -83,9 +83,9 @@ fn hold(target: &str) {
     let (begun, watched) = channel();
     let count = made(target);
     let worker = thread::spawn(move || feed(read, &corpus, count, &begun));
-    let last = watch(&watched);
-    let done = if last.1 { worker.join().is_ok() } else { false };
-    assert!(done, "{target}: the reader panicked or took more than {SLOWEST:?}; the input:\n{}", last.0.escape_ascii());
+    let (last, has_ended) = watch(&watched);
+    let done = has_ended && worker.join().is_ok();
+    assert!(done, "{target}: the reader panicked or took more than {SLOWEST:?}; the input:\n{}", last.escape_ascii());
     check_memory(target);
 }
 
