@@ -14,7 +14,7 @@ cargo fmt --check
 
 say "lints"
 if command -v shellcheck >/dev/null; then
-    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh docs/*.sh docs/examples/*.sh proof/*.sh
+    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh docs/*.sh docs/examples/*.sh proof/*.sh fuzz/*.sh
 else
     echo "skipped: shellcheck is not installed"
 fi

@@ -510,6 +510,49 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     }
 }
 
+/// A reader that calls itself for each would run out of stack.
+#[test]
+fn elements_too_deep_in_each_other_are_refused() {
+    let urdf = format!("<robot name=\"r\">{}{}</robot>", "<link>".repeat(200_000), "</link>".repeat(200_000));
+    let message = load_urdf(&urdf, "").err().unwrap().to_string();
+    assert!(message.contains("stand 200001 deep in each other, which is more than 100\n  remedy: "), "{message}");
+}
+
+/// As large as a scan of somebody's whole laboratory: refused at once instead of after minutes.
+#[test]
+fn more_joints_than_can_be_simulated_are_refused() {
+    let chain: String = (0..1001)
+        .map(|i| {
+            let [parent, child] = [format!("l{i}"), format!("l{}", i + 1)];
+            rod(&child, 1e-3, 1e-3, 1e-8) + &joint(&format!("j{i}"), "revolute", [&parent, &child], 0.0, "")
+        })
+        .collect();
+    let urdf = format!("<robot name=\"r\"><link name=\"l0\"/>{chain}</robot>");
+    let message = load_urdf(&urdf, "").err().unwrap().to_string();
+    assert!(
+        message.contains("robot \"r\": has 1001 joints that move, which is more than 1000\n  remedy: "),
+        "{message}"
+    );
+}
+
+/// Each multiplier is finite, what the third joint makes of the first one's position is not.
+#[test]
+fn followers_of_followers_must_multiply_to_a_number() {
+    let follows = |leader: &str| format!("<mimic joint=\"{leader}\" multiplier=\"1e200\"/>");
+    let urdf = format!(
+        "<robot name=\"r\"><link name=\"base\"/>{}{}{}{}{}{}</robot>",
+        rod("a", 1e-3, 1e-3, 1e-8),
+        rod("b", 1e-3, 1e-3, 1e-8),
+        rod("c", 1e-3, 1e-3, 1e-8),
+        joint("j1", "revolute", ["base", "a"], 0.0, ""),
+        joint("j2", "revolute", ["a", "b"], 0.0, &follows("j1")),
+        joint("j3", "revolute", ["b", "c"], 0.0, &follows("j2")),
+    );
+    let message = load_urdf(&urdf, "").err().unwrap().to_string();
+    assert!(message.contains("joint \"j3\": follows others with multiplier = inf"), "{message}");
+    assert!(load_urdf(&urdf.replace("1e200", "1.5"), "").is_ok());
+}
+
 #[test]
 fn loops_are_refused() {
     let urdf = format!(

@@ -25,6 +25,15 @@ fn a_run_that_pandas_wrote_is_a_run_of_recordings_toml() {
     assert!(run.notes[0].contains("count_ratio"), "{:?}", run.notes);
 }
 
+/// Found by fuzzing: the pandas file with some bytes changed, on which the library that reads Parquet panics.
+#[test]
+fn a_file_damaged_inside_is_refused() {
+    let damaged = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/recordings/damaged_inside.parquet");
+    let said = read_recording(Path::new(damaged)).expect_err("damaged").to_string();
+    assert!(said.starts_with(damaged) && said.contains("cannot be read as Parquet: "), "{said}");
+    assert!(said.contains("\n  remedy: write the file again"), "{said}");
+}
+
 /// The same recording drives the same run, whichever way it is written.
 #[test]
 fn parquet_and_csv_drive_the_same_run() {

@@ -3,12 +3,17 @@
 /// What stands before a message: two bytes that say how it is encoded, two that say nothing.
 const ENCAPSULATION_BYTES: usize = 4;
 
+/// Texts and messages within one message: each takes many times the memory that it has bytes. A robot's state has hundreds.
+pub(super) const MOST_PARTS: usize = 1_000_000;
+
 /// Reads aligned values from a message. Nothing is taken that is not there.
 pub(super) struct Cdr<'a> {
     /// What follows the encapsulation header; values are aligned from here.
     bytes: &'a [u8],
     at: usize,
     is_little: bool,
+    /// Texts and messages so far.
+    parts: usize,
 }
 
 impl<'a> Cdr<'a> {
@@ -24,12 +29,23 @@ impl<'a> Cdr<'a> {
             }
             _ => return Err("it ends before its encapsulation header".to_owned()),
         };
-        Ok(Self { bytes: &message[ENCAPSULATION_BYTES..], at: 0, is_little })
+        Ok(Self { bytes: &message[ENCAPSULATION_BYTES..], at: 0, is_little, parts: 0 })
     }
 
     /// Bytes not read yet.
     pub(super) fn remaining(&self) -> usize {
         self.bytes.len() - self.at
+    }
+
+    /// Counts a text or a message within the message.
+    pub(super) fn count_part(&mut self) -> Result<(), String> {
+        self.parts += 1;
+        if self.parts > MOST_PARTS {
+            return Err(format!(
+                "it holds more than {MOST_PARTS} texts and messages; record what is measured on a topic of its own"
+            ));
+        }
+        Ok(())
     }
 
     /// The next `N` bytes as they stand in a little-endian message, aligned to `N`.

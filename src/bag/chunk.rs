@@ -5,7 +5,7 @@ use std::io::Read;
 use mcap::records::ChunkHeader;
 
 /// No chunk may be larger than this when unpacked; recorders write chunks of a few megabytes.
-const LARGEST_CHUNK_BYTES: u64 = 1 << 30;
+const LARGEST_CHUNK_BYTES: u64 = 1 << 28;
 
 /// The records of a chunk.
 pub(super) fn unpack(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, String> {

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use mcap::WriteOptions;
-use mcap::records::MessageHeader;
+use mcap::records::{ChunkHeader, MessageHeader};
 
-use super::cdr::CdrWriter;
+use super::cdr::{CdrWriter, MOST_PARTS};
+use super::chunk::unpack;
 use super::*;
 
 const STAMPED: &str = "std_msgs/Header header\nstring[] name\nfloat64[] position\nPart[] parts\nint16 count\n===\n\
@@ -15,8 +16,13 @@ const STAMPED: &str = "std_msgs/Header header\nstring[] name\nfloat64[] position
 
 /// A bag with one topic `/lab` of the type above: times (ns) and messages.
 fn bag(messages: &[(u64, Vec<u8>)]) -> Vec<u8> {
+    bag_of(STAMPED, messages)
+}
+
+/// The same with another type.
+fn bag_of(definition: &str, messages: &[(u64, Vec<u8>)]) -> Vec<u8> {
     let mut file = WriteOptions::new().compression(None).create(Cursor::new(Vec::new())).unwrap();
-    let schema = file.add_schema("lab_msgs/msg/State", "ros2msg", STAMPED.as_bytes()).unwrap();
+    let schema = file.add_schema("lab_msgs/msg/State", "ros2msg", definition.as_bytes()).unwrap();
     let channel_id = file.add_channel(schema, "/lab", "cdr", &BTreeMap::new()).unwrap();
     for (time_ns, data) in messages {
         let header = MessageHeader { channel_id, sequence: 0, log_time: *time_ns, publish_time: *time_ns };
@@ -96,6 +102,55 @@ fn clocks_that_do_not_go_together_are_refused() {
     let out_of_order = bag(&[(6_000_000_000, state(6, &["a"], &[2.0])), (5_000_000_000, state(5, &["a"], &[1.0]))]);
     let found = take(&out_of_order, "position", Some("a"), Clock::Log).unwrap();
     assert_eq!(found, [(0.0, 1.0), (1.0, 2.0)]);
+}
+
+/// A lab's own stamp may be of numbers that hold anything.
+#[test]
+fn a_stamp_beyond_all_clocks_is_another_clock() {
+    let definition = "Head header\nint16 count\n===\nMSG: lab_msgs/Head\nStamp stamp\n===\n\
+                      MSG: lab_msgs/Stamp\nfloat64 sec\nfloat64 nanosec\n";
+    for sec in [1e300, -1e300, f64::INFINITY] {
+        let mut message = CdrWriter::new();
+        message.put(sec.to_le_bytes());
+        message.put(1e300f64.to_le_bytes());
+        message.put(7i16.to_le_bytes());
+        let bytes = bag_of(definition, &[(5, message.finish())]);
+        let said = take(&bytes, "count", None, Clock::Stamp).unwrap_err();
+        assert!(said.contains("s off the time of recording"), "{sec}: {said}");
+    }
+}
+
+/// A text of no letters has four bytes in the message, and many times that once it is read.
+#[test]
+fn a_message_of_too_many_parts_is_refused() {
+    let texts = |count: usize| {
+        let mut message = CdrWriter::new();
+        message.length(count);
+        (0..count).for_each(|_| message.length(0));
+        message.put(7i16.to_le_bytes());
+        let bytes = bag_of("string[] notes\nint16 count\n", &[(5, message.finish())]);
+        take(&bytes, "count", None, Clock::Log)
+    };
+    assert_eq!(texts(1000).unwrap(), [(0.0, 7.0)]);
+    let said = texts(MOST_PARTS + 1).unwrap_err();
+    assert!(said.starts_with("topic /lab, message 1: it holds more than 1000000 texts and messages; record"), "{said}");
+}
+
+/// A few kilobytes of zstd unpack to a gigabyte of zeros.
+#[test]
+fn a_chunk_that_would_fill_the_memory_is_refused() {
+    let mut header = ChunkHeader {
+        message_start_time: 0,
+        message_end_time: 0,
+        uncompressed_size: (1 << 28) + 1,
+        uncompressed_crc: 0,
+        compression: "zstd".to_owned(),
+        compressed_size: 0,
+    };
+    let said = unpack(&header, &[]).unwrap_err();
+    assert!(said.starts_with("a chunk of 268435457 bytes is more than the 268435456 that are read; record"), "{said}");
+    header.uncompressed_size = 0;
+    assert!(unpack(&header, &[]).unwrap().is_empty());
 }
 
 #[test]

@@ -91,4 +91,14 @@ mod tests {
         assert!(numbers[0] == 1.0 / 3.0 && numbers[1].is_nan());
         assert!(written(b"PAR1 and then nothing").is_err());
     }
+
+    /// A million equal numbers take a few hundred bytes: so could any number of them, until the memory is full.
+    #[test]
+    fn more_rows_than_a_recording_can_have_in_so_few_bytes_are_refused() {
+        let equal =
+            |count: usize| written(&encode(&[("x".to_owned(), Column::Numbers(vec![1.0; count]))]).expect("encoded"));
+        assert_eq!(equal(1000).expect("read")[0].1.len(), 1000);
+        let said = equal(1_000_000).expect_err("too many");
+        assert!(said.starts_with("it claims more than "), "{said}");
+    }
 }

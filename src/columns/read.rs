@@ -1,6 +1,7 @@
 //! Parquet to columns.
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -8,16 +9,35 @@ use parquet::record::Field;
 
 use super::{Column, NamedColumn};
 
+/// So many rows may stand in a byte: a run of equal or of evenly increasing numbers takes next to none.
+const DENSEST_ROWS_PER_BYTE: u64 = 100;
+
 /// The columns of a Parquet file: numbers of any width, and texts. Uncompressed, or compressed by Snappy.
 ///
 /// # Errors
-/// No Parquet file, another compression, columns that are neither numbers nor texts.
+/// No Parquet file, another compression, columns that are neither numbers nor texts, a damaged file.
 pub fn decode(file: File) -> Result<Vec<NamedColumn>, String> {
+    // On some damaged files the library panics instead of saying so.
+    let read = catch_unwind(AssertUnwindSafe(|| table(file)));
+    read.unwrap_or_else(|_| Err("it is damaged inside".to_owned()))
+}
+
+fn table(file: File) -> Result<Vec<NamedColumn>, String> {
+    let file_bytes = file.metadata().map_err(|e| e.to_string())?.len();
     let reader = SerializedFileReader::new(file).map_err(|e| said(&e))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    let names: Vec<String> = schema.root_schema().get_fields().iter().map(|f| f.name().to_owned()).collect();
+    let fields = schema.root_schema().get_fields();
+    if let Some(nested) = fields.iter().find(|f| f.is_group()) {
+        let name = nested.name();
+        return Err(format!("column \"{name}\" holds lists or records\n  remedy: leave the column out"));
+    }
+    let names: Vec<String> = fields.iter().map(|f| f.name().to_owned()).collect();
     let mut cells: Vec<Vec<Field>> = vec![Vec::new(); names.len()];
-    for row in reader.get_row_iter(None).map_err(|e| said(&e))? {
+    let most_rows = file_bytes.saturating_mul(DENSEST_ROWS_PER_BYTE);
+    for (index, row) in (0u64..).zip(reader.get_row_iter(None).map_err(|e| said(&e))?) {
+        if index >= most_rows {
+            return Err(format!("it claims more than {most_rows} rows in {file_bytes} bytes"));
+        }
         let row = row.map_err(|e| said(&e))?;
         for (column, (_, field)) in cells.iter_mut().zip(row.get_column_iter()) {
             column.push(field.clone());

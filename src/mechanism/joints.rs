@@ -39,6 +39,9 @@ pub(super) struct JointModel {
     pub mimic: Option<Mimic>,
 }
 
+/// Time goes with the cube of their number: with so many, a step takes seconds.
+const MOST_MOVING: usize = 1000;
+
 /// All joints in the URDF's order.
 pub(super) fn resolve(
     file: &Path,
@@ -59,6 +62,12 @@ pub(super) fn resolve(
         }
     }
     attach_mimics(file, robot, &mut joints)?;
+    let moving = joints.iter().filter(|j| j.moves).count();
+    if moving > MOST_MOVING {
+        let problem = format!("has {moving} joints that move, which is more than {MOST_MOVING}");
+        let remedy = "make those that matter little `type=\"fixed\"`, or simulate a part of it";
+        return Err(MechanismError::urdf(file, "robot", &robot.name, problem, remedy));
+    }
     Ok(joints)
 }
 
@@ -170,6 +179,11 @@ fn final_leader(file: &Path, robot: &Robot, follower: usize) -> Result<Mimic, Me
             offset: whole.multiplier * offset + whole.offset,
             multiplier: whole.multiplier * multiplier,
         };
+        // Followers of followers: numbers that are finite each can multiply to none.
+        if !whole.multiplier.is_finite() || whole.multiplier == 0.0 || !whole.offset.is_finite() {
+            let problem = format!("follows others with multiplier = {}, offset = {}", whole.multiplier, whole.offset);
+            return Err(error(problem, "give multipliers near 1"));
+        }
     }
     Err(error("mimics itself through others".into(), "cut the circle"))
 }

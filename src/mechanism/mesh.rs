@@ -28,14 +28,16 @@ pub(super) fn read(urdf: &Path, name: &str, scale: [f64; 3]) -> Result<Shape, Me
     let bytes = stock::read(&file).map_err(|e| fault(e.to_string(), wanted))?;
     let found = if ending == "obj" { obj(&bytes) } else { stl::read(&bytes) };
     let found = found.map_err(|reason| fault(reason, convert))?;
-    if !found.vertices.iter().chain([&scale]).flatten().all(|v| v.is_finite()) {
+    let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
+    let vertices_m: Vec<[f64; 3]> = found.vertices.iter().map(scaled).collect();
+    // Finite numbers can multiply to one that is not.
+    if !vertices_m.iter().flatten().all(|v| v.is_finite()) {
         return Err(fault(
             "a vertex or the scale is not finite".to_owned(),
             "write finite vertices, in m, and a finite scale",
         ));
     }
-    let scaled = |v: &[f64; 3]| [v[0] * scale[0], v[1] * scale[1], v[2] * scale[2]];
-    Ok(Shape::Mesh { vertices_m: found.vertices.iter().map(scaled).collect(), triangles: found.triangles })
+    Ok(Shape::Mesh { vertices_m, triangles: found.triangles })
 }
 
 /// All triangles of a Wavefront file; its materials are not looked at.
@@ -81,6 +83,14 @@ mod tests {
         // The square is cut in two.
         assert_eq!(triangles.len(), 6);
         assert!(vertices_m.iter().flatten().all(|x| (0.0..=0.001 + 1e-12).contains(x)));
+    }
+
+    #[test]
+    fn a_scale_that_leads_beyond_all_numbers_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("p.obj"), PYRAMID.replace("0.5 1", "0.5 1e30")).expect("written");
+        let fault = read(&folder.path().join("r.urdf"), "p.obj", [1.0, 1.0, 1e300]).expect_err("too large");
+        assert!(fault.reason.contains("not finite"), "{fault:?}");
     }
 
     #[test]

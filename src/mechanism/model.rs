@@ -99,18 +99,26 @@ impl Mechanism {
     /// no meaning here.
     pub fn load(spec: &MechanismSpec, base_dir: &Path) -> Result<Self, MechanismError> {
         let file = crate::stock::join(base_dir, &spec.urdf);
-        let (robot, mut scan) = urdf_file::read(&file)?;
+        Self::parse(&urdf_file::text(&file)?, &file, spec)
+    }
+
+    /// The same from the text of the URDF; `file` is where it stands: meshes are looked for from there.
+    ///
+    /// # Errors
+    /// As [`Mechanism::load`].
+    pub fn parse(urdf: &str, file: &Path, spec: &MechanismSpec) -> Result<Self, MechanismError> {
+        let (robot, mut scan) = urdf_file::parse(urdf, file)?;
         check_spec(spec)?;
         let mut remarks = std::mem::take(&mut scan.remarks);
-        let tree = Tree::new(&file, &robot)?;
-        let joints = joints::resolve(&file, &robot, &spec.joint, &mut remarks)?;
+        let tree = Tree::new(file, &robot)?;
+        let joints = joints::resolve(file, &robot, &spec.joint, &mut remarks)?;
         let (coordinates, shares) = reduce(&joints)?;
-        let source = Source { file: &file, robot: &robot, scan: &scan, tree: &tree, joints: &joints, spec };
+        let source = Source { file, robot: &robot, scan: &scan, tree: &tree, joints: &joints, spec };
         let assembly = source.assemble(&mut remarks)?;
-        let mut visuals = shapes::visuals(&file, &robot, &mut remarks)?;
+        let mut visuals = shapes::visuals(file, &robot, &mut remarks)?;
         let mut built = world::build(&assembly, &joints, &shares, spec.gravity_m_s2);
         if let Some(contact) = &spec.contact {
-            built.add_contacts(&file, &robot, &assembly, contact)?;
+            built.add_contacts(file, &robot, &assembly, contact)?;
         }
         let mut link_names: Vec<String> = robot.links.iter().map(|l| l.name.clone()).collect();
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
@@ -125,7 +133,7 @@ impl Mechanism {
             ..Self::new(built, joints, coordinates, shares)
         };
         mechanism.refresh_mass();
-        mechanism.check_mass(&file)?;
+        mechanism.check_mass(file)?;
         Ok(mechanism)
     }
 

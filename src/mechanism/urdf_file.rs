@@ -5,16 +5,27 @@ use std::path::Path;
 use urdf_rs::Robot;
 
 use super::error::MechanismError;
-use super::xml_scan::{XmlScan, scan};
+use super::xml_scan::{XmlScan, depth, scan};
 
-/// The parsed URDF and what its reader dropped.
-pub(super) fn read(file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
-    let text = crate::stock::read_text(file).map_err(|error| MechanismError::Read {
+/// Elements within elements; a URDF has five levels. The reader calls itself for each, and would run out of stack.
+const DEEPEST: usize = 100;
+
+/// The text of a URDF file.
+pub(super) fn text(file: &Path) -> Result<String, MechanismError> {
+    crate::stock::read_text(file).map_err(|error| MechanismError::Read {
         file: file.to_path_buf(),
         reason: error.to_string(),
         remedy: "check `urdf` in the scene; it is relative to the scene file".into(),
-    })?;
-    let robot = urdf_rs::read_from_string(&text)
-        .map_err(|error| MechanismError::Parse { file: file.to_path_buf(), reason: error.to_string() })?;
-    Ok((robot, scan(&text)))
+    })
+}
+
+/// The parsed URDF and what its reader dropped; `file` is where the text stands.
+pub(super) fn parse(text: &str, file: &Path) -> Result<(Robot, XmlScan), MechanismError> {
+    let refuse = |reason: String| MechanismError::Parse { file: file.to_path_buf(), reason };
+    let depth = depth(text);
+    if depth > DEEPEST {
+        return Err(refuse(format!("its elements stand {depth} deep in each other, which is more than {DEEPEST}")));
+    }
+    let robot = urdf_rs::read_from_string(text).map_err(|error| refuse(error.to_string()))?;
+    Ok((robot, scan(text)))
 }

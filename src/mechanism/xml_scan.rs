@@ -58,6 +58,21 @@ pub(super) fn scan(xml: &str) -> XmlScan {
     found
 }
 
+/// How deep elements stand in each other, in a document that nobody has looked at yet.
+pub(super) fn depth(xml: &str) -> usize {
+    let (mut here, mut deepest, mut rest) = (0usize, 0, xml);
+    while let Some((tag, after)) = next_tag(rest) {
+        rest = after;
+        if tag.starts_with('/') {
+            here = here.saturating_sub(1);
+        } else if !tag.ends_with('/') {
+            here += 1;
+            deepest = deepest.max(here);
+        }
+    }
+    deepest
+}
+
 /// Notes one start tag; false when the element is dropped by the reader.
 fn look_at(element: &str, open: &[Open], found: &mut XmlScan) -> bool {
     let parent = open.last().map_or("", |o| o.element);
@@ -147,6 +162,12 @@ mod tests {
         assert!(lines[1].starts_with("<safety_controller>") && lines[1].ends_with("joint \"j\""), "{lines:?}");
         assert!(lines[2].starts_with("<gazebo:thing>"), "{lines:?}");
         assert!(found.links_with_inertial.contains("a"));
+    }
+
+    #[test]
+    fn depth_counts_what_is_open() {
+        let found = ["", "<a/>", "<a><b/><b><c/></b></a>", "</a><a>", "<!-- <a><b> --><a>", "<a"].map(depth);
+        assert_eq!(found, [0, 0, 2, 1, 1, 0]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Reading a recording from a ROS 2 bag.
 
+use std::io::{Read, Seek};
 use std::path::Path;
 
 use super::one_clock::{Sampled, on_one_clock};
@@ -10,14 +11,23 @@ use crate::bag::{self, Clock, FLOAT64, Pick, Series, Topic};
 /// Absolute by definition, where the pressures of scenes are gauge pressures.
 const FLUID_PRESSURE: &str = "sensor_msgs/msg/FluidPressure";
 
-/// Reads the declared channels of a bag. With none declared, every Float64 topic whose name ends as a column's
-/// (`/smam/force_n`) is one.
+/// Reads the file of a bag, as [`read_bag_from`].
+pub(super) fn read_bag(path: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
+    let source = open_file(path)?;
+    read_bag_from(source, path, declared)
+}
+
+/// Reads the declared channels of a bag from anywhere; `path` stands for the file in errors. With none declared, every
+/// Float64 topic whose name ends as a column's (`/smam/force_n`) is one.
 ///
 /// # Errors
 /// What [`bag::read`] says; a declared channel that the bag does not have; units that do not go together.
-pub(super) fn read_bag(path: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
+pub fn read_bag_from(
+    source: impl Read + Seek,
+    path: &Path,
+    declared: &[ChannelSpec],
+) -> Result<LoadedRun, RecordingError> {
     let refuse = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
-    let source = open_file(path)?;
     let bag = bag::read(source, &|topic| picks(topic, declared)).map_err(refuse)?;
     let sampled = match declared.is_empty() {
         true => undeclared(&bag),

@@ -31,11 +31,15 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
         let without = BAG_KEYS.iter().find(|key| keys.has(key));
         return match without {
             None => Ok(None),
-            Some(key) => Err(keys.error(format!("{key} is for a channel of a bag; add topic = \"/NAME\" too"))),
+            Some(key) => {
+                Err(keys.error(format!("{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too")))
+            }
         };
     };
     if !topic.starts_with('/') {
-        return Err(keys.error(format!("topic = \"{topic}\" must begin with a slash: \"/{topic}\"")));
+        return Err(
+            keys.error(format!("topic = \"{topic}\" must begin with a slash\n  remedy: write topic = \"/{topic}\""))
+        );
     }
     let clock = keys.word("time", &[("stamp", Clock::Stamp), ("log", Clock::Log)])?.unwrap_or(Clock::Stamp);
     Ok(Some(BagSource {
@@ -52,10 +56,13 @@ fn unit(keys: &Keys<'_>, column: Unit) -> Result<Option<Unit>, RecordingError> {
     let Some(text) = keys.text("unit")? else { return Ok(None) };
     let suffix = text.trim_start_matches('_');
     let Some(unit) = KNOWN_UNITS.iter().find(|u| u.suffix == suffix) else {
-        return Err(keys.error(format!("unit = \"{text}\" is not known; write one of {}", known_suffixes())));
+        return Err(keys.error(format!("unit = \"{text}\" is not known\n  remedy: write one of {}", known_suffixes())));
     };
     if unit.si_suffix != column.si_suffix {
-        return Err(keys.error(format!("unit = \"{text}\" cannot become the column's, {}", column.symbol)));
+        return Err(keys.error(format!(
+            "unit = \"{text}\" cannot become the column's, {}\n  remedy: give the unit of the bag's numbers, or rename the column",
+            column.symbol
+        )));
     }
     Ok(Some(*unit))
 }

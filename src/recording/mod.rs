@@ -41,6 +41,7 @@ mod survey;
 mod unit;
 mod whole_file;
 
+pub use bag_read::read_bag_from;
 pub use bag_source::BagSource;
 pub use channels::{Channel, Recording, TIME_COLUMN};
 pub use compare::{ChannelFit, compare};

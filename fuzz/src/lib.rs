@@ -1,0 +1,149 @@
+//! What the fuzz targets do with an input: hand it to a reader of the library, as if it had stood in a file, and hold what
+//! comes back against what readers promise. `tests/fuzz_corpus.rs` includes this file, so that both go the same way in.
+
+use std::fs::File;
+use std::io::{Cursor, Seek, Write};
+use std::path::Path;
+
+use smam::columns::decode;
+use smam::mechanism::{ContactSpec, Mechanism, MechanismSpec};
+use smam::recording::{RecordingSet, read_bag_from, read_csv_from};
+use smam::scene::Scene;
+use smam::system::{Simulation, Twin};
+
+/// Hands an input to a reader.
+pub type Target = fn(&[u8]);
+
+/// The readers, by the name of the target and of its folder in `corpus/`.
+pub const TARGETS: [(&str, Target); 7] = [
+    ("csv", csv),
+    ("recordings_toml", recordings_toml),
+    ("scene_toml", scene_toml),
+    ("scene_built", scene_built),
+    ("urdf", urdf),
+    ("bag", bag),
+    ("parquet", parquet),
+];
+
+/// Folder that inputs stand in; relative paths in them lead to what the program carries.
+const FOLDER: &str = "builtin:scenes";
+
+/// A recording as CSV.
+pub fn csv(bytes: &[u8]) {
+    match read_csv_from(bytes, "fuzz.csv") {
+        Ok(recording) => {
+            let time_s = recording.time_s();
+            assert!(time_s.iter().all(|t| t.is_finite()) && time_s.is_sorted_by(|a, b| a < b), "{time_s:?}");
+        }
+        Err(e) => check_words(&e.to_string(), "fuzz.csv"),
+    }
+}
+
+/// The description of a folder of recordings.
+pub fn recordings_toml(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Err(e) = RecordingSet::parse(&text, Path::new("fuzz.toml")) {
+        check_words(&e.to_string(), "fuzz.toml");
+    }
+}
+
+/// A scene, with the tables of its effects: parsed, checked, listed.
+pub fn scene_toml(bytes: &[u8]) {
+    if let Some(scene) = scene(bytes) {
+        assert!(!scene.keys().is_empty());
+    }
+}
+
+/// A scene that is right in itself, with its mechanism and its equations: three steps of both simulations.
+pub fn scene_built(bytes: &[u8]) {
+    /// More fine steps and nodes than this in one step of the engine only take their time.
+    const DEAREST: usize = 20_000;
+    let Some(scene) = scene(bytes) else { return };
+    let segments = scene.file.hydraulics.as_ref().map_or(1, |h| h.line.segments);
+    if scene.file.simulation.substeps.saturating_mul(segments) > DEAREST {
+        return;
+    }
+    if let Err(e) = Twin::new(&scene) {
+        check_words(&e.to_string(), "fuzz.toml");
+    }
+    let until_s = 3.0 * scene.file.simulation.step_s.min(scene.file.simulation.output_interval_s);
+    let run = Simulation::new(scene).and_then(|mut simulation| simulation.advance_to(until_s));
+    if let Err(e) = run {
+        check_words(&e.to_string(), "fuzz.toml");
+    }
+}
+
+fn scene(bytes: &[u8]) -> Option<Scene> {
+    let text = String::from_utf8_lossy(bytes);
+    let path = Path::new(FOLDER).join("fuzz.toml");
+    Scene::parse(&text, &path, &[]).inspect_err(|e| check_words(&e.to_string(), "fuzz.toml")).ok()
+}
+
+/// A mechanism: the URDF and what the engine makes of it.
+pub fn urdf(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let spec = MechanismSpec {
+        urdf: "fuzz.urdf".into(),
+        gravity_m_s2: [0.0, 0.0, -9.81],
+        links_have_weight: true,
+        contact: Some(ContactSpec { links: vec!["tip".to_owned()], ..ContactSpec::default() }),
+        ..MechanismSpec::default()
+    };
+    let plain = MechanismSpec { contact: None, ..spec.clone() };
+    for spec in [spec, plain] {
+        match Mechanism::parse(&text, &Path::new(FOLDER).join("fuzz.urdf"), &spec) {
+            Ok(mut mechanism) => {
+                let count = mechanism.coordinates().len();
+                mechanism.advance(1e-3, &vec![0.1; count], &mut vec![0.0; count]);
+                assert_eq!(mechanism.link_poses().len(), mechanism.link_names().len());
+            }
+            Err(e) => check_words(&e.to_string(), "remedy: "),
+        }
+    }
+}
+
+/// A ROS 2 bag, with channels declared and without.
+pub fn bag(bytes: &[u8]) {
+    let set = RecordingSet::parse(BAG_SET, Path::new("recordings.toml")).expect("it is right");
+    for declared in [&set.channels[..], &[]] {
+        match read_bag_from(Cursor::new(bytes), Path::new("fuzz.mcap"), declared) {
+            Ok(run) => assert!(run.recording.time_s().is_sorted_by(|a, b| a < b)),
+            Err(e) => assert!(e.to_string().contains("fuzz.mcap"), "{e}"),
+        }
+    }
+}
+
+/// What the corpus' bags hold: a stamped joint state, an absolute pressure, a list within a list.
+const BAG_SET: &str = r#"
+format = 1
+scene = "none"
+channel = [
+    { column = "tip_deg", role = "output", topic = "/joint_states", field = "position", joint = "tip", unit = "rad" },
+    { column = "line_kpa", role = "input", topic = "/p", field = "fluid_pressure", zero = 101325 },
+    { column = "valve_ratio", role = "output", topic = "/rig", field = "valves[1].opening", unit = "ratio", time = "log" },
+]
+run = [{ file = "fuzz.mcap" }]
+"#;
+
+/// A recording as Parquet.
+pub fn parquet(bytes: &[u8]) {
+    let columns = temporary(bytes).map_err(|e| e.to_string()).and_then(decode);
+    if let Ok(columns) = columns {
+        for (_, column) in columns {
+            assert_eq!(column.numbers().map_or(column.len(), |n| n.len()), column.len());
+        }
+    }
+}
+
+/// The input as a file without a name.
+fn temporary(bytes: &[u8]) -> std::io::Result<File> {
+    let mut file = tempfile::tempfile()?;
+    file.write_all(bytes)?;
+    file.rewind()?;
+    Ok(file)
+}
+
+/// A message says where, and what to do.
+fn check_words(message: &str, place: &str) {
+    assert!(message.contains(place) && message.contains("remedy: "), "{message}");
+}
