@@ -34,8 +34,8 @@ impl Mechanism {
         let known = DVector::from_column_slice(known_force);
         let force = self.carrying_force(dt_s, &augmented, &reduced, &target, &known);
         self.apply(&force);
-        self.world.integration_parameters.dt = dt_s;
-        self.world.step();
+        self.world.0.integration_parameters.dt = dt_s;
+        self.world.0.step();
         self.last_step_s = dt_s;
         self.refresh_mass();
         let mut arrived = DVector::zeros(target.len());
@@ -84,7 +84,7 @@ impl Mechanism {
     /// Puts each dof's force on its body, and the opposite on the body that carries it.
     fn apply(&mut self, force: &DVector<f64>) {
         for body in self.bodies.iter().skip(1) {
-            if let Some(engine_body) = self.world.bodies.get_mut(body.handle) {
+            if let Some(engine_body) = self.world.0.bodies.get_mut(body.handle) {
                 engine_body.reset_forces(false);
                 engine_body.reset_torques(false);
             }
@@ -105,7 +105,7 @@ impl Mechanism {
     }
 
     fn push(&mut self, body: usize, force: Vector, torque: Vector) {
-        if let Some(engine_body) = self.world.bodies.get_mut(self.bodies[body].handle) {
+        if let Some(engine_body) = self.world.0.bodies.get_mut(self.bodies[body].handle) {
             engine_body.add_force(force, false);
             engine_body.add_torque(torque, false);
         }

@@ -9,7 +9,7 @@ impl Mechanism {
     /// All touching points after the last step, with their normal forces averaged over it.
     pub fn contacts(&self) -> Vec<Contact> {
         let mut found = Vec::new();
-        for pair in self.world.contact_pairs() {
+        for pair in self.world.0.contact_pairs() {
             self.add_pair(pair, &mut found);
         }
         found
@@ -42,6 +42,6 @@ impl Mechanism {
     }
 
     fn collider(&self, handle: ColliderHandle) -> Option<&Collider> {
-        self.world.colliders.get(handle)
+        self.world.0.colliders.get(handle)
     }
 }

@@ -15,7 +15,7 @@ impl Mechanism {
 
     /// Generalised force of gravity on what has weight, N m or N: Σ Jᵀ m g.
     pub fn weight(&self, out: &mut [f64]) {
-        let gravity = na_vector(self.world.gravity);
+        let gravity = na_vector(self.world.0.gravity);
         let mut full = DVector::zeros(self.dofs.len());
         for weight in &self.weights {
             let point = self.body_pose(weight.body) * engine_vector(&weight.point_m);

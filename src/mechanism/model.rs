@@ -5,7 +5,6 @@ use std::path::Path;
 use nalgebra::DMatrix;
 use rapier3d_f64::dynamics::{Multibody, MultibodyIndex, RigidBodyHandle};
 use rapier3d_f64::math::Pose;
-use rapier3d_f64::pipeline::PhysicsWorld;
 use urdf_rs::Robot;
 
 use super::assembly::{Source, Weight};
@@ -15,6 +14,7 @@ use super::error::MechanismError;
 use super::geometry::{self, Visual};
 use super::joints::{self, JointModel};
 use super::reduce::{Share, reduce};
+use super::snapshot::World;
 use super::spec::MechanismSpec;
 use super::tree::Tree;
 use super::world::{self, Body, Built, Dof, leader_of};
@@ -54,8 +54,9 @@ use super::{free_bodies, shapes, urdf_file};
 /// # Ok(())
 /// # }
 /// ```
+#[derive(Clone)]
 pub struct Mechanism {
-    pub(super) world: PhysicsWorld,
+    pub(super) world: World,
     pub(super) multibody: Option<MultibodyIndex>,
     pub(super) bodies: Vec<Body>,
     pub(super) dofs: Vec<Dof>,
@@ -144,7 +145,7 @@ impl Mechanism {
             leaders: (0..coordinates.len()).filter_map(leader).collect(),
             projection: projection(&built.dofs, coordinates.len()),
             full_mass: DMatrix::zeros(built.dofs.len(), built.dofs.len()),
-            world: built.world,
+            world: World(built.world),
             multibody: built.multibody,
             bodies: built.bodies,
             dofs: built.dofs,
@@ -200,7 +201,7 @@ impl Mechanism {
     pub fn link_poses(&self) -> Vec<geometry::Pose> {
         let links = (0..self.placement.len()).map(|link| plain_pose(&self.link_pose(link)));
         let free = self.free_bodies.iter().map(|h| {
-            let pose = self.world.bodies.get(*h).map_or(Pose::IDENTITY, |b| *b.position());
+            let pose = self.world.0.bodies.get(*h).map_or(Pose::IDENTITY, |b| *b.position());
             plain_pose(&pose)
         });
         links.chain(free).collect()
@@ -212,7 +213,7 @@ impl Mechanism {
     }
 
     pub(super) fn multibody(&self) -> Option<&Multibody> {
-        self.world.multibody_joints.get_multibody(self.multibody?)
+        self.world.0.multibody_joints.get_multibody(self.multibody?)
     }
 
     /// Pose of a URDF link in the world.

@@ -13,12 +13,12 @@ impl Mechanism {
         let moved: Vec<f64> = (0..self.dofs.len())
             .map(|dof| wanted[dof] + self.dofs[dof].share.offset - self.dof_position(dof))
             .collect();
-        let Some(multibody) = self.multibody.and_then(|m| self.world.multibody_joints.get_multibody_mut(m)) else {
+        let Some(multibody) = self.multibody.and_then(|m| self.world.0.multibody_joints.get_multibody_mut(m)) else {
             return;
         };
         multibody.apply_displacements(&moved);
-        multibody.forward_kinematics(&self.world.bodies, false);
-        multibody.update_rigid_bodies(&mut self.world.bodies, true);
+        multibody.forward_kinematics(&self.world.0.bodies, false);
+        multibody.update_rigid_bodies(&mut self.world.0.bodies, true);
         self.refresh_mass();
     }
 }

@@ -14,6 +14,7 @@ use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, Mu
 use super::state::PlantState;
 
 /// A plant with its starting state, and how its parts hang on the mechanism.
+#[derive(Clone)]
 pub(super) struct Built {
     pub plant: Plant<f64>,
     pub state: PlantState<f64>,

@@ -20,6 +20,8 @@ use super::{InputSource, SystemError};
 /// the start of the step. The engine is then given the mean generalised force that carries it to the same positions;
 /// what contacts add comes back as a change of velocity and, for the next step, as a known force.
 ///
+/// A clone is a snapshot: it goes on as the original would, bit for bit.
+///
 /// ```
 /// use smam::scene::Scene;
 /// use smam::system::Simulation;
@@ -35,6 +37,7 @@ use super::{InputSource, SystemError};
 /// # Ok(())
 /// # }
 /// ```
+#[derive(Clone)]
 pub struct Simulation {
     pub(super) scene: Scene,
     pub(super) mechanism: Option<Mechanism>,
