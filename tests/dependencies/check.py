@@ -143,6 +143,9 @@ def self_test():
     network.self_test()
     assert has_unsafe("fn f() { unsafe { g() } }") and has_unsafe("let c = '\"'; unsafe { g() } // \"") and has_unsafe("unsafe impl A for B {}")
     assert not has_unsafe('// unsafe\n/* unsafe */ let a = "unsafe"; let b = r#"a "unsafe" b"#; unsafe_code(&\'a x)')
+    elsewhere = {"name": "x", "version": "1", "manifest_path": "/x/Cargo.toml"}
+    assert all(check_sources([elsewhere | {"source": s}]) for s in (None, "git+https://example.org/x", "registry+https://example.org/index"))
+    assert not check_sources([elsewhere | {"source": CRATES_IO}, {"source": None, "manifest_path": str(TOP / "Cargo.toml")}])
     assert tables("| crate | b |\n|---|---|\n| `x` | 1 |\n\n| other | b |\n|---|---|\n| `y` | 2 |\n", "crate") == [["`x`", "1"]]
     assert VIEWER_VERSION.findall("rerun-sdk==0.36.3`, rerun_version=0.1.0 # x") == ["0.36.3", "0.1.0"]
     print("ok    self-test")
