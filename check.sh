@@ -20,6 +20,9 @@ else
 fi
 cargo clippy --no-default-features --all-targets -- -D warnings
 
+say "what it is built from: licences, sources, pins, no unsafe code"
+python3 -B tests/dependencies/check.py
+
 say "libraries of others, to hold bags and schemas against"
 peers=$target/peers
 if [ ! -x "$peers/bin/python" ]; then
@@ -73,6 +76,9 @@ python3 tests/faults/check.py --smam "$smam" || status=$?
 if [ "$status" -ne 77 ] || [ -n "${SMAM_REQUIRE_FAULTS:-}" ]; then
     [ "$status" -eq 0 ] || { echo "tests/faults/check.py failed (exit code $status)" >&2; exit 1; }
 fi
+
+say "what it opens: a server on loopback, nothing else"
+python3 -B tests/dependencies/check.py --smam "$smam"
 
 say "the README's first command"
 rm -f out/bending_catheter.csv out/bending_catheter.rrd

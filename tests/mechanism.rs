@@ -518,6 +518,14 @@ fn elements_too_deep_in_each_other_are_refused() {
     assert!(message.contains("stand 200001 deep in each other, which is more than 100\n  remedy: "), "{message}");
 }
 
+/// The reader compares each with each: 80,000 took 35 s.
+#[test]
+fn namespaces_without_number_are_refused() {
+    let declared: String = (0..80_000).map(|i| format!(" xmlns:a{i}=\"b\"")).collect();
+    let message = load_urdf(&format!("<robot name=\"r\"{declared}/>"), "").err().unwrap().to_string();
+    assert!(message.contains("declares 80000 XML namespaces, which is more than 100\n  remedy: "), "{message}");
+}
+
 /// As large as a scan of somebody's whole laboratory: refused at once instead of after minutes.
 #[test]
 fn more_joints_than_can_be_simulated_are_refused() {

@@ -9,6 +9,8 @@ use super::xml_scan::{XmlScan, depth, scan};
 
 /// Elements within elements; a URDF has five levels. The reader calls itself for each, and would run out of stack.
 const DEEPEST: usize = 100;
+/// XML namespaces that a URDF may declare; the reader's time grows with the square of their number.
+const MOST_NAMESPACES: usize = 100;
 
 /// The text of a URDF file.
 pub(super) fn text(file: &Path) -> Result<String, MechanismError> {
@@ -25,6 +27,10 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<(Robot, XmlScan), Mechani
     let depth = depth(text);
     if depth > DEEPEST {
         return Err(refuse(format!("its elements stand {depth} deep in each other, which is more than {DEEPEST}")));
+    }
+    let namespaces = text.matches("xmlns").count();
+    if namespaces > MOST_NAMESPACES {
+        return Err(refuse(format!("it declares {namespaces} XML namespaces, which is more than {MOST_NAMESPACES}")));
     }
     let robot = urdf_rs::read_from_string(text).map_err(|error| refuse(error.to_string()))?;
     Ok((robot, scan(text)))
