@@ -297,3 +297,35 @@ fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, winner: &Candidate) -> 
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programmes_stay_within_the_strokes_and_last_as_long_as_asked() {
+        let moved = vec![1.0e-3, 4.0e-3, 2.5e-3];
+        let strokes = strokes(&[("plunger_mm".to_owned(), moved)]);
+        for duration_s in [DURATION_S, LONGER_S[0], LONGER_S[1]] {
+            let programmes = programmes(&strokes, 0.5, duration_s).expect("a known unit");
+            assert!(programmes.len() > USUAL);
+            for (name, inputs) in programmes {
+                let plunger_mm = &inputs.channel("plunger_mm").expect("the input").values;
+                assert_eq!(plunger_mm.len(), (duration_s / INTERVAL_S) as usize, "{name}");
+                assert!(plunger_mm.iter().all(|x| (-1e-9..=4.0 + 1e-9).contains(x)), "{name}");
+                // Moving to the end, not only through its first minute.
+                let last = &plunger_mm[plunger_mm.len() - 2000..];
+                let range = crate::recording::figures::range(last);
+                assert!(range > 0.1 || name.starts_with("one level"), "{name} rests over its last 20 s");
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_best_can_imitate_separates_nothing() {
+        let slopes = DMatrix::from_column_slice(4, 1, &[1.0, 1.0, 0.0, 0.0]);
+        let rows = |residual: [f64; 4]| Rows { slopes: slopes.clone(), residual: DVector::from_row_slice(&residual) };
+        assert!(beyond(rows([2.0, 2.0, 0.0, 0.0])) < 1e-12);
+        assert!((beyond(rows([2.0, 2.0, 3.0, 4.0])) - 5.0).abs() < 1e-12);
+    }
+}
