@@ -30,9 +30,7 @@ fn main() {
     for name in SCENES {
         let scene = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
         let mut twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-        let times_s = Schedule::even(60.0, 0.01).0;
-        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        let drive = TwinRun { times_s, inputs, plan: None };
+        let drive = TwinRun::of_programs(&scene, &Schedule::even(60.0, 0.01));
         let chosen_s = twin.step_s;
         let mut reference: Option<Vec<Vec<f64>>> = None;
         for share in STEPS {

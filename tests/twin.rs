@@ -101,9 +101,7 @@ fn sensitivities_are_those_of_finite_differences() {
     for name in ["muscle_bench"] {
         let scene = Scene::load(name, &[]).expect("stock");
         let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-        let times_s = Schedule::even(12.0, 0.01).0;
-        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        let run = TwinRun { times_s, inputs, plan: None };
+        let run = TwinRun::of_programs(&scene, &Schedule::even(12.0, 0.01));
         for spec in &scene.file.calibrate {
             let parameter = twin.parameter(&spec.key).expect("calibrated");
             let middle = (spec.min + spec.max) / 2.0;
@@ -149,9 +147,7 @@ fn settings_about(scene: &Scene, twin: &Twin) -> Vec<TwinSetting<f64>> {
 fn settings_side_by_side_answer_as_each_by_itself_to_the_bit() {
     for name in STOCK {
         let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let times_s = Schedule::even(8.0, 0.01).0;
-        let inputs = stock.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        let run = TwinRun { times_s, inputs, plan: None };
+        let run = TwinRun::of_programs(&stock, &Schedule::even(8.0, 0.01));
         let plain = std::iter::once((format!("{name} as it is"), stock.clone()));
         for (title, scene) in plain.chain(with_each_effect(name)) {
             let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
@@ -170,9 +166,7 @@ fn settings_side_by_side_answer_as_each_by_itself_to_the_bit() {
 fn one_setting_that_diverges_takes_no_other_with_it() {
     let scene = Scene::load("muscle_bench", &[]).unwrap_or_else(|e| panic!("{e}"));
     let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    let times_s = Schedule::even(2.0, 0.01).0;
-    let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-    let run = TwinRun { times_s, inputs, plan: None };
+    let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
     let c1 = twin.parameter("tube_c1_pa").expect("a tube");
     let settings: Vec<_> = [0.25e6, f64::NAN, 0.26e6]
         .map(|pa| TwinSetting { parameters: vec![(c1.clone(), pa)], effects: Vec::new() })

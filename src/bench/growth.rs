@@ -1,9 +1,8 @@
 //! How cost grows with a scene's parts: a power law through what is measured.
 
 use std::path::Path;
-use std::time::Duration;
 
-use super::{BenchError, cpu_time, made, median_cpu_s};
+use super::{BenchError, cpu_time, made, median_cpu_s, simulations_s};
 use crate::recording::figures::line_of_best_fit;
 use crate::scene::{Override, Scene};
 use crate::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting};
@@ -35,66 +34,49 @@ impl Growth {
 /// # Errors
 /// Files that cannot be written, runs that diverge.
 pub fn grow(folder: &Path, times: usize) -> Result<Vec<Growth>, BenchError> {
-    let engine = |counts: &[usize], scene: &dyn Fn(usize) -> Result<Scene, BenchError>| {
-        let cost = |&n: &usize| Ok((n as f64, run_s(&scene(n)?, times)?));
-        counts.iter().map(cost).collect::<Result<Vec<_>, BenchError>>()
-    };
+    let engine = |scene: Scene| simulations_s(times, 1.0, || Ok(Simulation::new(scene.clone())?));
     Ok(vec![
         Growth {
             part: "segments of the line",
             of: "a second of the bench",
             expected: 1.0,
             reason: "a tridiagonal system",
-            costs: engine(&[1, 4, 16, 64, 128], &|n| bench_with_segments(n))?,
+            costs: costs(&[1, 4, 16, 64, 128], |n| engine(bench_with_segments(n)?))?,
         },
         Growth {
             part: "hinges",
             of: "a second of a bending tube",
             expected: 3.0,
             reason: "a factorisation of the inertia matrix in each step",
-            costs: engine(&[8, 16, 32, 64], &|n| made::hinges(folder, n))?,
+            costs: costs(&[8, 16, 32, 64], |n| engine(made::hinges(folder, n)?))?,
         },
         Growth {
             part: "muscles",
             of: "a second of muscles side by side",
             expected: 3.0,
             reason: "the same, of one slider each",
-            costs: engine(&[2, 4, 8, 16], &|n| made::muscles(folder, n))?,
+            costs: costs(&[2, 4, 8, 16], |n| engine(made::muscles(folder, n)?))?,
         },
         Growth {
             part: "samples",
             of: "a run of the fast bench",
             expected: 1.0,
             reason: "one after the other",
-            costs: [1_000, 4_000, 16_000]
-                .iter()
-                .map(|&n| Ok((n as f64, samples_s(n, times)?)))
-                .collect::<Result<_, BenchError>>()?,
+            costs: costs(&[1_000, 4_000, 16_000], |n| samples_s(n, times))?,
         },
         Growth {
             part: "parameter sets",
             of: "runs of the fast bench side by side",
             expected: 1.0,
             reason: "eight at a time",
-            costs: [8, 32, 128]
-                .iter()
-                .map(|&n| Ok((n as f64, sets_s(n, times)?)))
-                .collect::<Result<_, BenchError>>()?,
+            costs: costs(&[8, 32, 128], |n| sets_s(n, times))?,
         },
     ])
 }
 
-/// CPU time of one simulated second.
-fn run_s(scene: &Scene, times: usize) -> Result<f64, BenchError> {
-    let mut runs: Vec<Duration> = Vec::with_capacity(times);
-    for _ in 0..times.max(1) {
-        let mut simulation = Simulation::new(scene.clone())?;
-        let (done, took) = cpu_time(|| simulation.advance_to(1.0));
-        done?;
-        runs.push(took);
-    }
-    let mut runs = runs.into_iter();
-    Ok(median_cpu_s(times, || runs.next().unwrap_or_default()))
+/// Cost for each number of parts.
+fn costs(counts: &[usize], cost_s: impl Fn(usize) -> Result<f64, BenchError>) -> Result<Vec<(f64, f64)>, BenchError> {
+    counts.iter().map(|&n| Ok((n as f64, cost_s(n)?))).collect()
 }
 
 fn bench_with_segments(segments: usize) -> Result<Scene, BenchError> {
@@ -105,15 +87,14 @@ fn bench_with_segments(segments: usize) -> Result<Scene, BenchError> {
 
 fn fast_bench(samples: usize) -> Result<(Twin, TwinRun), BenchError> {
     let scene = Scene::load("muscle_bench", &[])?;
-    let times_s = Schedule::even(0.01 * samples as f64, 0.01).0;
-    let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-    Ok((Twin::new(&scene)?, TwinRun { times_s, inputs, plan: None }))
+    let run = TwinRun::of_programs(&scene, &Schedule::even(0.01 * samples as f64, 0.01));
+    Ok((Twin::new(&scene)?, run))
 }
 
 fn samples_s(samples: usize, times: usize) -> Result<f64, BenchError> {
     let (twin, run) = fast_bench(samples)?;
     let setting = TwinSetting::<f64>::default();
-    Ok(median_cpu_s(times, || cpu_time(|| twin.simulate(&run, &setting)).1))
+    median_cpu_s(times, || Ok(cpu_time(|| twin.simulate(&run, &setting)).1))
 }
 
 fn sets_s(count: usize, times: usize) -> Result<f64, BenchError> {
@@ -124,7 +105,7 @@ fn sets_s(count: usize, times: usize) -> Result<f64, BenchError> {
         effects: Vec::new(),
     };
     let sets: Vec<TwinSetting<f64>> = (0..count).map(set).collect();
-    Ok(median_cpu_s(times, || cpu_time(|| twin.simulate_many(&run, &sets)).1))
+    median_cpu_s(times, || Ok(cpu_time(|| twin.simulate_many(&run, &sets)).1))
 }
 
 #[cfg(test)]

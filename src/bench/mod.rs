@@ -13,8 +13,9 @@ use std::time::Duration;
 
 use cpu_time::ProcessTime;
 
+use crate::recording::median;
 use crate::scene::SceneError;
-use crate::system::SystemError;
+use crate::system::{Simulation, SystemError};
 
 pub use growth::{Growth, grow};
 pub use scenes::{CASES, SceneCase, SceneSpeed, worst_errors};
@@ -41,8 +42,22 @@ fn cpu_time<T>(work: impl FnOnce() -> T) -> (T, Duration) {
 }
 
 /// Median of the CPU times of several calls, s.
-fn median_cpu_s(times: usize, mut work: impl FnMut() -> Duration) -> f64 {
-    let mut seconds: Vec<f64> = (0..times.max(1)).map(|_| work().as_secs_f64()).collect();
-    seconds.sort_by(f64::total_cmp);
-    seconds[seconds.len() / 2]
+fn median_cpu_s(times: usize, mut run: impl FnMut() -> Result<Duration, BenchError>) -> Result<f64, BenchError> {
+    let runs = (0..times.max(1)).map(|_| Ok(run()?.as_secs_f64()));
+    let mut seconds = runs.collect::<Result<Vec<_>, BenchError>>()?;
+    Ok(median(&mut seconds).unwrap_or(f64::NAN))
+}
+
+/// Median CPU time of simulations from their start to `until_s`, s.
+fn simulations_s(
+    times: usize,
+    until_s: f64,
+    make: impl Fn() -> Result<Simulation, BenchError>,
+) -> Result<f64, BenchError> {
+    median_cpu_s(times, || {
+        let mut simulation = make()?;
+        let (done, took) = cpu_time(|| simulation.advance_to(until_s));
+        done?;
+        Ok(took)
+    })
 }

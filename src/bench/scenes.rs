@@ -1,6 +1,6 @@
 //! The stock scenes, at steps whose error is known.
 
-use super::{BenchError, cpu_time, median_cpu_s};
+use super::{BenchError, simulations_s};
 use crate::recording::Recording;
 use crate::scene::{Override, Scene};
 use crate::system::{Schedule, Simulation, record};
@@ -73,15 +73,7 @@ impl SceneCase {
 
     /// CPU time of one simulated second.
     fn cost_s(&self, finer_plant: usize, times: usize) -> Result<f64, BenchError> {
-        let mut runs = Vec::with_capacity(times);
-        for _ in 0..times.max(1) {
-            let mut simulation = self.simulation(1.0, finer_plant)?;
-            let (done, took) = cpu_time(|| simulation.advance_to(self.until_s));
-            done?;
-            runs.push(took);
-        }
-        let mut runs = runs.into_iter();
-        Ok(median_cpu_s(times, || runs.next().unwrap_or_default()) / self.until_s)
+        Ok(simulations_s(times, self.until_s, || self.simulation(1.0, finer_plant))? / self.until_s)
     }
 }
 

@@ -30,9 +30,7 @@ impl TwinSpeed {
     pub fn of(scene: &str, times: usize) -> Result<Self, BenchError> {
         let scene = Scene::load(scene, &[])?;
         let twin = Twin::new(&scene)?;
-        let times_s = Schedule::even(LENGTH_S, 0.01).0;
-        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        let run = TwinRun { times_s, inputs, plan: None };
+        let run = TwinRun::of_programs(&scene, &Schedule::even(LENGTH_S, 0.01));
         let c1 = twin.parameter("tube_c1_pa").into_iter();
         let set = |i: usize| TwinSetting {
             parameters: c1.clone().map(|c1| (c1, 0.255e6 * (1.0 + 1e-3 * i as f64))).collect(),
@@ -43,8 +41,8 @@ impl TwinSpeed {
         let one_by_one = || sets.iter().map(|set| twin.simulate(&run, set)).collect::<Vec<_>>();
         Ok(Self {
             step_s: twin.step_s,
-            singly: speed(median_cpu_s(times, || cpu_time(one_by_one).1)),
-            side_by_side: speed(median_cpu_s(times, || cpu_time(|| twin.simulate_many(&run, &sets)).1)),
+            singly: speed(median_cpu_s(times, || Ok(cpu_time(one_by_one).1))?),
+            side_by_side: speed(median_cpu_s(times, || Ok(cpu_time(|| twin.simulate_many(&run, &sets)).1))?),
         })
     }
 }

@@ -105,9 +105,8 @@ struct Stage<'a> {
 impl<'a> Stage<'a> {
     fn new(scene: &'a Scene) -> Result<Self, SystemError> {
         let spec = scene.file.simulation;
-        let times_s = Schedule::even(spec.duration_s, spec.output_interval_s).0;
-        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        Ok(Self { scene, twin: Twin::new(scene)?, run: TwinRun { times_s, inputs, plan: None } })
+        let run = TwinRun::of_programs(scene, &Schedule::even(spec.duration_s, spec.output_interval_s));
+        Ok(Self { scene, twin: Twin::new(scene)?, run })
     }
 
     /// All outputs with the scene's own effects and one more.

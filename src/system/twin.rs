@@ -20,11 +20,11 @@ use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 
-use super::SystemError;
 use super::build::build;
 use super::install::{Site, install, settle_memory};
 use super::plant::{Drive, InputSpan, Plant, dot};
 use super::state::PlantState;
+use super::{Schedule, SystemError};
 
 use course::Course;
 pub(super) use output::sensor;
@@ -39,6 +39,15 @@ pub struct TwinRun {
     pub inputs: Vec<Vec<f64>>,
     /// Steps between samples; without a plan the model's own rule decides.
     pub plan: Option<StepPlan>,
+}
+
+impl TwinRun {
+    /// The scene's own programmes at the times of a schedule.
+    pub fn of_programs(scene: &Scene, schedule: &Schedule) -> Self {
+        let Schedule(times_s) = schedule;
+        let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
+        Self { times_s: times_s.clone(), inputs, plan: None }
+    }
 }
 
 /// Parameters that differ from the scene's, and the effects.
@@ -64,9 +73,7 @@ impl<D> Default for TwinSetting<D> {
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let scene = Scene::load("muscle_bench", &[])?;
 /// let twin = Twin::new(&scene)?;
-/// let times_s = Schedule::even(1.0, 0.01).0;
-/// let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-/// let run = TwinRun { times_s, inputs, plan: None };
+/// let run = TwinRun::of_programs(&scene, &Schedule::even(1.0, 0.01));
 /// let c1 = twin.parameter("tube_c1_pa").ok_or("the bench has a tube")?;
 /// let setting = TwinSetting { parameters: vec![(c1, Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
 /// let series = twin.simulate(&run, &setting).ok_or("it diverges")?;
