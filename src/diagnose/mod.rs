@@ -165,29 +165,65 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     if !preflight.unusable.is_empty() {
         return Ok(unusable(case, preflight));
     }
+    let explained = explain(&mut case, preflight.warnings, options.seed, say)?;
+    answer(case, explained, say)
+}
+
+/// Residuals by run, channel and time.
+type Residuals = Vec<Vec<Vec<f64>>>;
+
+/// What stands after the search and its proofs.
+struct Explained {
+    found: Found,
+    confirmed: Confirmed,
+    proof: Proof,
+    noise: Vec<Noise>,
+    /// Residuals of the best, and what is more than noise in those of baseline and best.
+    after: Residuals,
+    excess: Excess,
+    warnings: Vec<String>,
+}
+
+fn diverges() -> DiagnoseError {
+    DiagnoseError::Simulation("it diverges".to_owned())
+}
+
+/// Calibrates, searches, and holds what is found against the sealed runs and the full scene.
+fn explain(
+    case: &mut Case,
+    warnings: Vec<String>,
+    seed: u64,
+    say: &dyn Fn(String),
+) -> Result<Explained, DiagnoseError> {
     say("baseline".to_owned());
-    let diverges = || DiagnoseError::Simulation("it diverges".to_owned());
-    let base = baseline::baseline(&mut case)?;
-    let variants = candidates::variants(&case);
-    let (found, noise) = weigh::search_and_weigh(&mut case, &base, &variants, say).ok_or_else(diverges)?;
-    let mut warnings = [preflight.warnings, base.warnings, case.notes.clone()].concat();
-    let sealed = Problem { case: &case, runs: case.subset(Sealed::Sealed), noise: &noise };
+    let base = baseline::baseline(case)?;
+    let variants = candidates::variants(case);
+    let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say).ok_or_else(diverges)?;
+    let case = &*case;
+    let mut warnings = [warnings, base.warnings, case.notes.clone()].concat();
+    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
+    let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
     say("sealed runs".to_owned());
-    let open = Problem { case: &case, runs: case.subset(Sealed::Open), noise: &noise };
     let found = confirm::prune(&open, &sealed, found, &variants, say);
-    let proof = prove::prove(&sealed, &found.baseline, &found.best, options.seed).ok_or_else(diverges)?;
-    let (mut found, mut proof, confirmed) = confirm::confirm(&case, found, proof, &mut warnings);
-    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+    let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
+    let (mut found, mut proof, confirmed) = confirm::confirm(case, found, proof, &mut warnings);
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     let so_far = (&found, &proof, confirmed);
-    let hypothesis = hypothesis::weigh_hypotheses(&case, &noise, so_far, excess, options.seed, say);
+    let hypothesis = hypothesis::weigh_hypotheses(case, &noise, so_far, excess, seed, say);
     if let Some((with_it, renewed)) = hypothesis {
         (found, proof) = (with_it, renewed);
         (after, excess.best) = misfit(&whole, &found).map(|(a, e)| (a, e.best)).ok_or_else(diverges)?;
     }
     say("full scene".to_owned());
-    proof.placebo_gap_closed = confirm::placebos(&sealed, &found, options.seed);
-    confirm::check_on_full_scene(&sealed, &found, &mut proof, options.seed, &mut warnings)?;
+    proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
+    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings)?;
+    Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
+}
+
+/// Names what was found and where, and proposes what to record next.
+fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
+    let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
+    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit(&found.best.model, &found.best.x).unwrap_or_else(|| found.best.clone());
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
@@ -237,7 +273,7 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
 }
 
 /// Residuals with what was found, and how much of baseline and best is more than noise.
-fn misfit(whole: &Problem, found: &Found) -> Option<(Vec<Vec<Vec<f64>>>, Excess)> {
+fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
     let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
     let after = whole.residuals(&found.best.model, &found.best.x)?;
     let (baseline, error) = noise::structured_excess(&before, whole.noise);
