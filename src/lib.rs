@@ -28,6 +28,7 @@ pub mod conceal;
 pub mod diagnose;
 pub mod effects;
 pub mod feedforward;
+pub mod files;
 pub mod hydraulics;
 pub mod hysteresis;
 pub mod identify;

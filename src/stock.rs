@@ -19,8 +19,10 @@
 //! # }
 //! ```
 
-use std::io;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+
+use crate::files;
 
 /// Begins the path of a file that the program carries.
 pub const PREFIX: &str = "builtin:";
@@ -67,7 +69,7 @@ pub fn join(folder: &Path, file: &Path) -> PathBuf {
 /// # Errors
 /// A file that cannot be read, or is not carried.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let Some(name) = inside(path) else { return read_file(path) };
+    let Some(name) = inside(path) else { return read_all(path) };
     let found = FILES.iter().find(|(known, _)| Path::new(known) == without_parents(&name));
     found.map(|(_, content)| content.to_vec()).ok_or_else(|| {
         let known: Vec<&str> = FILES.iter().map(|(known, _)| *known).collect();
@@ -78,28 +80,19 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     })
 }
 
-/// A pipe would be waited for, a device may never end.
-fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let kind = std::fs::metadata(path)?;
-    match kind.is_file() || kind.is_dir() {
-        true => std::fs::read(path),
-        false => Err(io::Error::other("it is a pipe or a device, not a file")),
-    }
+fn read_all(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    files::open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
-
-/// No scene, model or sweep is longer; what is, is something else.
-const LONGEST_TEXT_BYTES: u64 = 1 << 24;
 
 /// The text of a file, as [`read`].
 ///
 /// # Errors
-/// As [`read`]; a file that is no UTF-8, or too long for a text that somebody wrote.
+/// As [`read`] and [`files::read_text`].
 pub fn read_text(path: &Path) -> io::Result<String> {
-    let length = std::fs::metadata(path).map_or(0, |m| m.len());
-    if length > LONGEST_TEXT_BYTES {
-        return Err(io::Error::other(format!(
-            "it has {length} bytes, more than the {LONGEST_TEXT_BYTES} that are read"
-        )));
+    if inside(path).is_none() {
+        return files::read_text(path);
     }
     String::from_utf8(read(path)?)
         .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, format!("it is no UTF-8 text: {e}")))

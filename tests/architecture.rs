@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 const ALLOWED: &[(&str, &[&str])] = &[
     ("scalar", &[]),
     ("columns", &[]),
-    ("stock", &[]),
+    ("files", &[]),
+    ("stock", &["files"]),
     ("bag", &[]),
-    ("recording", &["bag", "columns"]),
+    ("recording", &["bag", "columns", "files"]),
     ("mechanism", &["stock"]),
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
@@ -22,20 +23,19 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("scene", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "stock"]),
     ("system", &["effects", "hydraulics", "hysteresis", "mechanism", "muscle", "recording", "scalar", "scene"]),
     ("identify", &["effects", "hysteresis", "recording", "scalar", "scene", "system"]),
-    ("diagnose", &["effects", "identify", "recording", "scalar", "scene", "stock", "system"]),
+    ("diagnose", &["effects", "files", "identify", "recording", "scalar", "scene", "stock", "system"]),
     // Nothing of the simulation, so that the proof is one.
-    ("conceal", &["recording"]),
-    ("proof", &["conceal", "diagnose", "identify", "recording"]),
-    ("sweep", &["columns", "mechanism", "muscle", "recording", "scene", "stock", "system"]),
-    ("trial", &["diagnose", "effects", "recording", "scene", "system"]),
+    ("conceal", &["files", "recording"]),
+    ("proof", &["conceal", "diagnose", "files", "identify", "recording"]),
+    ("sweep", &["columns", "files", "mechanism", "muscle", "recording", "scene", "stock", "system"]),
+    ("trial", &["diagnose", "effects", "files", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
-    ("bench", &["recording", "scene", "stock", "system"]),
+    ("bench", &["files", "recording", "scene", "stock", "system"]),
     (
         "reproduce",
         &["effects", "feedforward", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"],
     ),
-    // Of recordings only how a file gets its name when it is complete.
-    ("view", &["mechanism", "recording", "system"]),
+    ("view", &["files", "mechanism", "system"]),
     (
         "cli",
         &[
@@ -44,6 +44,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "diagnose",
             "effects",
             "feedforward",
+            "files",
             "hysteresis",
             "identify",
             "mechanism",

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::recording::write_whole;
+use crate::files::write_whole;
 use crate::scene::Scene;
 use crate::stock;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use smam::recording::{Held, hold_folder, write_whole};
+use smam::files::{Held, hold_folder, write_whole};
 
 use super::CliError;
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Args, Subcommand};
 use smam::mechanism::{Forceps, MechanismError, NotchGeometry, NotchedTube, notched_tube_meshes, notched_tube_urdf};
 
-use smam::recording::write_whole_bytes;
+use smam::files::write_whole_bytes;
 
 use super::CliError;
 

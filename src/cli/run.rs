@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use smam::recording::{Recording, read_recording, survey, write_whole};
+use smam::files::write_whole;
+use smam::recording::{Recording, read_recording, survey};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{
     InputSource, RunError, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps,

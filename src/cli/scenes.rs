@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::recording::{did_you_mean, write_whole_bytes};
+use smam::files::write_whole_bytes;
+use smam::recording::did_you_mean;
 use smam::scene::{STOCK_SCENES, Scene};
 use smam::stock;
 

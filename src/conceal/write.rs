@@ -6,7 +6,7 @@ use std::path::Path;
 use super::ConcealError;
 use super::case::Drawn;
 use super::seal::{seal, sealed_text};
-use crate::recording::write_whole;
+use crate::files::write_whole;
 
 /// Folder of sealed answers inside a folder of cases.
 pub const SEALED: &str = "sealed";

@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 
 use super::{DiagnoseError, Outcome};
-use crate::recording::{Recording, RowWriter, Staged};
+use crate::files::Staged;
+use crate::recording::{Recording, RowWriter};
 
 /// Written last: where it stands, the answer is whole and of one piece.
 const LAST: &str = "diagnosis.json";

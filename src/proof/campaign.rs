@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::ProofError;
 use crate::conceal::{Hiding, Rig, SEALED, draw, seal, write_case};
 use crate::diagnose::{Case, Options, Step, diagnose, write_answer};
-use crate::recording::write_whole;
+use crate::files::write_whole;
 
 /// How many cases, and from which seed they are drawn.
 ///

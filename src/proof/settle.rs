@@ -10,7 +10,8 @@ use super::campaign::Folders;
 use super::row::{Row, read, row_of_answer};
 use crate::conceal::{Hiding, Truth, record_asked, record_drawn};
 use crate::diagnose::{Case, Options, Verdict, diagnose, write_answer};
-use crate::recording::{Recording, read_csv, write_whole};
+use crate::files::write_whole;
+use crate::recording::{Recording, read_csv};
 
 /// What one more run made of an ambiguous answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! Writing recordings as CSV, row by row.
 
-use super::whole_file::{put_in_place, temporary_beside};
 use super::{Recording, RecordingError, TIME_COLUMN};
+use crate::files::{put_in_place, temporary_beside};
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};

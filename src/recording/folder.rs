@@ -3,10 +3,10 @@
 use super::bag_read::read_bag;
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::{Keys, did_you_mean};
-use super::source::open_file;
+use super::source::unopened;
 use super::{FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
+use crate::files::read_text;
 use std::collections::{BTreeMap, HashSet};
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use toml::Table;
 
@@ -115,7 +115,7 @@ impl RecordingSet {
             true => path.to_owned(),
             false => path.join(SET_FILE_NAME),
         };
-        let text = read_text(open_file(&file)?).map_err(|source| unreadable(&file, source))?;
+        let text = read_text(&file).map_err(|source| unreadable(&file, source))?;
         Self::parse(&text, &file)
     }
 
@@ -177,18 +177,6 @@ impl RecordingSet {
     }
 }
 
-/// No set is described at greater length; what is longer is something else.
-const LONGEST_SET_BYTES: u64 = 1 << 24;
-
-fn read_text(source: impl Read) -> io::Result<String> {
-    let mut text = String::new();
-    source.take(LONGEST_SET_BYTES + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > LONGEST_SET_BYTES {
-        return Err(io::Error::other(format!("it has more than {LONGEST_SET_BYTES} bytes")));
-    }
-    Ok(text)
-}
-
 /// A file that is there but no text has another remedy than one that is not there.
 fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
     let file = file.to_owned();
@@ -197,7 +185,7 @@ fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
             let problem = "it is not UTF-8 text\n  remedy: save it as text in UTF-8".to_owned();
             RecordingError::Key { file, table: "encoding".to_owned(), problem }
         }
-        _ => RecordingError::Read { file, source },
+        _ => unopened(&file, source),
     }
 }
 

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::{Recording, RecordingError, bag_read, parquet_read, read_csv, write_whole_bytes};
+use super::{Recording, RecordingError, bag_read, parquet_read, read_csv};
 use crate::bag::{self, JointPositions};
 use crate::columns::{Column, NamedColumn, encode};
+use crate::files::write_whole_bytes;
 
 /// How a file holds a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

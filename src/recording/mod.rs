@@ -30,7 +30,6 @@ pub mod figures;
 mod folder;
 mod folder_keys;
 mod formats;
-mod hold;
 mod noise;
 mod one_clock;
 mod parquet_read;
@@ -39,7 +38,6 @@ mod schema;
 mod source;
 mod survey;
 mod unit;
-mod whole_file;
 
 pub use bag_read::read_bag_from;
 pub use bag_source::BagSource;
@@ -51,12 +49,10 @@ pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use folder_keys::did_you_mean;
 pub use formats::{FileFormat, read_recording};
-pub use hold::{Held, hold_folder};
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
-pub use whole_file::{Staged, Unfinished, write_whole, write_whole_bytes};
 
 pub use crate::bag::{Clock, JointPositions};

@@ -5,20 +5,26 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::RecordingError;
+use crate::files;
 
 /// No line of a text is longer, header included: ten thousand columns with names of a hundred letters.
 const LONGEST_LINE_BYTES: usize = 1 << 20;
 
-/// Opens a file. A pipe would be waited for, a device may never end.
+/// Opens a file, as [`files::open`].
 pub(super) fn open_file(path: &Path) -> Result<File, RecordingError> {
-    let failed = |source| RecordingError::Read { file: path.to_owned(), source };
-    let kind = std::fs::metadata(path).map_err(failed)?;
-    if kind.is_file() || kind.is_dir() {
-        return File::open(path).map_err(failed);
+    files::open(path).map_err(|source| unopened(path, source))
+}
+
+/// Why a file cannot be opened, in a recording's words.
+pub(super) fn unopened(path: &Path, source: io::Error) -> RecordingError {
+    let file = path.to_owned();
+    match source.kind() {
+        io::ErrorKind::InvalidInput => RecordingError::Format {
+            file,
+            problem: format!("{source}\n  remedy: save its content as a file, and name that"),
+        },
+        _ => RecordingError::Read { file, source },
     }
-    let problem =
-        "it is a pipe or a device, not a file\n  remedy: save its content as a file, and name that".to_owned();
-    Err(RecordingError::Format { file: path.to_owned(), problem })
 }
 
 /// The bytes of a text file that stays as it is while it is read: half a number is a number too.

@@ -8,7 +8,7 @@ use super::plan::Plan;
 use super::point::Row;
 use super::spec::{Goal, LimitSpec};
 use super::table::Table;
-use crate::recording::write_whole;
+use crate::files::write_whole;
 
 /// Indices into the table's rows: within the limits, and beaten by no other in all objectives. Without objectives none.
 pub fn best(plan: &Plan, table: &Table) -> Vec<usize> {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::SweepError;
 use super::plan::Plan;
 use super::point::Row;
-use crate::recording::{Held, hold_folder};
+use crate::files::{Held, hold_folder};
 
 /// Name of the journal in a sweep's folder.
 const NAME: &str = "journal.jsonl";
@@ -84,7 +84,7 @@ impl Journal {
         let done = if path.is_file() { read(folder, &plan.fingerprint)? } else { BTreeMap::new() };
         let text = lines(plan, done.values());
         // Written anew: a line that a kill cut off is gone, and what follows starts on a line of its own.
-        crate::recording::write_whole(&path, &text).map_err(write)?;
+        crate::files::write_whole(&path, &text).map_err(write)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(write)?;
         Ok(Self { _folder: held, path, file: Mutex::new(file), done })
     }

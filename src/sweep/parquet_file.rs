@@ -14,7 +14,7 @@ use crate::columns::{Column, NamedColumn, decode, encode};
 pub fn write_parquet(table: &Table, path: &Path) -> Result<(), SweepError> {
     let failed = |source: std::io::Error| SweepError::Write { file: path.to_owned(), source };
     let bytes = encode(&columns(table)).map_err(|e| failed(std::io::Error::other(e)))?;
-    crate::recording::write_whole_bytes(path, &bytes).map_err(failed)
+    crate::files::write_whole_bytes(path, &bytes).map_err(failed)
 }
 
 fn columns(table: &Table) -> Vec<NamedColumn> {

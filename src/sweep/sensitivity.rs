@@ -13,7 +13,7 @@ use super::plan::Plan;
 use super::sobol_indices::sobol_indices;
 use super::spec::SamplingSpec;
 use super::table::{Table, quoted};
-use crate::recording::write_whole;
+use crate::files::write_whole;
 
 /// What a key does to a measure.
 #[derive(Clone, Debug, PartialEq)]

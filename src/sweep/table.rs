@@ -9,7 +9,7 @@ use super::journal::read;
 use super::parquet_file::{read_parquet, write_parquet};
 use super::plan::Plan;
 use super::point::Row;
-use crate::recording::write_whole;
+use crate::files::write_whole;
 
 /// All rows of a sweep that are there.
 #[derive(Clone, Debug, PartialEq)]

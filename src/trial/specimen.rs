@@ -8,7 +8,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::effects::Effect;
-use crate::recording::{Channel, Recording, write_whole};
+use crate::files::write_whole;
+use crate::recording::{Channel, Recording};
 use crate::scene::{Override, Scene, calibration_key};
 use crate::system::{InputSource, Schedule, Simulation, record};
 

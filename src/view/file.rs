@@ -7,7 +7,7 @@ use std::path::Path;
 use rerun::RecordingStream;
 
 use super::error::ViewError;
-use crate::recording::Unfinished;
+use crate::files::Unfinished;
 
 /// The last bytes of a stream that has ended: this, and how many footers there are (four bytes).
 const END: &[u8; 8] = b"RRF2FOOT";

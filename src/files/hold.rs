@@ -16,7 +16,7 @@ pub enum Held {
 /// Takes a folder for this program alone.
 ///
 /// ```
-/// use smam::recording::{Held, hold_folder};
+/// use smam::files::{Held, hold_folder};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let folder = tempfile::tempdir()?;

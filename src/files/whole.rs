@@ -9,7 +9,7 @@ use tempfile::{NamedTempFile, TempPath};
 /// one is complete.
 ///
 /// ```
-/// use smam::recording::write_whole;
+/// use smam::files::write_whole;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let folder = tempfile::tempdir()?;
@@ -35,7 +35,7 @@ pub fn write_whole_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// the disk.
 ///
 /// ```
-/// use smam::recording::Staged;
+/// use smam::files::Staged;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let folder = tempfile::tempdir()?;
@@ -120,7 +120,7 @@ impl Unfinished {
 }
 
 /// An empty file in the folder where `path` shall stand; gone when dropped.
-pub(super) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     // The parent of a bare file name is the empty path.
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -138,7 +138,7 @@ pub(super) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
 }
 
 /// Gives a temporary file its name.
-pub(super) fn put_in_place(file: NamedTempFile, path: &Path) -> io::Result<()> {
+pub(crate) fn put_in_place(file: NamedTempFile, path: &Path) -> io::Result<()> {
     // On the disk before it gets its name: a crash never leaves a named file without its content.
     file.as_file().sync_all()?;
     file.persist(path).map_err(|e| e.error)?;
