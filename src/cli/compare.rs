@@ -1,6 +1,5 @@
 //! `smam compare`.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -8,7 +7,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, load_runs, replay};
-use smam::recording::{ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels};
+use smam::recording::{ChannelFit, Recording, RecordingSet, Run, RunUse, compare as compare_channels};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
@@ -59,10 +58,10 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
     let fits: Vec<Vec<ChannelFit>> = shown
         .iter()
         .zip(&simulated)
-        .map(|(run, is)| compare_channels(&run.recording, is, &set.channels))
+        .map(|(run, is)| compare_channels(&run.recording, is, &set.channels_of(&run.run)))
         .collect::<Result<_, _>>()?;
     let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
-    let picture = compare_svg(&heading, &remark(&report), &figure(&set, &shown, &simulated, &fits));
+    let picture = compare_svg(&heading, &remark(&report), &figure(&shown, &simulated, &fits));
     write(&out.join("compare.svg"), &picture)?;
     let pooled = pool(fits.iter());
     let json = to_json(&scene, &shown, &fits, &pooled, &report);
@@ -97,7 +96,7 @@ fn chosen_run(set: &RecordingSet, file: &str) -> Run {
         (false, Ok(absolute)) => absolute.display().to_string(),
         _ => file.to_owned(),
     };
-    Run { file, run_use: None, conditions: BTreeMap::new() }
+    Run { file, ..Run::default() }
 }
 
 fn default_out(dir: &Path) -> PathBuf {
@@ -123,23 +122,17 @@ fn say_fit(report: &FitReport) {
     }
 }
 
-fn figure(
-    set: &RecordingSet,
-    runs: &[RecordedRun],
-    simulated: &[Recording],
-    fits: &[Vec<ChannelFit>],
-) -> Vec<ComparedRun> {
+fn figure(runs: &[RecordedRun], simulated: &[Recording], fits: &[Vec<ChannelFit>]) -> Vec<ComparedRun> {
     let compared = runs.iter().zip(simulated).zip(fits).map(|((run, is), fits)| ComparedRun {
         name: title(&run.run),
         time_s: run.recording.time_s().to_vec(),
-        channels: set
-            .of_role(Role::Output)
-            .zip(fits)
-            .filter_map(|(spec, fit)| {
+        channels: fits
+            .iter()
+            .filter_map(|fit| {
                 Some(ComparedChannel {
-                    column: spec.column.clone(),
-                    measured: run.recording.find(&spec.column)?.values.clone(),
-                    simulated: is.find(&spec.column)?.values.clone(),
+                    column: fit.column.clone(),
+                    measured: run.recording.find(&fit.column)?.values.clone(),
+                    simulated: is.find(&fit.column)?.values.clone(),
                     noise_sd: fit.noise_sd,
                     rmse: fit.rmse,
                 })

@@ -10,7 +10,7 @@ use super::noise::ChannelNoise;
 use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S, Wave};
 use super::secrets::{KINDS, Kind, Secret};
-use super::solve::solve;
+use super::solve::solve_and_read;
 use super::stock::{Calibration, Rig};
 use crate::recording::{Channel, Recording};
 
@@ -135,12 +135,12 @@ pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, Co
     let mut begun_s = 0.0;
     let mut runs = Vec::new();
     for (wave, drives) in truth.waves.iter().zip(&begun.drives) {
-        let recording = record(&truth, drives, begun_s, &mut random)?;
+        let recording = record(&truth, drives, begun_s, None, &mut random)?;
         runs.push((format!("{}.csv", wave.name()), recording));
         begun_s += drives[0].positions_m.len() as f64 * SAMPLE_S;
     }
-    let holdout =
-        record(&Truth { decoys: pressure_only(&truth.decoys), ..truth.clone() }, &begun.unseen, begun_s, &mut random)?;
+    let whole = Truth { decoys: pressure_only(&truth.decoys), ..truth.clone() };
+    let holdout = record(&whole, &begun.unseen, begun_s, None, &mut random)?;
     Ok(Drawn { truth, runs, holdout })
 }
 
@@ -198,7 +198,14 @@ pub fn plant_of(truth: &Truth, begun_s: f64) -> Plant {
     plant
 }
 
-/// Plays a programme on the hiding plant and records it with the rig's sensors.
+/// Noise of a sensor that a rig has without showing it, or can be given; `None` of one that it cannot.
+pub fn sensor_noise(truth: &Truth, column: &str) -> Option<ChannelNoise> {
+    let own = truth.rig.outputs().iter().zip(&truth.noise).find(|(o, _)| o.column == column);
+    let more = truth.rig.more_sensors().iter().find(|o| o.column == column);
+    own.map(|(_, noise)| *noise).or(more.map(|o| ChannelNoise::white(o.noise_sd)))
+}
+
+/// Plays a programme on the hiding plant and records it with the rig's sensors, and with one more if one is asked for.
 ///
 /// # Errors
 /// A plant that the solver cannot follow.
@@ -206,10 +213,13 @@ pub fn record(
     truth: &Truth,
     drives: &[Drive],
     begun_s: f64,
+    sensor: Option<&str>,
     random: &mut ChaCha8Rng,
 ) -> Result<Recording, ConcealError> {
     let plant = plant_of(truth, begun_s);
-    let mut series = solve(&plant, drives)?;
+    let both = |plant: &Plant, t: f64, x: &[f64]| [plant.outputs(x), plant.more_outputs(t, x)].concat();
+    let mut series = solve_and_read(&plant, drives, both)?;
+    let mut more = series.split_off(truth.rig.outputs().len());
     let count = drives[0].positions_m.len();
     for ((output, series), noise) in truth.rig.outputs().iter().zip(&mut series).zip(&truth.noise) {
         for secret in truth.secrets.iter().filter(|s| s.channel.as_deref() == Some(output.column)) {
@@ -227,7 +237,15 @@ pub fn record(
     for (column, drive) in truth.rig.inputs().iter().zip(drives) {
         channels.push(Channel::new(*column, pick(&|k| rounded(1e3 * drive.positions_m[k]))));
     }
-    for (output, series) in truth.rig.outputs().iter().zip(&series).filter(|(o, _)| is_shown(o.column, &truth.decoys)) {
+    // Drawn last: what else a seed makes of a case is the same with and without that sensor.
+    for (output, series) in truth.rig.more_sensors().iter().zip(&mut more).filter(|(o, _)| sensor == Some(o.column)) {
+        let noise = ChannelNoise::white(output.noise_sd).series(count, random);
+        series.iter_mut().zip(noise).for_each(|(x, n)| *x += n);
+    }
+    let is_shown = |column: &str| is_shown(column, &truth.decoys) || sensor == Some(column);
+    let own = truth.rig.outputs().iter().zip(&series).filter(|(o, _)| is_shown(o.column));
+    let more = truth.rig.more_sensors().iter().zip(&more).filter(|(o, _)| sensor == Some(o.column));
+    for (output, series) in own.chain(more) {
         channels.push(Channel::new(output.column, pick(&|k| rounded(series[k]))));
     }
     Ok(Recording::new(pick(&|k| k as f64 * SAMPLE_S), channels)?)

@@ -21,13 +21,13 @@ mod write;
 
 use std::path::PathBuf;
 
-pub use case::{Decoy, Drawn, Hiding, Truth, draw};
+pub use case::{Decoy, Drawn, Hiding, Truth, draw, sensor_noise};
 pub use ceiling::{Ceiling, ceiling};
 pub use more::{record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;
 pub use secrets::Secret;
-pub use stock::{Calibration, Rig};
+pub use stock::{Calibration, Output, Rig};
 pub use write::{SEALED, write_case};
 
 use crate::recording::RecordingError;

@@ -8,11 +8,12 @@ use super::case::{Truth, record};
 use super::programme::{Drive, SAMPLE_S, Wave, programme};
 use crate::recording::{PiecewiseLinear, Recording};
 
-/// Records a programme that somebody asks for: the plungers' positions in the rig's own columns.
+/// Records a programme that somebody asks for: the plungers' positions in the rig's own columns; with a sensor that the
+/// other runs do not have, if one is asked for and the rig can be given it ([`sensor_noise`](super::sensor_noise)).
 ///
 /// # Errors
 /// Columns that the rig does not have, a plant that the solver cannot follow.
-pub fn record_asked(truth: &Truth, inputs: &Recording) -> Result<Recording, ConcealError> {
+pub fn record_asked(truth: &Truth, inputs: &Recording, sensor: Option<&str>) -> Result<Recording, ConcealError> {
     let end_s = inputs.time_s().last().copied().unwrap_or(0.0);
     let count = (end_s / SAMPLE_S).round() as usize + 1;
     let mut drives = Vec::new();
@@ -21,19 +22,19 @@ pub fn record_asked(truth: &Truth, inputs: &Recording) -> Result<Recording, Conc
         let asked = asked.ok_or_else(|| ConcealError::Solver(format!("{column}: no position is asked for")))?;
         drives.push(Drive { positions_m: (0..count).map(|k| asked.value(k as f64 * SAMPLE_S)).collect() });
     }
-    record(truth, &drives, begins_s(truth), &mut ChaCha8Rng::seed_from_u64(!truth.seed))
+    record(truth, &drives, begins_s(truth), sensor, &mut ChaCha8Rng::seed_from_u64(!truth.seed))
 }
 
-/// Records a waveform that is drawn, over so many seconds.
+/// Records a waveform that is drawn, over so many seconds, with a sensor as [`record_asked`].
 ///
 /// # Errors
 /// A plant that the solver cannot follow.
-pub fn record_drawn(truth: &Truth, duration_s: f64) -> Result<Recording, ConcealError> {
+pub fn record_drawn(truth: &Truth, duration_s: f64, sensor: Option<&str>) -> Result<Recording, ConcealError> {
     let mut random = ChaCha8Rng::seed_from_u64(truth.seed ^ 0x5eed);
     let waves = [Wave::Sine, Wave::Steps, Wave::Chirp, Wave::Triangle, Wave::Wander];
     let wave = waves[random.random_range(0..waves.len())];
     let drives = programme(truth.rig, wave, duration_s, &mut random);
-    record(truth, &drives, begins_s(truth), &mut random)
+    record(truth, &drives, begins_s(truth), sensor, &mut random)
 }
 
 /// When the runs of the case have ended, s.

@@ -18,6 +18,11 @@ pub struct ChannelNoise {
 }
 
 impl ChannelNoise {
+    /// White noise of a deviation.
+    pub fn white(sd: f64) -> Self {
+        Self { sd, slow_share: 0.0, correlation_s: SAMPLE_S }
+    }
+
     /// A channel's noise about that of such sensors; `coloured` or white.
     pub fn draw(typical_sd: f64, coloured: bool, random: &mut ChaCha8Rng) -> Self {
         let sd = typical_sd * 2f64.powf(random.random_range(-1.0..1.0));

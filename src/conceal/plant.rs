@@ -206,6 +206,18 @@ impl Plant {
         }
     }
 
+    /// What the sensors of [`Rig::more_sensors`] show, in their columns' units: the pull of a muscle, cables' tensions.
+    pub fn more_outputs(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        match self.rig {
+            Rig::MuscleBench => {
+                let (s, x) = (&self.muscles[0], &x[..MUSCLE_STATES]);
+                vec![self.pull(s, t, x, far_pressure_pa(s, x[V_M]))]
+            }
+            Rig::AntagonisticPulley => self.tensions(x).to_vec(),
+            Rig::BendingCatheter => Vec::new(),
+        }
+    }
+
     /// How far each joint lets the cable of a muscle in, m per rad.
     fn lever_m(&self, muscle: usize, joint: usize) -> f64 {
         match (self.rig, muscle, joint) {

@@ -208,17 +208,18 @@ fn greatest(series: &[f64]) -> f64 {
     series.iter().fold(f64::MIN_POSITIVE, |g, x| g.max(x.abs()))
 }
 
-/// Filters of first order in series, which share the time constant.
+/// Filters of first order in series, which share the time constant; exact for inputs that go straight from sample to
+/// sample.
 fn lag(series: &mut [f64], interval_s: f64, time_constant_s: f64, stages: usize) {
-    let share = 1.0 - (-interval_s * stages as f64 / time_constant_s.max(1e-9)).exp();
+    let time_s = time_constant_s.max(1e-9) / stages as f64;
+    let kept = (-interval_s / time_s).exp();
     for _ in 0..stages {
         let mut state = series.first().copied().unwrap_or(0.0);
         let mut before = state;
         for x in series.iter_mut() {
-            // The input between two samples stands for by their mean.
-            let input = 0.5 * (before + *x);
+            let behind = time_s * (*x - before) / interval_s;
+            state = *x - behind + (state - before + behind) * kept;
             before = *x;
-            state += share * (input - state);
             *x = state;
         }
     }

@@ -82,14 +82,28 @@ impl Interval {
 /// # Errors
 /// A plant that the solver cannot follow.
 pub fn solve(plant: &Plant, drives: &[Drive]) -> Result<Vec<Vec<f64>>, ConcealError> {
+    solve_and_read(plant, drives, |plant, _, x| plant.outputs(x))
+}
+
+/// The same with whatever is read from plant, time and state at every sample, as many numbers each time.
+///
+/// # Errors
+/// A plant that the solver cannot follow.
+pub fn solve_and_read(
+    plant: &Plant,
+    drives: &[Drive],
+    read: impl Fn(&Plant, f64, &[f64]) -> Vec<f64>,
+) -> Result<Vec<Vec<f64>>, ConcealError> {
     let (plant, drives): (Arc<Plant>, Arc<[Drive]>) = (Arc::new(plant.clone()), drives.into());
     let scales: Arc<[f64]> = plant.scales().into();
     let mut scaled: Vec<f64> = plant.start().iter().zip(scales.iter()).map(|(x, s)| x / s).collect();
     let count = drives[0].positions_m.len();
-    let mut channels = vec![Vec::with_capacity(count); plant.rig.outputs().len()];
+    let mut channels: Vec<Vec<f64>> = Vec::new();
     for k in 0..count {
         let x: Vec<f64> = scaled.iter().zip(scales.iter()).map(|(x, s)| x * s).collect();
-        channels.iter_mut().zip(plant.outputs(&x)).for_each(|(channel, value)| channel.push(value));
+        let values = read(&plant, k as f64 * SAMPLE_S, &x);
+        channels.resize_with(values.len(), || Vec::with_capacity(count));
+        channels.iter_mut().zip(values).for_each(|(channel, value)| channel.push(value));
         if k + 1 < count {
             let interval = Interval {
                 plant: Arc::clone(&plant),

@@ -7,7 +7,7 @@ use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S, Wave, programme};
 use super::seal::{seal, sealed_text};
 use super::solve::solve;
-use super::stock::{Calibration, Rig};
+use super::stock::{Calibration, Rig, STRING_LOAD_N};
 use super::{Hiding, draw};
 use crate::recording::{Channel, Recording};
 
@@ -90,7 +90,7 @@ fn a_run_asked_for_is_played_after_the_others() {
         decoys: Vec::new(),
         ..drawn.truth.clone()
     };
-    let played = super::record_asked(&quiet, &asked).expect("a run");
+    let played = super::record_asked(&quiet, &asked, None).expect("a run");
     assert_eq!(played.time_s().len(), 300);
     assert!((played.channel("plunger_mm").expect("there").values[200] - 1.0).abs() < 1e-9);
     let plant = Plant::new(Rig::MuscleBench, quiet.calibration);
@@ -98,6 +98,43 @@ fn a_run_asked_for_is_played_after_the_others() {
     let expected = solve(&plant, &drive).expect("the same");
     let shown = &played.channel("elongation_mm").expect("there").values;
     assert!(shown.iter().zip(&expected[0]).all(|(a, b)| (a - b).abs() < 1e-4));
-    let random = super::record_drawn(&drawn.truth, 20.0).expect("a run");
+    let random = super::record_drawn(&drawn.truth, 20.0, None).expect("a run");
     assert!((random.time_s().last().copied().unwrap_or(0.0) - 20.0).abs() < 0.2);
+}
+
+/// A load cell that is added shows the string's load once the muscle rests, and leaves the other channels as they were.
+#[test]
+fn a_sensor_is_added_to_one_run_and_changes_nothing_else() {
+    let drawn = draw("a", Rig::MuscleBench, Hiding::Nothing, 3).expect("a case");
+    let t: Vec<f64> = (0..800).map(|k| f64::from(k) * SAMPLE_S).collect();
+    let asked_mm: Vec<f64> = t.iter().map(|t| 0.5 * t.min(2.0)).collect();
+    let asked = Recording::new(t, vec![Channel::new("plunger_mm", asked_mm)]).expect("a recording");
+    let plain = super::record_asked(&drawn.truth, &asked, None).expect("a run");
+    let with = super::record_asked(&drawn.truth, &asked, Some("force_n")).expect("a run");
+    assert!(plain.find("force_n").is_none());
+    let shown = &with.channel("force_n").expect("asked for").values;
+    let rest = &shown[shown.len() / 2..];
+    let mean = rest.iter().sum::<f64>() / rest.len() as f64;
+    assert!((mean - STRING_LOAD_N).abs() < 5e-3, "{mean}");
+    for channel in plain.channels() {
+        let same = &with.channel(&channel.column).expect("there").values;
+        assert!(same.iter().zip(&channel.values).all(|(a, b)| a.to_bits() == b.to_bits()), "{}", channel.column);
+    }
+    assert!(
+        super::sensor_noise(&drawn.truth, "force_n").is_some()
+            && super::sensor_noise(&drawn.truth, "tension_1_n").is_none()
+    );
+}
+
+/// A lag shorter than the sampling interval is as long as it says, too.
+#[test]
+fn a_ramp_lags_by_the_time_constant() {
+    let kind = super::secrets::KINDS.iter().find(|k| k.name == "sensor_lag").expect("listed");
+    for (size, is_altered) in [(0.003, false), (0.007, true), (0.05, false), (0.05, true)] {
+        let secret = super::Secret { size, is_altered, ..super::Secret::typical(kind, Rig::MuscleBench, 0, 0) };
+        let mut ramp: Vec<f64> = (0..400).map(|k| f64::from(k) * SAMPLE_S).collect();
+        let end = ramp[399];
+        secret.corrupt(&mut ramp, SAMPLE_S, 0.0);
+        assert!((end - ramp[399] - size).abs() < 1e-9, "{size} {is_altered}: {}", end - ramp[399]);
+    }
 }

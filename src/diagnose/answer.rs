@@ -139,15 +139,54 @@ pub struct NextExperiment {
     pub why: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// Standard errors by which the programme alone sets apart what it is for.
     pub separation_sigma: f64,
-    /// A sensor that would settle it, if one would.
+    /// What the file holds, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub programme: Option<String>,
+    /// The answer, and the rival that is nearest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between: Option<[String; 2]>,
+    /// An output that was not recorded and would help much, if one would.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
+    /// Standard errors with that sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor_sigma: Option<f64>,
 }
+
+/// Separation from which an experiment settles a question, standard errors.
+pub const SETTLES_SIGMA: f64 = 5.0;
 
 impl NextExperiment {
     /// None, and why.
     pub fn none(why: &str) -> Self {
         Self { why: why.to_owned(), ..Self::default() }
+    }
+
+    /// Whether it takes the sensor, and not only the programme.
+    pub fn needs_sensor(&self) -> bool {
+        self.separation_sigma <= SETTLES_SIGMA && self.sensor_sigma.is_some_and(|s| s > SETTLES_SIGMA)
+    }
+
+    /// What the programme promises, in words; none where none is proposed.
+    pub fn promise(&self) -> Option<String> {
+        let (programme, sigma) = (self.programme.as_ref()?, self.separation_sigma);
+        Some(match sigma > SETTLES_SIGMA {
+            _ if self.needs_sensor() => "no programme within the recorded strokes would do by itself".to_owned(),
+            true => format!("{programme} would set them {sigma:.1} standard errors apart"),
+            false => format!("even {programme} would set them only {sigma:.1} standard errors apart"),
+        })
+    }
+
+    /// What the sensor promises, in words; none where none is asked for.
+    pub fn sensor_promise(&self) -> Option<String> {
+        let (column, sigma) = (self.sensor.as_ref()?, self.sensor_sigma?);
+        let programme = self.programme.as_ref().filter(|_| self.needs_sensor());
+        let would = match programme {
+            Some(programme) => format!("{programme} would set them {sigma:.1} standard errors apart"),
+            None => format!("{sigma:.1}"),
+        };
+        Some(format!("with {column} recorded as well, {would}"))
     }
 }

@@ -1,15 +1,10 @@
 //! Step 8: the programme that would tell best what stays open, within the strokes and speeds that were recorded.
 
-use std::borrow::Cow;
-
-use nalgebra::{DMatrix, DVector};
-
-use super::answer::NextExperiment;
-use super::case::{Case, CaseChannel, CaseRun};
+use super::answer::{NextExperiment, SETTLES_SIGMA};
+use super::apart::{Known, separation, with_each_sensor};
+use super::case::{Case, CaseRun};
 use super::fit::{Fit, Problem};
-use super::model::{Sides, simulate};
 use super::noise::Noise;
-use super::normal::Rows;
 use super::programme::{INTERVAL_S, Stroke, chirp, held, sample, sine, strokes};
 use super::search::title;
 use super::verdict::Open;
@@ -20,15 +15,8 @@ use crate::system::TwinRun;
 const DURATION_S: f64 = 60.0;
 /// And of those that may be tried where shorter ones would not settle what is open, s.
 const LONGER_S: [f64; 2] = [180.0, 300.0];
-/// Separation from which an experiment settles a question, standard errors.
-const SETTLES: f64 = 5.0;
 /// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
 const END: f64 = 0.15;
-/// An added sensor is worth a word when it multiplies the separation by this.
-const SENSOR_WORTH: f64 = 1.5;
-/// Noise that sensors have who knows nothing better, by unit of their column.
-const TYPICAL_NOISE: [(&str, f64); 4] = [("_mm", 0.02), ("_kpa", 5.0), ("_deg", 0.15), ("_n", 0.02)];
-
 /// A proposal with the inputs to play.
 pub struct Experiment {
     pub next: NextExperiment,
@@ -43,6 +31,13 @@ struct Candidate<'a> {
     separation: f64,
     /// The rival that it sets apart least.
     rival: &'a Fit,
+}
+
+impl Candidate<'_> {
+    fn words(&self) -> String {
+        let seconds = self.inputs.time_s().len() as f64 * INTERVAL_S;
+        if seconds > DURATION_S { format!("{seconds:.0} s of {}", self.name) } else { self.name.to_owned() }
+    }
 }
 
 /// The programme that would set the nearest of the rivals apart best, where nothing is open.
@@ -61,96 +56,110 @@ pub fn confirm<'a>(
         };
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
-    let (case, noise) = (whole.case, whole.noise);
-    let apart = |run: &CaseRun| Some((separation(case, noise, best, nearest, run)?, nearest));
-    propose(whole, best, (USUAL, DURATION_S), false, apart)
+    let apart = |problem: &Problem, run: &CaseRun| Some((separation(problem, best, nearest, run)?, nearest));
+    let Some(winner) = ranked(whole, best, (USUAL, DURATION_S), &apart)? else { return Ok(none_to_play()) };
+    let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
+    Ok(proposal(best, false, winner, sensor.map(|s| (s.column, s.separation))))
 }
 
 /// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are. A minute long, or longer where that settles what a minute would not.
+/// greatest, counted with the recordings that there are. A minute long, or longer where that settles what a minute would
+/// not; where neither does and a sensor would, the programme that does with it.
 ///
 /// # Errors
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
     let known = Known::of(whole, best, open);
-    let apart = |run: &CaseRun| known.as_ref()?.least_separation(whole, best, open, run);
-    let minute = propose(whole, best, (ALL, DURATION_S), true, apart)?;
-    if minute.next.separation_sigma > SETTLES {
-        return Ok(minute);
+    let apart = |problem: &Problem, run: &CaseRun| known.as_ref()?.least_separation(problem, best, open, run);
+    let mut minutes = all_ranked(whole, best, (ALL, DURATION_S), &apart)?;
+    let settles = |winner: &Candidate| winner.separation > SETTLES_SIGMA;
+    let mut longer = None;
+    for duration_s in LONGER_S.into_iter().filter(|_| !minutes.first().is_some_and(settles)) {
+        longer = longer.or(ranked(whole, best, (ALL, duration_s), &apart)?.filter(settles));
     }
-    for duration_s in LONGER_S {
-        let longer = propose(whole, best, (ALL, duration_s), true, apart)?;
-        if longer.next.separation_sigma > SETTLES {
-            return Ok(longer);
-        }
+    if minutes.is_empty() {
+        return Ok(none_to_play());
     }
-    // What would not do either is not worth the time.
-    Ok(minute)
+    if let Some(winner) = longer {
+        minutes = vec![winner];
+    }
+    // What settles by itself is played; else whatever would with one more sensor.
+    let played = if settles(&minutes[0]) { 1 } else { minutes.len() };
+    let sensor = best_sensor(whole, &minutes[..played], &apart);
+    let at = sensor.as_ref().filter(|s| s.separation > SETTLES_SIGMA).map_or(0, |s| s.candidate);
+    Ok(proposal(best, true, minutes.swap_remove(at), sensor.map(|s| (s.column, s.separation))))
 }
 
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
 const USUAL: usize = 6;
 const ALL: usize = usize::MAX;
 
-/// Ranks programmes by how far they set the best apart from a rival, which `apart` names.
-fn propose<'a>(
+/// How far a run sets the answer apart from a rival, and from which.
+type Apart<'a, 'c> = dyn Fn(&Problem, &CaseRun) -> Option<(f64, &'a Fit)> + 'c;
+
+/// The best of the programmes; none where none can be simulated.
+fn ranked<'a>(
     whole: &Problem,
     best: &Fit,
-    (most, duration_s): (usize, f64),
-    is_open: bool,
-    apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
-) -> Result<Experiment, RecordingError> {
-    let (case, noise) = (whole.case, whole.noise);
-    let mut ranked = candidates(case, noise, best, (most, duration_s), apart)?;
-    ranked.sort_by(|a, b| b.separation.total_cmp(&a.separation));
-    let Some(winner) = ranked.into_iter().next() else {
-        let why = "no programme within the recorded strokes can be simulated";
-        return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
-    };
-    let sensor = best_sensor(case, noise, best, &winner);
-    let next = NextExperiment {
-        why: why(&winner, best, is_open, sensor.as_ref()),
-        file: Some("next_experiment.csv".to_owned()),
-        separation_sigma: winner.separation,
-        sensor: sensor.map(|(column, _)| column),
-    };
-    Ok(Experiment { next, inputs: Some(winner.inputs) })
+    which: (usize, f64),
+    apart: &Apart<'a, '_>,
+) -> Result<Option<Candidate<'a>>, RecordingError> {
+    Ok(all_ranked(whole, best, which, apart)?.into_iter().next())
 }
 
-fn why(winner: &Candidate, best: &Fit, is_open: bool, sensor: Option<&(String, f64)>) -> String {
-    let (best, rival, sigma) = (title(&best.model), title(&winner.rival.model), winner.separation);
-    let open = match is_open {
-        true => format!("{best} and {rival} explain these recordings about equally well"),
-        false => format!("{best} is settled; the nearest rival is {rival}"),
+/// The programmes that can be simulated, those first that set the best apart from its rivals most.
+fn all_ranked<'a>(
+    whole: &Problem,
+    best: &Fit,
+    which: (usize, f64),
+    apart: &Apart<'a, '_>,
+) -> Result<Vec<Candidate<'a>>, RecordingError> {
+    let mut ranked = candidates(whole, best, which, apart)?;
+    ranked.sort_by(|a, b| b.separation.total_cmp(&a.separation));
+    Ok(ranked)
+}
+
+fn none_to_play() -> Experiment {
+    let why = "no programme within the recorded strokes can be simulated";
+    Experiment { next: NextExperiment::none(why), inputs: None }
+}
+
+fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<(String, f64)>) -> Experiment {
+    let [of_best, of_rival] = [title(&best.model), title(&winner.rival.model)];
+    let question = match is_open {
+        true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
+        false => format!("{of_best} is settled; the nearest rival is {of_rival}"),
     };
-    let seconds = winner.inputs.time_s().len() as f64 * INTERVAL_S;
-    let programme = match seconds > DURATION_S {
-        true => format!("{seconds:.0} s of {}", winner.name),
-        false => winner.name.to_owned(),
+    let (sensor, sensor_sigma) = sensor.unzip();
+    let mut next = NextExperiment {
+        why: String::new(),
+        file: Some("next_experiment.csv".to_owned()),
+        separation_sigma: winner.separation,
+        programme: Some(winner.words()),
+        between: Some([of_best, of_rival]),
+        sensor,
+        sensor_sigma,
     };
-    let would = match sigma > SETTLES {
-        true => format!("{programme} would set them {sigma:.1} standard errors apart"),
-        false => format!("even {programme} would set them only {sigma:.1} standard errors apart"),
-    };
-    let sensor = sensor.map_or(String::new(), |(column, s)| format!("; with {column} recorded as well, {s:.1}"));
-    format!("{open}; {would}{sensor}")
+    let said = [Some(question), next.promise(), next.sensor_promise()];
+    next.why = said.into_iter().flatten().collect::<Vec<_>>().join("; ");
+    Experiment { next, inputs: Some(winner.inputs) }
 }
 
 /// The first `most` programmes with their separation; one that cannot be simulated is left out.
 fn candidates<'a>(
-    case: &Case,
-    noise: &[Noise],
+    whole: &Problem,
     best: &Fit,
     (most, duration_s): (usize, f64),
-    apart: impl Fn(&CaseRun) -> Option<(f64, &'a Fit)>,
+    apart: &Apart<'a, '_>,
 ) -> Result<Vec<Candidate<'a>>, RecordingError> {
+    let (case, noise) = (whole.case, whole.noise);
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
     let fast_hz = fastest_hz(case, &strokes);
     let mut list = Vec::new();
     for (name, inputs) in programmes(&strokes, fast_hz, duration_s)?.into_iter().take(most) {
         let Some(run) = play(case, noise, best, &inputs)? else { continue };
-        let Some((separation, rival)) = apart(&run) else { continue };
+        let Some((separation, rival)) = apart(whole, &run) else { continue };
         list.push(Candidate { name, inputs, run, separation, rival });
     }
     Ok(list)
@@ -217,85 +226,29 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
     Ok(alone.plan_steps(&setting, noise).and_then(|()| alone.runs.pop()))
 }
 
-/// Distance between two models on a run in standard errors, what the best could imitate by other numbers taken off.
-fn separation(case: &Case, noise: &[Noise], best: &Fit, rival: &Fit, run: &CaseRun) -> Option<f64> {
-    let alone = Problem { case, runs: Vec::new(), noise };
-    Some(beyond(played(&alone, best, rival, run)?))
+/// An added sensor is worth a word when it multiplies the separation by this.
+const SENSOR_WORTH: f64 = 1.5;
+
+/// What one more sensor would bring.
+struct Sensed {
+    column: String,
+    separation: f64,
+    /// Which of the programmes it would be recorded with.
+    candidate: usize,
 }
 
-/// What a run would show if a rival were true: residuals of the best, and the derivatives to its numbers.
-fn played(problem: &Problem, best: &Fit, rival: &Fit, run: &CaseRun) -> Option<Rows> {
-    let (case, noise) = (problem.case, problem.noise);
-    let mut run = run.clone();
-    run.measured = simulate(case, &run, &rival.model, &rival.x)?;
-    let problem = Problem { case, runs: vec![Cow::Owned(run)], noise };
-    problem.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)
-}
-
-/// Length of the residual less what the slopes can make of it.
-fn beyond(rows: Rows) -> f64 {
-    let basis = rows.slopes.qr().q();
-    (&rows.residual - &basis * basis.tr_mul(&rows.residual)).norm()
-}
-
-/// What the recordings that there are say about the difference between the best and its rivals.
-struct Known {
-    /// Derivatives to the best's numbers, sample by sample.
-    slopes: DMatrix<f64>,
-    /// Rival minus best, of each rival.
-    apart: Vec<DVector<f64>>,
-}
-
-impl Known {
-    fn of(whole: &Problem, best: &Fit, open: &Open) -> Option<Self> {
-        let rows = whole.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)?;
-        let of = |rival: &&Fit| Some(&rows.residual - whole.weighted_residual(&rival.model, &rival.x)?);
-        let apart = open.rivals.iter().map(of).collect::<Option<Vec<_>>>()?;
-        Some(Self { slopes: rows.slopes, apart })
-    }
-
-    /// Distance in standard errors from the rival that a run sets apart least, after the best's numbers have been fitted to
-    /// that rival on all there would then be.
-    fn least_separation<'a>(
-        &self,
-        whole: &Problem,
-        best: &Fit,
-        open: &Open<'a>,
-        run: &CaseRun,
-    ) -> Option<(f64, &'a Fit)> {
-        let mut least: Option<(f64, &'a Fit)> = None;
-        for (rival, known) in open.rivals.iter().zip(&self.apart) {
-            let rows = played(whole, best, rival, run)?;
-            let all = Rows::stack(&[Rows { slopes: self.slopes.clone(), residual: known.clone() }, rows])?;
-            let separation = beyond(all) / open.unit.sqrt();
-            if least.is_none_or(|(s, _)| separation < s) {
-                least = Some((separation, *rival));
+/// The sensor and the programme that together set the best apart most, if that is worth a sensor.
+fn best_sensor(whole: &Problem, programmes: &[Candidate], apart: &Apart) -> Option<Sensed> {
+    let mut found: Option<Sensed> = None;
+    for (candidate, programme) in programmes.iter().enumerate() {
+        with_each_sensor(whole, &programme.run, |column, problem, run| {
+            let Some((separation, _)) = apart(problem, run) else { return };
+            if found.as_ref().is_none_or(|f| separation > f.separation) {
+                found = Some(Sensed { column: column.to_owned(), separation, candidate });
             }
-        }
-        least
+        });
     }
-}
-
-/// The output of the scene that was not recorded and would help most, with the separation that it brings.
-fn best_sensor(case: &Case, noise: &[Noise], best: &Fit, winner: &Candidate) -> Option<(String, f64)> {
-    let mut found: Option<(String, f64)> = None;
-    let without = separation(case, noise, best, winner.rival, &winner.run)?;
-    for (output, spec) in case.scene.file.output.iter().enumerate() {
-        let sd = TYPICAL_NOISE.iter().find(|(unit, _)| spec.channel.ends_with(unit)).map(|(_, sd)| *sd);
-        let Some(sd) = sd.filter(|_| case.channels.iter().all(|c| c.output != output)) else { continue };
-        let mut wider = case.clone();
-        let (column, has_free_zero) = (spec.channel.clone(), spec.counts_from_start);
-        wider.channels.push(CaseChannel { column, output, stated_sd: Some(sd), has_free_zero });
-        let mut run = winner.run.clone();
-        run.measured.push(vec![f64::NAN; run.drive.times_s.len()]);
-        let noise: Vec<Noise> = noise.iter().copied().chain([Noise::white(sd)]).collect();
-        let Some(with) = separation(&wider, &noise, best, winner.rival, &run) else { continue };
-        let separation = winner.separation * (with / without);
-        if separation > SENSOR_WORTH * winner.separation && found.as_ref().is_none_or(|(_, s)| separation > *s) {
-            found = Some((spec.channel.clone(), separation));
-        }
-    }
-    found
+    found.filter(|f| f.separation > SENSOR_WORTH * programmes[0].separation)
 }
 
 #[cfg(test)]
@@ -319,13 +272,5 @@ mod tests {
                 assert!(range > 0.1 || name.starts_with("one level"), "{name} rests over its last 20 s");
             }
         }
-    }
-
-    #[test]
-    fn what_the_best_can_imitate_separates_nothing() {
-        let slopes = DMatrix::from_column_slice(4, 1, &[1.0, 1.0, 0.0, 0.0]);
-        let rows = |residual: [f64; 4]| Rows { slopes: slopes.clone(), residual: DVector::from_row_slice(&residual) };
-        assert!(beyond(rows([2.0, 2.0, 0.0, 0.0])) < 1e-12);
-        assert!((beyond(rows([2.0, 2.0, 3.0, 4.0])) - 5.0).abs() < 1e-12);
     }
 }

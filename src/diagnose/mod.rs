@@ -25,6 +25,7 @@
 //! ```
 
 mod answer;
+mod apart;
 mod baseline;
 mod candidates;
 mod case;

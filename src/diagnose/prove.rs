@@ -88,7 +88,10 @@ fn channels(
         rmse_corrected: rmse(after, c),
         noise_sd: noise[c].sd,
     };
-    case.channels.iter().enumerate().map(|(c, channel)| (channel.column.clone(), proof(c))).collect()
+    // A sensor that was added for another run shows nothing here.
+    let is_recorded = |c: usize| before.iter().any(|r| r[c].iter().any(|v| v.is_finite()));
+    let recorded = case.channels.iter().enumerate().filter(|(c, _)| is_recorded(*c));
+    recorded.map(|(c, channel)| (channel.column.clone(), proof(c))).collect()
 }
 
 /// Deterministic draws (SplitMix64).

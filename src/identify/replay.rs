@@ -33,7 +33,9 @@ pub fn load_runs(
     let mut loaded = Vec::new();
     for run in runs {
         let data = set.load_run(run)?;
-        let notes = data.notes.into_iter().chain(crate::recording::survey(&data.recording).notes());
+        let mut found = crate::recording::survey(&data.recording);
+        found.missing.retain(|m| !run.not_recorded.contains(&m.column));
+        let notes = data.notes.into_iter().chain(found.notes());
         notes.for_each(|n| note(format!("{}: {n}", run.file)));
         loaded.push(RecordedRun { run: run.clone(), recording: data.recording });
     }
@@ -73,7 +75,7 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &Schedule::even(1.0, 0.01))?;
-/// let run = Run { file: "sine.csv".to_owned(), run_use: None, conditions: Default::default() };
+/// let run = Run { file: "sine.csv".to_owned(), ..Default::default() };
 /// let again = replay("muscle_bench", &[], &RecordedRun { run, recording: recording.clone() }, 1)?;
 /// // The plunger goes straight from sample to sample instead of along the sine: that is all the difference.
 /// let [first, second] = [recording.channel("elongation_mm")?, again.channel("elongation_mm")?];

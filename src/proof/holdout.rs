@@ -1,6 +1,5 @@
 //! What a corrected scene is worth on the recording that nobody saw.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::ProofError;
@@ -24,7 +23,7 @@ pub fn gap_on_holdout(truth: &Truth, answer: &Path, holdout: &Path) -> Result<f6
 fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Vec<[f64; 2]>, ProofError> {
     let recording = read_recording(holdout)?;
     let run = RecordedRun {
-        run: Run { file: holdout.display().to_string(), run_use: Some(RunUse::Holdout), conditions: BTreeMap::new() },
+        run: Run { file: holdout.display().to_string(), run_use: Some(RunUse::Holdout), ..Run::default() },
         recording,
     };
     let simulate = |scene: &str| replay(&answer.join(scene).display().to_string(), &[], &run, 1);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::row::Row;
+use super::settle::{After, Settled};
 use crate::conceal::{Hiding, Rig};
 use crate::diagnose::Verdict;
 
@@ -223,14 +224,26 @@ fn gaps(listed: &[&Row]) -> [Metric; 2] {
     ]
 }
 
-/// Ambiguous answers that one more run settles rightly: the proposed one, and one drawn.
-fn settled(rows: &[Row]) -> [Metric; 2] {
+/// Ambiguous answers that one more run settles rightly: the proposed one, one drawn, and the proposed one without the
+/// sensor that it may ask for.
+fn settled(rows: &[Row]) -> [Metric; 3] {
     let tried = select(rows, |r| r.settled.is_some());
-    let proposed = |r: &Row| r.settled.as_ref().is_some_and(|s| s.proposed.is_right);
-    let random = |r: &Row| r.settled.as_ref().is_some_and(|s| s.random.is_right);
+    let by = |after: fn(&Settled) -> &After| move |r: &Row| r.settled.as_ref().is_some_and(|s| after(s).is_right);
+    let none = Goal::AtLeast(0.0);
     [
-        share(("settled", "ambiguous, settled by the proposed experiment"), &tried, proposed, Goal::AtLeast(0.8)),
-        share(("settled_random", "the same with a random programme"), &tried, random, Goal::AtLeast(0.0)),
+        share(
+            ("settled", "ambiguous, settled by the proposed experiment"),
+            &tried,
+            by(Settled::as_proposed),
+            Goal::AtLeast(0.8),
+        ),
+        share(("settled_random", "the same with a random programme"), &tried, by(Settled::as_drawn), none),
+        share(
+            ("settled_programme", "the same without the sensor that is asked for"),
+            &tried,
+            by(|s| &s.proposed),
+            none,
+        ),
     ]
 }
 

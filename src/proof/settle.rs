@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ProofError;
 use super::campaign::Folders;
 use super::row::{Row, read, row_of_answer};
-use crate::conceal::{Hiding, Truth, record_asked, record_drawn};
+use crate::conceal::{ConcealError, Hiding, Truth, record_asked, record_drawn, sensor_noise};
 use crate::diagnose::{Case, Options, Verdict, diagnose, write_answer};
 use crate::files::write_whole;
 use crate::recording::{Recording, read_csv};
@@ -17,11 +17,36 @@ use crate::recording::{Recording, read_csv};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settled {
     pub name: String,
-    /// Standard errors by which the proposal was said to set the rivals apart.
+    /// Standard errors by which the programme alone was said to set the rivals apart.
     pub promised_sigma: f64,
     pub proposed: After,
     /// With a waveform that was drawn, of the same length.
     pub random: After,
+    /// With the sensor that the proposal asks for, if it asks for one that the rig can be given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_sensor: Option<WithSensor>,
+}
+
+/// The same runs with one more sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WithSensor {
+    pub column: String,
+    /// Standard errors that were promised with it.
+    pub promised_sigma: f64,
+    pub proposed: After,
+    pub random: After,
+}
+
+impl Settled {
+    /// What came of the experiment as it was proposed, sensor included.
+    pub fn as_proposed(&self) -> &After {
+        self.with_sensor.as_ref().map_or(&self.proposed, |s| &s.proposed)
+    }
+
+    /// And of a drawn one, with the same sensors.
+    pub fn as_drawn(&self) -> &After {
+        self.with_sensor.as_ref().map_or(&self.random, |s| &s.random)
+    }
 }
 
 /// An answer with one run more.
@@ -48,10 +73,41 @@ pub fn settle(truth: &Truth, folders: &Folders, out: &Path) -> Result<Option<Set
     let asked = read_csv(&proposal)?;
     let duration_s = asked.time_s().last().copied().unwrap_or(0.0);
     let diagnosis: crate::diagnose::Diagnosis = parse(&answer.join("diagnosis.json"))?;
-    let proposed = after(truth, folders, &out.join("proposed"), || Ok(record_asked(truth, &asked)?))?;
-    let random = after(truth, folders, &out.join("random"), || Ok(record_drawn(truth, duration_s)?))?;
-    let promised_sigma = diagnosis.next_experiment.separation_sigma;
-    Ok(Some(Settled { name: truth.name.clone(), promised_sigma, proposed, random }))
+    let both = |sensor: Option<&Sensor>, folder: &str| -> Result<[After; 2], ProofError> {
+        let column = sensor.map(|s| s.column);
+        let after = |which: &str, run: &dyn Fn() -> Result<Recording, ConcealError>| {
+            after(truth, folders, &out.join(format!("{which}{folder}")), sensor, run)
+        };
+        let proposed = after("proposed", &|| record_asked(truth, &asked, column))?;
+        Ok([proposed, after("random", &|| record_drawn(truth, duration_s, column))?])
+    };
+    let next = &diagnosis.next_experiment;
+    let [proposed, random] = both(None, "")?;
+    let with_sensor = match next.sensor.as_deref().and_then(|column| Sensor::of(truth, column)) {
+        None => None,
+        Some(sensor) => {
+            let [proposed, random] = both(Some(&sensor), "_with_sensor")?;
+            let promised_sigma = next.sensor_sigma.unwrap_or(next.separation_sigma);
+            Some(WithSensor { column: sensor.column.to_owned(), promised_sigma, proposed, random })
+        }
+    };
+    let promised_sigma = next.separation_sigma;
+    Ok(Some(Settled { name: truth.name.clone(), promised_sigma, proposed, random, with_sensor }))
+}
+
+/// A sensor that one run has and the others do not.
+struct Sensor<'a> {
+    column: &'a str,
+    /// Its noise, if the case states that of its sensors.
+    stated_sd: Option<f64>,
+}
+
+impl<'a> Sensor<'a> {
+    /// `None` where the rig cannot be given it.
+    fn of(truth: &Truth, column: &'a str) -> Option<Self> {
+        let noise = sensor_noise(truth, column)?;
+        Some(Self { column, stated_sd: truth.is_noise_stated.then_some(noise.sd) })
+    }
 }
 
 /// Diagnoses a case again with one run more; what is there already is kept.
@@ -59,12 +115,13 @@ fn after(
     truth: &Truth,
     folders: &Folders,
     out: &Path,
-    added: impl FnOnce() -> Result<Recording, ProofError>,
+    sensor: Option<&Sensor>,
+    added: &dyn Fn() -> Result<Recording, ConcealError>,
 ) -> Result<After, ProofError> {
     let own = Folders::below(out);
     if !own.answers.join(&truth.name).join("diagnosis.json").is_file() {
         let case = own.cases.join(&truth.name);
-        add_run(&folders.cases.join(&truth.name), &case, &added()?)?;
+        add_run(&folders.cases.join(&truth.name), &case, &added()?, sensor)?;
         let outcome = diagnose(Case::load(&[case.as_path()], None, &[])?, Options { seed: 1 }, &|_| {})?;
         write_answer(&outcome, &own.answers.join(&truth.name))?;
     }
@@ -73,7 +130,7 @@ fn after(
 }
 
 /// Copies the recordings of a case and puts one more run before the others: the last one stays the sealed one.
-fn add_run(from: &Path, to: &Path, added: &Recording) -> Result<(), ProofError> {
+fn add_run(from: &Path, to: &Path, added: &Recording, sensor: Option<&Sensor>) -> Result<(), ProofError> {
     let failed = |file: PathBuf| move |source| ProofError::Write { file, source };
     fs::create_dir_all(to).map_err(failed(to.to_path_buf()))?;
     let entries = fs::read_dir(from).map_err(|source| ProofError::Read { file: from.to_path_buf(), source })?;
@@ -82,9 +139,19 @@ fn add_run(from: &Path, to: &Path, added: &Recording) -> Result<(), ProofError> 
     }
     added.write_csv(&to.join(ADDED))?;
     let text = read(&from.join("recordings.toml"))?;
-    let with_run = text.replacen("[[run]]", &format!("[[run]]\nfile = \"{ADDED}\"\n\n[[run]]"), 1);
     let path = to.join("recordings.toml");
-    write_whole(&path, &with_run).map_err(failed(path.clone()))
+    write_whole(&path, &described(&text, sensor)).map_err(failed(path.clone()))
+}
+
+/// The description of a case with the added run before its own, which lack the sensor.
+fn described(text: &str, sensor: Option<&Sensor>) -> String {
+    let (mut channel, mut runs) = (String::new(), text.to_owned());
+    if let Some(Sensor { column, stated_sd }) = sensor {
+        let noise = stated_sd.map_or(String::new(), |sd| format!("noise_sd = {sd:.4}\n"));
+        channel = format!("[[channel]]\ncolumn = \"{column}\"\nrole = \"output\"\n{noise}\n");
+        runs = text.replace("[[run]]\n", &format!("[[run]]\nnot_recorded = [\"{column}\"]\n"));
+    }
+    runs.replacen("[[run]]", &format!("{channel}[[run]]\nfile = \"{ADDED}\"\n\n[[run]]"), 1)
 }
 
 fn is_right(row: &Row) -> bool {
@@ -98,4 +165,25 @@ fn is_right(row: &Row) -> bool {
 fn parse<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, ProofError> {
     serde_json::from_str(&read(path)?)
         .map_err(|e| ProofError::Format { file: path.to_path_buf(), message: e.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::RecordingSet;
+
+    #[test]
+    fn the_added_run_alone_has_the_added_sensor() {
+        let text = "format = 1\nscene = \"muscle_bench\"\n\n[[channel]]\ncolumn = \"plunger_mm\"\nrole = \"input\"\n\n\
+                    [[channel]]\ncolumn = \"elongation_mm\"\nrole = \"output\"\n\n[[run]]\nfile = \"sine.csv\"\n\n\
+                    [[run]]\nfile = \"steps.csv\"\n";
+        let parsed = |text: &str| RecordingSet::parse(text, Path::new("recordings.toml")).expect("a description");
+        let sensor = Sensor { column: "force_n", stated_sd: Some(0.02) };
+        let with = parsed(&described(text, Some(&sensor)));
+        let files: Vec<&str> = with.runs.iter().map(|r| r.file.as_str()).collect();
+        assert_eq!(files, [ADDED, "sine.csv", "steps.csv"]);
+        assert_eq!(with.runs.iter().map(|r| r.not_recorded.len()).collect::<Vec<_>>(), [0, 1, 1]);
+        assert_eq!(with.channels.last().map(|c| (c.column.as_str(), c.noise_sd)), Some(("force_n", Some(0.02))));
+        assert_eq!(parsed(&described(text, None)).channels.len(), 2);
+    }
 }

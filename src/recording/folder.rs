@@ -4,7 +4,7 @@ use super::bag_read::read_bag;
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::{Keys, did_you_mean};
 use super::source::unopened;
-use super::{FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
+use super::{Channel, FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use crate::files::read_text;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub const SET_FILE_NAME: &str = "recordings.toml";
 const FORMAT: i64 = 1;
 pub(super) const TOP_KEYS: [&str; 4] = ["format", "scene", "channel", "run"];
 pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
-pub(super) const RUN_KEYS: [&str; 2] = ["file", "use"];
+pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
 
 /// What a channel is to a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub struct ChannelSpec {
 }
 
 /// A declared run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// Its file, relative to the folder.
     pub file: String,
@@ -58,6 +58,8 @@ pub struct Run {
     pub run_use: Option<RunUse>,
     /// Known conditions, by a name that carries its unit: `hanging_mass_kg`.
     pub conditions: BTreeMap<String, f64>,
+    /// Declared outputs that this run was recorded without: a sensor that was added later.
+    pub not_recorded: Vec<String>,
 }
 
 /// The recordings of one folder.
@@ -131,11 +133,12 @@ impl RecordingSet {
         let top = Keys::new(file, "top level", &table);
         check_format(&top)?;
         top.refuse_unknown(&TOP_KEYS)?;
+        let channels = channels(&top, file)?;
         Ok(Self {
             dir: file.parent().unwrap_or(Path::new("")).to_owned(),
             scene: top.required_text("scene", "muscle_bench")?.to_owned(),
-            channels: channels(&top, file)?,
-            runs: runs(&top, file)?,
+            runs: runs(&top, file, &channels)?,
+            channels,
         })
     }
 
@@ -144,22 +147,35 @@ impl RecordingSet {
         self.channels.iter().filter(move |spec| spec.role == role)
     }
 
-    /// Reads a run's file and checks that every declared column is there.
+    /// The declared channels that a run was recorded with.
+    pub fn channels_of(&self, run: &Run) -> Vec<ChannelSpec> {
+        self.channels.iter().filter(|spec| !run.not_recorded.contains(&spec.column)).cloned().collect()
+    }
+
+    /// Reads a run's file and checks that every declared column is there; one that the run was recorded without is
+    /// filled with missing samples.
     ///
     /// Columns that are not declared are kept and named in a note.
     ///
     /// # Errors
-    /// As [`read_recording`]; a declared column is missing.
+    /// As [`read_recording`]; a declared column is missing, or there although it was said not to be.
     pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
         let file = self.dir.join(&run.file);
-        if FileFormat::of(&file)? == FileFormat::Mcap {
-            return read_bag(&file, &self.channels);
-        }
-        let recording = read_recording(&file)?;
-        let mut declared = self.channels.iter().map(|spec| &spec.column);
-        if let Some(column) = declared.find(|column| recording.find(column).is_none()) {
+        let declared = self.channels_of(run);
+        let LoadedRun { recording, notes } = match FileFormat::of(&file)? {
+            FileFormat::Mcap => read_bag(&file, &declared)?,
+            _ => self.read_table(&file, &declared)?,
+        };
+        Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
+    }
+
+    /// A file with one column for each channel.
+    fn read_table(&self, file: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
+        let recording = read_recording(file)?;
+        let mut columns = declared.iter().map(|spec| &spec.column);
+        if let Some(column) = columns.find(|column| recording.find(column).is_none()) {
             return Err(RecordingError::MissingInRun {
-                file,
+                file: file.to_owned(),
                 column: column.clone(),
                 found: recording.columns().join(", "),
             });
@@ -175,6 +191,25 @@ impl RecordingSet {
         (!others.is_empty())
             .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
     }
+}
+
+/// A recording with columns that it was recorded without: all their samples are missing.
+fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result<Recording, RecordingError> {
+    if columns.is_empty() {
+        return Ok(recording);
+    }
+    let mut channels = recording.channels().to_vec();
+    for column in columns {
+        if recording.find(column).is_some() {
+            let problem = format!(
+                "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
+                 remedy: remove it from that list, or rename the column"
+            );
+            return Err(RecordingError::Format { file: file.to_owned(), problem });
+        }
+        channels.push(Channel::new(column.clone(), vec![f64::NAN; recording.sample_count()]));
+    }
+    Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
 }
 
 /// A file that is there but no text has another remedy than one that is not there.
@@ -232,12 +267,12 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag: bag_source(keys, unit)? })
 }
 
-fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {
+fn runs(top: &Keys<'_>, file: &Path, channels: &[ChannelSpec]) -> Result<Vec<Run>, RecordingError> {
     let mut seen = HashSet::new();
     let mut runs = Vec::new();
     for (index, table) in top.tables("run")?.into_iter().enumerate() {
         let keys = Keys::new(file, label("run", index, table.get("file")), table);
-        let run = run(&keys)?;
+        let run = run(&keys, channels)?;
         if !seen.insert(run.file.clone()) {
             return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
         }
@@ -246,7 +281,7 @@ fn runs(top: &Keys<'_>, file: &Path) -> Result<Vec<Run>, RecordingError> {
     Ok(runs)
 }
 
-fn run(keys: &Keys<'_>) -> Result<Run, RecordingError> {
+fn run(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Run, RecordingError> {
     let mut conditions = BTreeMap::new();
     for key in keys.others(&RUN_KEYS) {
         let nearest = did_you_mean(key, &RUN_KEYS);
@@ -263,8 +298,23 @@ fn run(keys: &Keys<'_>) -> Result<Run, RecordingError> {
     Ok(Run {
         file: keys.required_text("file", "sine.csv")?.to_owned(),
         run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
+        not_recorded: not_recorded(keys, channels)?,
         conditions,
     })
+}
+
+/// Inputs drive the simulation: they are there in every run.
+fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>, RecordingError> {
+    let columns = keys.texts("not_recorded")?;
+    let outputs: Vec<&str> = channels.iter().filter(|c| c.role == Role::Output).map(|c| c.column.as_str()).collect();
+    match columns.iter().find(|c| !outputs.contains(&c.as_str())) {
+        None => Ok(columns),
+        Some(odd) => Err(keys.error(format!(
+            "not_recorded names \"{odd}\", which is no declared output{}\n  remedy: the outputs are {}",
+            did_you_mean(odd, &outputs),
+            outputs.join(", ")
+        ))),
+    }
 }
 
 /// `[[run]] 2 ("sine.csv")`: the number counts from 1.

@@ -51,6 +51,15 @@ impl<'a> Keys<'a> {
             .ok_or_else(|| self.error(format!("key \"{key}\" is missing\n  remedy: add {key} = \"{example}\"")))
     }
 
+    /// A list of texts; empty when the key is not there.
+    pub(super) fn texts(&self, key: &str) -> Result<Vec<String>, RecordingError> {
+        let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
+        let list = value.as_array().and_then(|list| list.iter().map(|v| v.as_str().map(str::to_owned)).collect());
+        list.ok_or_else(|| {
+            self.error(format!("{key} = {value} must be a list of texts\n  remedy: write {key} = [\"force_n\"]"))
+        })
+    }
+
     /// A text that is one of a few words.
     pub(super) fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<Option<T>, RecordingError> {
         let Some(text) = self.text(key)? else {

@@ -120,8 +120,37 @@ fn runs_are_checked_against_the_declaration() {
     assert!(
         error.ends_with(
             "sine.csv: no column \"force_n\", which recordings.toml declares (found: plunger_mm, force)\n  remedy: \
-             rename the column or the [[channel]]"
+             rename the column or the [[channel]], or list it under not_recorded in this [[run]]"
         ),
         "{error}"
     );
+}
+
+#[test]
+fn a_run_may_lack_a_sensor_that_others_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = GOOD.replace("use = \"holdout\"", "not_recorded = [\"force_n\"]");
+    std::fs::write(folder.path().join(SET_FILE_NAME), text).unwrap();
+    let set = RecordingSet::load(folder.path()).unwrap();
+    let csv = folder.path().join("sine.csv");
+    std::fs::write(&csv, "time_s,plunger_mm\n0,1\n0.1,2\n").unwrap();
+    let loaded = set.load_run(&set.runs[0]).unwrap();
+    assert_eq!(loaded.recording.columns(), ["plunger_mm", "force_n"]);
+    assert!(loaded.recording.channel("force_n").unwrap().values.iter().all(|v| v.is_nan()));
+    assert!(loaded.notes.is_empty());
+    std::fs::write(&csv, "time_s,plunger_mm,force_n\n0,1,2\n").unwrap();
+    let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
+    assert!(error.contains("\"force_n\" is there") && error.contains("remedy: remove it from that list"), "{error}");
+}
+
+#[test]
+fn what_was_not_recorded_is_an_output_that_is_declared() {
+    let said = |list: &str| refusal("use = \"holdout\"", &format!("not_recorded = {list}"));
+    assert_eq!(
+        said("[\"force_m\"]"),
+        "rig/recordings.toml: [[run]] 1 (\"sine.csv\"): not_recorded names \"force_m\", which is no declared output, did \
+         you mean \"force_n\"?\n  remedy: the outputs are force_n"
+    );
+    assert!(said("[\"plunger_mm\"]").contains("no declared output"));
+    assert!(said("\"force_n\"").ends_with("must be a list of texts\n  remedy: write not_recorded = [\"force_n\"]"));
 }

@@ -71,6 +71,10 @@ fn run() -> Value {
         "properties": {
             "file": text("CSV file, Parquet file (.parquet) or ROS 2 bag (.mcap) in this folder."),
             "use": { "enum": ["fit", "holdout"], "description": "Nothing is fitted to a holdout run." },
+            "not_recorded": {
+                "type": "array", "items": { "type": "string" },
+                "description": "Declared outputs that this run was recorded without.",
+            },
         },
         "required": ["file"],
         "additionalProperties": { "type": "number" },

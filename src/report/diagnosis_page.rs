@@ -209,6 +209,7 @@ fn runs(outcome: &Outcome, residuals: &[Vec<Vec<f64>>]) -> Vec<ComparedRun> {
             .channels
             .iter()
             .enumerate()
+            .filter(|(c, _)| residuals[*c].iter().any(|r| r.is_finite()))
             .map(|(c, channel)| {
                 let finite: Vec<f64> = residuals[c].iter().copied().filter(|r| r.is_finite()).collect();
                 ComparedChannel {

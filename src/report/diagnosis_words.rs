@@ -38,26 +38,28 @@ pub(super) fn region_words(region: &str) -> String {
 
 /// What to do next, in sentences. "Settled" is said of the recordings at hand; standard errors of the run to come.
 pub(super) fn next_words(d: &Diagnosis) -> String {
-    let why = d.next_experiment.why.as_str();
-    let first = why.split("; with ").next().unwrap_or(why);
-    let Some((best, rest)) = first.split_once(" is settled; the nearest rival is ") else {
-        return format!("{}.", capital(&first.replacen("; ", ". To decide: ", 1)));
+    let next = &d.next_experiment;
+    let (Some([best, rival]), Some(promise)) = (&next.between, next.promise()) else {
+        return format!("{}.", capital(&next.why));
     };
-    let Some((rival, would)) = rest.split_once("; ") else { return format!("{}.", capital(first)) };
+    if d.verdict == Verdict::Ambiguous {
+        return format!("{best} and {rival} explain these recordings about equally well. To decide: {promise}.");
+    }
     format!(
         "Nothing must be recorded: these recordings decide for {best} against the nearest rival, {rival}. To confirm it on \
          a new run by itself, {} (5 are a clear answer).",
-        would.replacen("would set them", "would set the two", 1)
+        promise.replacen("would set them", "would set the two", 1)
     )
 }
 
 /// What one more sensor would bring.
 pub(super) fn sensor_words(next: &NextExperiment) -> Option<String> {
-    let column = next.sensor.as_ref()?;
-    let sigma = next.why.rsplit_once("recorded as well, ").map(|(_, sigma)| sigma);
-    Some(match sigma {
-        Some(sigma) => format!("With `{column}` recorded as well it would be {sigma} standard errors."),
-        None => format!("`{column}` recorded as well would help."),
+    let (column, sigma) = (next.sensor.as_ref()?, next.sensor_sigma?);
+    Some(match next.programme.as_ref().filter(|_| next.needs_sensor()) {
+        Some(programme) => {
+            format!("With `{column}` recorded as well, {programme} would set them {sigma:.1} standard errors apart.")
+        }
+        None => format!("With `{column}` recorded as well it would be {sigma:.1} standard errors."),
     })
 }
 
@@ -94,14 +96,12 @@ pub(super) fn smallest_words(title: &str, size: f64) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn next(why: &str, sensor: Option<&str>) -> Diagnosis {
-        let next_experiment =
-            NextExperiment { why: why.to_owned(), sensor: sensor.map(str::to_owned), ..NextExperiment::default() };
+    fn diagnosis(verdict: Verdict, next_experiment: NextExperiment) -> Diagnosis {
         Diagnosis {
             format: 1,
             scene: String::new(),
             recordings: Vec::new(),
-            verdict: Verdict::MissingPhysics,
+            verdict,
             summary: String::new(),
             detection: crate::diagnose::Detection::default(),
             location: crate::diagnose::Location::default(),
@@ -113,13 +113,20 @@ mod tests {
         }
     }
 
+    fn chirp(separation_sigma: f64, sensor_sigma: f64) -> NextExperiment {
+        NextExperiment {
+            separation_sigma,
+            programme: Some("a chirp".to_owned()),
+            between: Some(["leak in line".to_owned(), "plastic_set in muscle".to_owned()]),
+            sensor: Some("pressure_kpa".to_owned()),
+            sensor_sigma: Some(sensor_sigma),
+            ..NextExperiment::default()
+        }
+    }
+
     #[test]
     fn a_settled_answer_is_not_called_open() {
-        let d = next(
-            "leak in line is settled; the nearest rival is plastic_set in muscle; a chirp would set them 5.2 standard \
-             errors apart; with pressure_kpa recorded as well, 9.1",
-            Some("pressure_kpa"),
-        );
+        let d = diagnosis(Verdict::MissingPhysics, chirp(5.2, 9.1));
         let words = next_words(&d);
         assert!(
             words.starts_with("Nothing must be recorded: these recordings decide for leak in line against"),
@@ -132,8 +139,22 @@ mod tests {
     }
 
     #[test]
+    fn an_open_answer_says_what_it_takes() {
+        let d = diagnosis(Verdict::Ambiguous, chirp(2.0, 9.1));
+        assert_eq!(
+            next_words(&d),
+            "leak in line and plastic_set in muscle explain these recordings about equally well. To decide: no programme \
+             within the recorded strokes would do by itself."
+        );
+        let sensor = sensor_words(&d.next_experiment).expect("a sensor");
+        assert_eq!(sensor, "With `pressure_kpa` recorded as well, a chirp would set them 9.1 standard errors apart.");
+        let weak = diagnosis(Verdict::Ambiguous, chirp(2.0, 3.1));
+        assert!(next_words(&weak).ends_with("To decide: even a chirp would set them only 2.0 standard errors apart."));
+    }
+
+    #[test]
     fn other_reasons_are_said_as_they_are() {
-        let d = next("no other effect of the catalogue comes near", None);
+        let d = diagnosis(Verdict::MissingPhysics, NextExperiment::none("no other effect of the catalogue comes near"));
         assert_eq!(next_words(&d), "No other effect of the catalogue comes near.");
         assert_eq!(sensor_words(&d.next_experiment), None);
     }
