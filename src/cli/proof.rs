@@ -77,7 +77,11 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
 
 /// Rows that a former run has written, of the cases that are planned.
 fn former_rows(journal: &Path, planned: &[Planned]) -> Result<Vec<Row>, CliError> {
-    let rows = if journal.is_file() { read_rows(journal)? } else { Vec::new() };
+    let rows = if journal.is_file() {
+        read_rows(journal, "move it away; the cases are then answered again")?
+    } else {
+        Vec::new()
+    };
     let is_planned = |r: &Row| planned.iter().any(|c| c.name == r.name && c.rig == r.rig && c.hiding == r.hiding);
     Ok(rows.into_iter().filter(is_planned).collect())
 }

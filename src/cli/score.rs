@@ -15,13 +15,18 @@ use super::proof_figure::proof_svg;
 #[derive(Args)]
 #[command(after_help = "Examples:
   smam diagnose out/blind/case_7 --out out/answers/case_7
-  smam score out/blind --answers out/answers")]
+  smam score out/blind --answers out/answers
+  smam score --rows proof/rows.jsonl --out out/again       the figures of cases that are open already")]
 pub struct ScoreArguments {
     /// Folder that `smam conceal` wrote: cases, seals.txt and sealed answers
-    cases: PathBuf,
+    #[arg(required_unless_present = "rows", conflicts_with = "rows")]
+    cases: Option<PathBuf>,
     /// Folder with one NAME/ of `smam diagnose --out` for each case
-    #[arg(long, value_name = "DIR")]
-    answers: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "rows", conflicts_with = "rows")]
+    answers: Option<PathBuf>,
+    /// Opened cases, as rows.jsonl holds them, in the place of cases and answers: those of another method, say
+    #[arg(long, value_name = "FILE")]
+    rows: Option<PathBuf>,
     /// Where to write rows.jsonl, score.json and table.md
     #[arg(long, value_name = "DIR", default_value = "out/score")]
     out: PathBuf,
@@ -29,12 +34,24 @@ pub struct ScoreArguments {
 
 /// Runs the command: opens every seal whose case was answered.
 pub fn score(arguments: &ScoreArguments) -> Result<ExitCode, CliError> {
-    let folders = Folders { cases: arguments.cases.clone(), answers: arguments.answers.clone() };
-    let seals = read_seals(&arguments.cases.join("seals.txt"))?;
-    let is_answered = |name: &str| arguments.answers.join(name).join("diagnosis.json").is_file();
+    let rows = match (&arguments.cases, &arguments.answers, &arguments.rows) {
+        (Some(cases), Some(answers), None) => open_answered(cases, answers)?,
+        (_, _, Some(rows)) => read_rows(rows, "give a rows.jsonl of `smam proof` or `smam score`")?,
+        // clap asks for the one or the other.
+        _ => return Err(CliError::Usage("nothing to score\n  remedy: name cases and answers, or rows".to_owned())),
+    };
+    write_score(&rows, &arguments.out)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Opens the seal of every case that was answered.
+fn open_answered(cases: &Path, answers: &Path) -> Result<Vec<Row>, CliError> {
+    let folders = Folders { cases: cases.to_owned(), answers: answers.to_owned() };
+    let seals = read_seals(&cases.join("seals.txt"))?;
+    let is_answered = |name: &str| answers.join(name).join("diagnosis.json").is_file();
     let answered: Vec<_> = seals.iter().filter(|(name, _)| is_answered(name)).collect();
     if answered.is_empty() {
-        let (cases, answers) = (arguments.cases.display(), arguments.answers.display());
+        let (cases, answers) = (cases.display(), answers.display());
         return Err(CliError::Usage(format!(
             "{answers}: there is no answer to any of the {} cases of {cases}\n  \
              remedy: smam diagnose {cases}/NAME --out {answers}/NAME, for each NAME in {cases}/seals.txt",
@@ -43,8 +60,7 @@ pub fn score(arguments: &ScoreArguments) -> Result<ExitCode, CliError> {
     }
     let rows = open_all(answered, &folders)?;
     eprintln!("{} of {} cases were answered", rows.len(), seals.len());
-    write_score(&rows, &arguments.out)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(rows)
 }
 
 /// Names and seals, as they were published.
@@ -83,16 +99,15 @@ pub fn write_rows(rows: &[Row], path: &Path) -> Result<(), CliError> {
     write(path, &format!("{}\n", lines.join("\n")))
 }
 
-/// Reads what [`write_rows`] wrote.
-pub fn read_rows(path: &Path) -> Result<Vec<Row>, CliError> {
-    let refuse = |why: String| {
-        CliError::Usage(format!("{}: {why}\n  remedy: move it away; the cases are then answered again", path.display()))
-    };
+/// Reads what [`write_rows`] wrote; `remedy` is for a file that is something else.
+pub fn read_rows(path: &Path, remedy: &str) -> Result<Vec<Row>, CliError> {
+    let refuse = |why: String| CliError::Usage(format!("{}: {why}\n  remedy: {remedy}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
     let row = |(i, line): (usize, &str)| {
         serde_json::from_str(line).map_err(|e| refuse(format!("line {}: not a row of a proof: {e}", i + 1)))
     };
-    text.lines().enumerate().map(row).collect()
+    let rows: Vec<Row> = text.lines().enumerate().map(row).collect::<Result<_, _>>()?;
+    if rows.is_empty() { Err(refuse("it holds no row".to_owned())) } else { Ok(rows) }
 }
 
 /// Writes rows, figures, picture and table, and prints the table.
