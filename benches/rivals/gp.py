@@ -16,7 +16,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel
 from answer import Answer, effect
 from noise import block_means
 from rig import Rig
-from rows import FALSE_ALARM_LEVEL, FLOOR_PER_SAMPLE, channel_noise, orthonormal
+from rows import FALSE_ALARM_LEVEL, FLOOR_PER_SAMPLE, channel_noise, draw_channel, orthonormal
 from states import Scaler, by_sample
 
 BLOCK_S = 0.1
@@ -93,7 +93,7 @@ class Data:
         self.run = np.concatenate([np.full(len(s), i) for i, s in enumerate(self.scaler.runs)])
         self.noise = channel_noise(case)
         size = self.scaler.size(case.runs[0])
-        self.scale = {c: slow_deviation(n.of_means(size)) for c, n in self.noise.items()}
+        self.scale = {c: n.of_means(size).slow_sd for c, n in self.noise.items()}
         self.keys = list(case.runs[0].tangents)
         self.residual = {
             c: self.blocks(lambda r, c=c: r.measured[c] - r.simulated[c]) / self.scale[c] for c in case.outputs
@@ -145,14 +145,16 @@ class Data:
         totals = np.zeros(DRAWS)
         for column in self.case.outputs:
             valid = np.isfinite(self.residual[column])
-            noise = self.noise[column]
-            drawn = np.column_stack([self.drawn(noise, random) for _ in range(DRAWS)])[valid] / self.scale[column]
+            drawn = np.column_stack([self.drawn(column, random) for _ in range(DRAWS)])[valid]
             totals += np.max([gain(e, drawn) for e in self.eigen[column]], axis=0)
         return float(np.quantile(totals, 1.0 - FALSE_ALARM_LEVEL))
 
-    def drawn(self, noise, random):
-        """Block means of drawn noise."""
-        return self.blocks(lambda run: noise.draw(len(run.time_s), random))
+    def drawn(self, column, random):
+        """Block means of drawn noise, scaled as it would have been estimated itself."""
+        runs, noise = draw_channel(self.case, column, self.noise[column], random)
+        sizes = [self.scaler.size(r) for r in self.case.runs]
+        blocks = np.concatenate([block_means(v, size) for v, size in zip(runs, sizes)])
+        return blocks / noise.of_means(sizes[0]).slow_sd
 
     def foretell(self, column, gains, seed):
         """What the better of two processes adds on the holdout, by sample."""
@@ -185,11 +187,6 @@ class Data:
                 break
             chosen, best = [*chosen, j], scores[j]
         return chosen
-
-
-def slow_deviation(noise):
-    """Deviation of white noise as strong as this one is at low frequencies."""
-    return noise.sd * np.sqrt((1.0 + noise.colour) / (1.0 - noise.colour))
 
 
 def promising(gains, chosen):

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.signal import lfilter
 
 from answer import Answer
-from gp import slow_deviation
 from noise import block_means
 from rig import Rig
 from rows import FLOOR_PER_SAMPLE, channel_noise
@@ -61,7 +60,7 @@ class Data:
         self.scaler = Scaler(self.rig, case.runs, BLOCK_S)
         self.size = self.scaler.size(case.runs[0])
         self.noise = channel_noise(case)
-        self.scale = {c: slow_deviation(n.of_means(self.size)) for c, n in self.noise.items()}
+        self.scale = {c: n.of_means(self.size).slow_sd for c, n in self.noise.items()}
         self.residual = {
             c: [block_means(r.measured[c] - r.simulated[c], self.size) / self.scale[c] for r in case.runs]
             for c in case.outputs

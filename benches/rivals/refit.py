@@ -3,7 +3,7 @@
 import numpy as np
 
 from answer import Answer
-from rows import FALSE_ALARM_LEVEL, FLOOR_PER_SAMPLE, Rows, orthonormal, without
+from rows import FALSE_ALARM_LEVEL, FLOOR_UNNAMED_PER_SAMPLE, Rows, orthonormal, without
 
 BLOCK_S = 0.25
 DRAWS = 199
@@ -29,12 +29,12 @@ def misfit_test(case, seed):
     found = excess(rows.residual())
     draws = [excess(rows.draw(random)) for _ in range(DRAWS)]
     by_chance = float(np.quantile(draws, 1.0 - FALSE_ALARM_LEVEL))
-    floor = FLOOR_PER_SAMPLE * rows.samples
+    floor = FLOOR_UNNAMED_PER_SAMPLE * rows.white_samples
     return {
         "excess_chi2": found,
         "by_chance": by_chance,
         "floor": float(floor),
         "excess_chi2_per_sample": found / rows.samples,
-        "noise_colour": {c: round(n.colour, 3) for c, n in rows.noise.items()},
+        "noise_inflation": {c: round(n.inflation, 3) for c, n in rows.noise.items()},
         "is_misfit": bool(found > max(by_chance, floor)),
     }

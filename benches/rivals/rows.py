@@ -6,9 +6,10 @@ import numpy as np
 
 from noise import block_means, estimate_noise, whiten
 
-# Share of the noise's variance per sample below which a misfit is not called missing physics: scenes are idealisations.
-# `smam diagnose` has the same floor.
+# Shares of the noise's variance per sample below which an effect is not called missing physics, nor misfit that nothing
+# explains: scenes are idealisations. `smam diagnose` has the same floors.
 FLOOR_PER_SAMPLE = 0.002
+FLOOR_UNNAMED_PER_SAMPLE = 0.015
 # Of a hundred cases that lack nothing, one may be called missing physics by chance.
 FALSE_ALARM_LEVEL = 0.01
 
@@ -36,7 +37,10 @@ class Rows:
                 blocks = self.blocks(index, run.measured[column] - run.simulated[column])
                 means = self.noise[column].of_means(self.sizes[index])
                 self.segments.append(Segment(index, column, np.isfinite(blocks), means))
-        self.samples = sum(s.valid.sum() * self.sizes[s.run] for s in self.segments)
+        counts = [s.valid.sum() * self.sizes[s.run] for s in self.segments]
+        self.samples = sum(counts)
+        # So many samples of white noise of the same deviation would say as much about what is slow.
+        self.white_samples = sum(n / self.noise[s.column].inflation for n, s in zip(counts, self.segments))
 
     def blocks(self, run, values):
         """Means over the blocks of a run."""
@@ -81,8 +85,7 @@ class Rows:
         """The same vector if there were nothing but noise: drawn by sample, its size and colour estimated anew."""
         values, noise = {}, {}
         for column in self.case.outputs:
-            own = [self.noise[column].draw(len(run.time_s), random) for run in self.case.runs]
-            noise[column] = estimate_noise(own, self.case.stated_sd[column])
+            own, noise[column] = draw_channel(self.case, column, self.noise[column], random)
             values |= {(i, column): self.blocks(i, v) for i, v in enumerate(own)}
         return self.stack_blocks(values, noise)
 
@@ -92,8 +95,14 @@ def channel_noise(case):
     found = {}
     for column in case.outputs:
         residuals = [run.measured[column] - run.simulated[column] for run in case.runs]
-        found[column] = estimate_noise(residuals, case.stated_sd[column])
+        found[column] = estimate_noise(residuals, case.stated_sd[column], case.runs[0].interval_s)
     return found
+
+
+def draw_channel(case, column, noise, random):
+    """Drawn noise of a channel by run, missing where its recording is, and that noise estimated anew."""
+    drawn = [np.where(np.isfinite(r.measured[column]), noise.draw(len(r.time_s), random), np.nan) for r in case.runs]
+    return drawn, estimate_noise(drawn, case.stated_sd[column], case.runs[0].interval_s)
 
 
 def orthonormal(columns):

@@ -68,15 +68,16 @@ class Problem:
         self.usable = (self.scale > 0.0) & (self.length > 1e-3)
         self.unit = np.where(self.usable, self.own / np.maximum(self.length, 1e-3), 0.0)
         self.left = without(self.basis, self.y)
-        self.threshold = self.chance_threshold(seed)
+        self.threshold, self.chi2_of_noise = self.by_chance(seed)
 
-    def chance_threshold(self, seed):
+    def by_chance(self, seed):
         """The correlation, in standard deviations, that the best term of the library reaches by chance in one case of a
-        hundred, and never less than the floor of an idealised scene."""
+        hundred, and never less than the floor of an idealised scene; and the chi^2 that noise alone so reaches."""
         random = np.random.default_rng(seed)
-        best = [np.abs(self.unit.T @ without(self.basis, self.rows.draw(random))).max() for _ in range(DRAWS)]
-        by_chance = np.quantile(best, 1.0 - FALSE_ALARM_LEVEL)
-        return float(max(by_chance, np.sqrt(FLOOR_PER_SAMPLE * self.rows.samples)))
+        draws = [without(self.basis, self.rows.draw(random)) for _ in range(DRAWS)]
+        best = [np.abs(self.unit.T @ d).max() for d in draws]
+        threshold, chi2 = (np.quantile(v, 1.0 - FALSE_ALARM_LEVEL) for v in (best, [d @ d for d in draws]))
+        return float(max(threshold, np.sqrt(FLOOR_PER_SAMPLE * self.rows.samples))), float(chi2)
 
     def is_seen(self):
         """Whether any term explains more than chance."""
@@ -91,9 +92,9 @@ class Problem:
         return self.prune(self.best_support(pool))
 
     def share_left(self, support):
-        """Misfit left by a support, of that of the calibrated scene."""
+        """Misfit left by a support beyond what noise alone may leave, of all misfit of the calibrated scene."""
         rows = len(self.y) - self.basis.shape[1]
-        return max(self.chi2(support) - rows, 0.0) / max(self.chi2([]) - rows, 1.0)
+        return max(self.chi2(support) - self.chi2_of_noise, 0.0) / max(self.chi2([]) - rows, 1.0)
 
     def best_support(self, pool):
         """Of all supports that the optimisers propose the sparsest within one standard error of the best, each run
@@ -231,8 +232,19 @@ def read(problem, support):
         verdict = "unknown_physics"
     else:
         verdict = "missing_physics" if min(sure) >= SURE else "ambiguous"
+    effects = merged(effects)
     notes = problem.notes(support) | {"share_of_misfit_left": share_left, "unnamed": [" ".join(k[:2]) for k in unknown]}
     return Answer(verdict, main[1], effects, problem.correction(support), notes)
+
+
+def merged(effects):
+    """Each effect once, with the greatest of its probabilities: it may rival several."""
+    found = {}
+    for e in effects:
+        key = (e["name"], e["element"], e.get("channel"))
+        if key not in found or found[key]["probability"] < e["probability"]:
+            found[key] = e
+    return list(found.values())
 
 
 def own_chance(effects, key):
