@@ -7,6 +7,8 @@
 mod begin;
 mod case;
 mod ceiling;
+mod hidden;
+mod laws;
 mod more;
 mod noise;
 mod plant;

@@ -1,10 +1,11 @@
 //! The concealing plant: the stock rigs as ordinary differential equations in the order of `physics.md`, with places for
 //! whatever may be hidden in them. Nothing here is shared with the simulation that diagnoses.
 
+use super::hidden::{MechanismSecrets, MuscleSecrets};
+use super::laws::{boiling, far_pressure_pa, far_volume_m3, preload, softening};
 use super::stock::{
-    ATMOSPHERE_PA, AXIAL_DAMPING_N_S_M, BOILING_PA, CABLE_N_M, CABLE_N_S_M, CLOSED_COIL_N_M, CLOSED_COIL_N_S_M,
-    COIL_AREA_M2, COIL_STIFFNESS_N_M, Calibration, DOWNSTREAM_COMPLIANCE_M3_PA, END_MASS_KG, Rig, STRING_LOAD_N,
-    SYRINGE_AREA_M2, line_inertance, line_resistance,
+    AXIAL_DAMPING_N_S_M, BOILING_PA, CABLE_N_M, CABLE_N_S_M, CLOSED_COIL_N_M, CLOSED_COIL_N_S_M, COIL_AREA_M2,
+    COIL_STIFFNESS_N_M, Calibration, END_MASS_KG, Rig, STRING_LOAD_N, SYRINGE_AREA_M2, line_inertance, line_resistance,
 };
 use super::tube::pull_and_energy;
 
@@ -36,73 +37,12 @@ const PISTON_S: f64 = 5e-4;
 /// Share of the play over which the plunger gets hold of the piston.
 const ENGAGES: f64 = 0.05;
 const GREATEST_S: f64 = 5e-3;
-/// How a boiling node gives way, m³/Pa: a hundred times more than the compliances do.
-const VAPOUR_M3_PA: f64 = 1e-12;
 
 /// A plunger at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Plunger {
     pub position_m: f64,
     pub speed_m_s: f64,
-}
-
-/// Hidden physics of one muscle, its line and its syringe. All zero: the stock muscle.
-#[derive(Clone, Debug, Default)]
-pub struct MuscleSecrets {
-    pub air_m3: f64,
-    pub air_exponent: f64,
-    /// Conductance, m³/(s Pa), and by how much it grows per Pa.
-    pub leak: f64,
-    pub leak_growth_1_pa: f64,
-    pub restriction: f64,
-    /// Added to the restriction while the fluid comes back, and its growth with flow, s/m³.
-    pub return_restriction: f64,
-    pub restriction_growth_s_m3: f64,
-    pub growth_m3_s: f64,
-    /// Over which the growth dies away; 0: never.
-    pub growth_fades_s: f64,
-    pub play_m: f64,
-    /// Stiffness and time of two branches, and their hardening, 1/m².
-    pub branches: [(f64, f64); 2],
-    pub branch_hardening_1_m2: f64,
-    pub softening: f64,
-    /// Saturating exponential instead of the hyperbolic tangent.
-    pub softens_exponentially: bool,
-    pub preload_n: f64,
-    pub preload_exponential: bool,
-    pub set_rate_1_s: f64,
-    pub set_threshold_m: f64,
-    pub set_power: f64,
-    pub load_n: f64,
-    pub coil_loss_1_s: f64,
-    pub barrel_m3_pa: f64,
-    pub barrel_s: f64,
-    pub rate_force_n: f64,
-    pub fibre_n_m: f64,
-    pub fibre_breaks_s: f64,
-    pub ripple_m: f64,
-    pub ripple_hz: f64,
-    pub area_growth_1_m: f64,
-    pub cubic_n_m3: f64,
-}
-
-/// Hidden physics of the mechanism and its cables.
-#[derive(Clone, Debug, Default)]
-pub struct MechanismSecrets {
-    pub bearing_n_m: f64,
-    pub bearing_rad: f64,
-    /// Smooth in the speed instead of Dahl's state.
-    pub bearing_by_speed: bool,
-    pub slack_m: [f64; 2],
-    pub capstan: f64,
-    pub capstan_by_speed: bool,
-    pub coupling_m: f64,
-    pub wall_n_m_rad: f64,
-    pub wall_rad: f64,
-    pub wall_power: f64,
-    pub notch_n_m_rad: f64,
-    pub notch_rad: f64,
-    pub load_n_m: f64,
 }
 
 /// One joint: `J w' = torque - d w - k (angle - rest)`, and a closed stop.
@@ -366,18 +306,6 @@ fn memories(s: &MuscleSecrets, c: &Calibration, x: &[f64], dx: &mut [f64]) {
     };
 }
 
-/// Share of the wall's force left `below` its greatest energy, J.
-fn softening(s: &MuscleSecrets, below: f64) -> f64 {
-    let depth = below.max(0.0) / 0.02;
-    let grown = if s.softens_exponentially { 1.0 - (-depth).exp() } else { depth.tanh() };
-    1.0 - s.softening * grown
-}
-
-fn preload(s: &MuscleSecrets, e: f64) -> f64 {
-    let share = if s.preload_exponential { e.signum() * (1.0 - (-e.abs() / 3e-4).exp()) } else { (e / 2.5e-4).tanh() };
-    s.preload_n * share
-}
-
 /// Speed of the piston behind its play.
 fn piston_speed(s: &MuscleSecrets, x: &[f64], plunger: Plunger, dx: &mut [f64]) -> f64 {
     if s.play_m == 0.0 {
@@ -391,37 +319,4 @@ fn piston_speed(s: &MuscleSecrets, x: &[f64], plunger: Plunger, dx: &mut [f64]) 
     let taken_along = (1.0 + used_up / (ENGAGES * s.play_m)).clamp(0.0, 1.0);
     dx[PISTON] = plunger.speed_m_s * taken_along + (ahead - ahead.clamp(-gap, gap)) / PISTON_S;
     dx[PISTON]
-}
-
-/// Pressure of a node that holds less than it does when it begins to boil; none where it holds more.
-fn boiling(volume_m3: f64, boiling_m3: f64) -> Option<f64> {
-    (volume_m3 < boiling_m3).then(|| BOILING_PA + (volume_m3 - boiling_m3) / VAPOUR_M3_PA)
-}
-
-/// Volume pressed into the compliance at the muscle, and into a bubble there.
-fn far_volume_m3(s: &MuscleSecrets, pressure_pa: f64) -> f64 {
-    let squeezed = |ratio: f64| s.air_m3 * (1.0 - ratio.powf(1.0 / s.air_exponent));
-    let air = if s.air_m3 == 0.0 { 0.0 } else { squeezed(ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure_pa)) };
-    DOWNSTREAM_COMPLIANCE_M3_PA * pressure_pa + air
-}
-
-/// Pressure at the muscle. The volume grows with pressure and ever less steeply: Newton's iteration from below is monotone.
-fn far_pressure_pa(s: &MuscleSecrets, volume_m3: f64) -> f64 {
-    if let Some(pressure) = boiling(volume_m3, far_volume_m3(s, BOILING_PA)) {
-        return pressure;
-    }
-    if s.air_m3 == 0.0 {
-        return volume_m3 / DOWNSTREAM_COMPLIANCE_M3_PA;
-    }
-    let mut pressure = BOILING_PA;
-    for _ in 0..60 {
-        let ratio = ATMOSPHERE_PA / (ATMOSPHERE_PA + pressure);
-        let air = s.air_m3 / (s.air_exponent * ATMOSPHERE_PA) * ratio.powf(1.0 / s.air_exponent + 1.0);
-        let step = (volume_m3 - far_volume_m3(s, pressure)) / (DOWNSTREAM_COMPLIANCE_M3_PA + air);
-        pressure += step;
-        if step.abs() < 1e-4 {
-            break;
-        }
-    }
-    pressure
 }

@@ -2,20 +2,15 @@
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
-use std::path::Path;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::effects::Effect;
-use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
-use crate::recording::{Recording, RecordingSet, Role, RunUse};
-use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
+use crate::scene::Scene;
 use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
 
-use super::DiagnoseError;
 use super::noise::Noise;
-use super::thin::thin;
 use super::without::Step;
 
 /// An output that was recorded.
@@ -98,9 +93,6 @@ pub struct CaseParameter {
     pub start: f64,
 }
 
-/// Recordings are averaged down to this interval, s: what moves here is slower.
-const LEAST_INTERVAL_S: f64 = 0.01;
-
 /// Share of the noise by which doubled steps may change a channel over one sampling interval.
 const STEP_TOLERANCE: f64 = 1e-2;
 
@@ -122,124 +114,6 @@ pub struct Case {
 }
 
 impl Case {
-    /// Reads the folders; all must be of one scene and have the same channels.
-    ///
-    /// # Errors
-    /// Unreadable or contradictory recordings, a scene without fast model.
-    pub fn load(folders: &[&Path], scene: Option<&str>, overrides: &[Override]) -> Result<Self, DiagnoseError> {
-        let sets = folders.iter().map(|f| RecordingSet::load(f)).collect::<Result<Vec<_>, _>>()?;
-        let Some(first) = sets.first() else { return Err(DiagnoseError::Nothing) };
-        refuse_repeated(&sets)?;
-        if let Some(odd) = sets.iter().find(|s| s.scene != first.scene || columns(s) != columns(first)) {
-            return Err(DiagnoseError::Mixed { first: first.dir.clone(), other: odd.dir.clone() });
-        }
-        let scene_name = scene.map_or_else(|| scene_path(first), str::to_owned);
-        let base = Scene::load(&scene_name, overrides)?;
-        check_channels(first, &base)?;
-        let twin = Twin::new(&base)?;
-        let mut case = Self {
-            channels: channels(first, &base, &twin),
-            parameters: parameters(&base, &twin)?,
-            known_effects: known_effects(&base),
-            scene: base,
-            folders: folders.iter().map(|f| f.display().to_string()).collect(),
-            runs: Vec::new(),
-            notes: Vec::new(),
-            without: None,
-            scene_name,
-        };
-        for set in &sets {
-            case.add_set(set, overrides)?;
-        }
-        if case.runs.is_empty() {
-            return Err(DiagnoseError::Nothing);
-        }
-        case.seal();
-        Ok(case)
-    }
-
-    fn add_set(&mut self, set: &RecordingSet, overrides: &[Override]) -> Result<(), DiagnoseError> {
-        let mut notes = Vec::new();
-        let runs = load_runs(set, &set.runs, &mut |n| notes.push(n))?;
-        self.notes.extend(notes);
-        for run in &runs {
-            let conditions = condition_overrides(&self.scene, &run.run)?;
-            let scene = match conditions.is_empty() {
-                true => self.scene.clone(),
-                false => {
-                    let all: Vec<Override> = overrides.iter().cloned().chain(conditions).collect();
-                    Scene::load(&self.scene_name, &all)?
-                }
-            };
-            self.add_run(run, scene)?;
-        }
-        Ok(())
-    }
-
-    fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
-        let recording = &self.thinned(run)?;
-        let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
-        for input in &self.scene.file.input {
-            let line = recording.piecewise_si(&input.channel).map_err(|e| e.in_file(&run.run.file))?;
-            drive.inputs.push(recording.time_s().iter().map(|&t| line.value(t)).collect());
-        }
-        let lead_in = if self.scene.file.hydraulics.is_some() { lead_in(&mut drive) } else { 0 };
-        let measured = self.channels.iter().map(|c| {
-            recording.find(&c.column).map_or_else(|| vec![f64::NAN; recording.sample_count()], |x| x.values.clone())
-        });
-        self.runs.push(CaseRun {
-            file: run.run.file.clone(),
-            measured: measured.collect(),
-            is_sealed: run.run.run_use == Some(RunUse::Holdout),
-            open_part: None,
-            twin: Arc::new(Twin::new(&scene)?),
-            scene: Arc::new(scene),
-            drive,
-            lead_in,
-        });
-        Ok(())
-    }
-
-    /// A recording faster than the muscles need is averaged down. What was stated is the noise of single samples: that of
-    /// their means is then estimated.
-    fn thinned(&mut self, run: &RecordedRun) -> Result<Recording, DiagnoseError> {
-        let Some((thin, count)) = thin(&run.recording, LEAST_INTERVAL_S)? else { return Ok(run.recording.clone()) };
-        self.channels.iter_mut().for_each(|c| c.stated_sd = None);
-        self.notes.push(format!("{}: averaged over {count} samples each, to {LEAST_INTERVAL_S} s", run.run.file));
-        Ok(thin)
-    }
-
-    /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
-    fn seal(&mut self) {
-        if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
-            return;
-        }
-        self.runs.iter_mut().for_each(|r| r.is_sealed = false);
-        if self.runs.len() > 1 {
-            if let Some(last) = self.runs.last_mut() {
-                last.is_sealed = true;
-            }
-            return;
-        }
-        self.notes.push("one run only: its last third is held back".to_owned());
-        let cut = self.runs[0].times_s().len() * 2 / 3;
-        self.seal_from(cut);
-    }
-
-    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
-    pub fn seal_from(&mut self, cut: usize) {
-        let mut sealed = self.runs[0].clone();
-        let cut = cut.min(sealed.times_s().len());
-        self.runs[0].keep(0..cut);
-        self.runs[0].is_sealed = false;
-        sealed.open_part = Some(sealed.measured.clone());
-        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
-        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
-        sealed.is_sealed = true;
-        self.runs.truncate(1);
-        self.runs.push(sealed);
-    }
-
     /// Plans the fast model's steps at a setting, so that what they leave out vanishes in the noise.
     /// `None` when the fast model diverges.
     pub fn plan_steps(&mut self, setting: &TwinSetting<f64>, noise: &[Noise]) -> Option<()> {
@@ -293,15 +167,6 @@ pub enum Sealed {
     Both,
 }
 
-impl CaseRun {
-    fn keep(&mut self, range: std::ops::Range<usize>) {
-        let end = self.lead_in + range.end;
-        self.drive.times_s.truncate(end);
-        self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
-        self.measured.iter_mut().for_each(|m| m.truncate(range.end));
-    }
-}
-
 /// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.
 const AROUND_UNHELD: usize = 10;
 
@@ -318,87 +183,4 @@ fn leave_out(measured: &mut [f64], unheld: &[bool]) -> usize {
     }
     blank.iter().for_each(|&i| measured[i] = f64::NAN);
     blank.len()
-}
-
-/// The same runs twice would be fitted and held back at once.
-fn refuse_repeated(sets: &[RecordingSet]) -> Result<(), DiagnoseError> {
-    let places: Vec<_> = sets.iter().map(|s| s.dir.canonicalize().unwrap_or_else(|_| s.dir.clone())).collect();
-    match (1..places.len()).find(|&i| places[..i].contains(&places[i])) {
-        Some(i) => Err(DiagnoseError::Repeated { folder: sets[i].dir.clone() }),
-        None => Ok(()),
-    }
-}
-
-/// The scene has been checked: every table is an effect.
-fn known_effects(scene: &Scene) -> Vec<Effect<f64>> {
-    scene.file.effect.iter().filter_map(|t| t.effect().ok()).collect()
-}
-
-fn columns(set: &RecordingSet) -> Vec<&str> {
-    set.channels.iter().map(|c| c.column.as_str()).collect()
-}
-
-/// The scene as the recordings name it: a path is relative to them.
-fn scene_path(set: &RecordingSet) -> String {
-    let beside = set.dir.join(&set.scene);
-    if set.scene.ends_with(".toml") && beside.exists() { beside.display().to_string() } else { set.scene.clone() }
-}
-
-fn channels(set: &RecordingSet, scene: &Scene, twin: &Twin) -> Vec<CaseChannel> {
-    let outputs: Vec<&str> = twin.columns().collect();
-    let found = set.of_role(Role::Output).filter_map(|c| {
-        let output = outputs.iter().position(|o| *o == c.column)?;
-        Some(CaseChannel {
-            column: c.column.clone(),
-            output,
-            stated_sd: c.noise_sd,
-            has_free_zero: scene.file.output[output].counts_from_start,
-        })
-    });
-    found.collect()
-}
-
-fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, DiagnoseError> {
-    let keys = scene.keys();
-    let parameter = |spec: &CalibrateSpec| {
-        let key = calibration_key(&spec.key);
-        let parameter = twin
-            .parameter(key)
-            .ok_or_else(|| DiagnoseError::Parameter { file: scene.path.clone(), key: spec.key.clone() })?;
-        let value = keys.iter().find(|(k, _)| k == key).and_then(|(_, v)| v.parse().ok());
-        let start: f64 = value.unwrap_or((spec.min + spec.max) / 2.0);
-        Ok(CaseParameter {
-            key: spec.key.clone(),
-            parameter,
-            min: spec.min,
-            max: spec.max,
-            start: start.clamp(spec.min, spec.max),
-        })
-    };
-    scene.file.calibrate.iter().map(parameter).collect()
-}
-
-/// Speed of the way from rest to the first recorded plunger position, m/s, and the rest after it, s.
-const LEAD_IN_M_S: f64 = 2.0e-3;
-const LEAD_IN_REST_S: f64 = 1.0;
-
-/// Lets a run that begins with a plunger away from zero come there from the scene's start. Returns how many instants.
-fn lead_in(drive: &mut TwinRun) -> usize {
-    let farthest = drive.inputs.iter().filter_map(|x| x.first()).fold(0.0f64, |m, x| m.max(x.abs()));
-    if farthest < 5.0e-5 {
-        return 0;
-    }
-    let start = drive.times_s[0];
-    let moving = farthest / LEAD_IN_M_S;
-    let total = moving + LEAD_IN_REST_S;
-    let count = (total / 0.02).ceil() as usize;
-    let at = |i: usize| total * i as f64 / count as f64;
-    let times: Vec<f64> = (0..count).map(|i| start - total + at(i)).collect();
-    for input in &mut drive.inputs {
-        let to = input[0];
-        let way: Vec<f64> = (0..count).map(|i| to * (at(i) / moving).min(1.0)).collect();
-        input.splice(0..0, way);
-    }
-    drive.times_s.splice(0..0, times);
-    count
 }

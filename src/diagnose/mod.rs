@@ -29,6 +29,7 @@ mod apart;
 mod baseline;
 mod candidates;
 mod case;
+mod case_load;
 mod confirm;
 mod corrected;
 mod descent;
