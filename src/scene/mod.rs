@@ -22,6 +22,8 @@ mod check_effects;
 mod check_muscles;
 mod error;
 mod file;
+mod file_channels;
+mod file_muscles;
 mod load;
 mod overrides;
 mod program;
@@ -29,6 +31,8 @@ mod schema;
 
 pub use error::SceneError;
 pub use file::*;
+pub use file_channels::*;
+pub use file_muscles::*;
 pub use load::{STOCK_SCENES, Scene, find_scene};
 pub use overrides::{Override, calibration_key};
 pub use program::Program;

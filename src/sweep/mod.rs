@@ -17,6 +17,7 @@ mod nsga2;
 mod pareto;
 mod parquet_file;
 mod plan;
+mod plan_checks;
 mod point;
 mod probe;
 mod range;
