@@ -173,7 +173,7 @@ impl NextExperiment {
     pub fn promise(&self) -> Option<String> {
         let (programme, sigma) = (self.programme.as_ref()?, self.separation_sigma);
         Some(match sigma > SETTLES_SIGMA {
-            _ if self.needs_sensor() => "no programme within the recorded strokes would do by itself".to_owned(),
+            _ if self.needs_sensor() => "no programme within the recorded strokes is sure to do by itself".to_owned(),
             true => format!("{programme} would set them {sigma:.1} standard errors apart"),
             false => format!("even {programme} would set them only {sigma:.1} standard errors apart"),
         })

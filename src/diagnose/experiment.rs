@@ -13,8 +13,10 @@ use crate::system::TwinRun;
 
 /// Length of a proposed run, s.
 const DURATION_S: f64 = 60.0;
-/// And of those that may be tried where shorter ones would not settle what is open, s.
-const LONGER_S: [f64; 2] = [180.0, 300.0];
+/// And of those that are looked at, one after the other, until one is sure to settle what is open.
+const DURATIONS_S: [f64; 3] = [DURATION_S, 180.0, 300.0];
+/// Separation to aim at, standard errors: laws are idealisations, and what just settles on paper often does not on a rig.
+const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
 /// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
 const END: f64 = 0.15;
 /// A proposal with the inputs to play.
@@ -59,35 +61,66 @@ pub fn confirm<'a>(
     let apart = |problem: &Problem, run: &CaseRun| Some((separation(problem, best, nearest, run)?, nearest));
     let Some(winner) = ranked(whole, best, (USUAL, DURATION_S), &apart)? else { return Ok(none_to_play()) };
     let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
-    Ok(proposal(best, false, winner, sensor.map(|s| (s.column, s.separation))))
+    Ok(proposal(best, false, winner, sensor))
 }
 
 /// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are. A minute long, or longer where that settles what a minute would
-/// not; where neither does and a sensor would, the programme that does with it.
+/// greatest, counted with the recordings that there are. A minute long, or longer where that is surer; where none is sure
+/// to do, the programme and the sensor that together would.
 ///
 /// # Errors
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
     let known = Known::of(whole, best, open);
     let apart = |problem: &Problem, run: &CaseRun| known.as_ref()?.least_separation(problem, best, open, run);
-    let mut minutes = all_ranked(whole, best, (ALL, DURATION_S), &apart)?;
-    let settles = |winner: &Candidate| winner.separation > SETTLES_SIGMA;
-    let mut longer = None;
-    for duration_s in LONGER_S.into_iter().filter(|_| !minutes.first().is_some_and(settles)) {
-        longer = longer.or(ranked(whole, best, (ALL, duration_s), &apart)?.filter(settles));
+    let mut tried = Vec::new();
+    for duration_s in DURATIONS_S {
+        let ranked = all_ranked(whole, best, (ALL, duration_s), &apart)?;
+        let Some(first) = ranked.first() else { break };
+        let is_sure = first.separation > SURE_SIGMA;
+        tried.push(ranked);
+        if is_sure {
+            break;
+        }
     }
-    if minutes.is_empty() {
+    let Some(at) = surest(tried.iter().filter_map(|ranked| ranked.first()).map(|c| c.separation)) else {
         return Ok(none_to_play());
+    };
+    if tried[at][0].separation > SURE_SIGMA {
+        let winner = tried.swap_remove(at).swap_remove(0);
+        let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
+        return Ok(proposal(best, true, winner, sensor));
     }
-    if let Some(winner) = longer {
-        minutes = vec![winner];
+    let by_itself = tried[at][0].separation;
+    let sensed = sensed(whole, &tried, &apart).filter(|(_, _, sensor)| sensor.separation > by_itself);
+    let (at, candidate, sensor) = sensed.map_or((at, 0, None), |(at, candidate, sensor)| (at, candidate, Some(sensor)));
+    Ok(proposal(best, true, tried.swap_remove(at).swap_remove(candidate), sensor))
+}
+
+/// The first that is sure to settle; else the greatest that should; else the first.
+fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
+    let all: Vec<f64> = separations.collect();
+    let greatest = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
+    let first_sure = all.iter().position(|s| *s > SURE_SIGMA);
+    Some(first_sure.unwrap_or(if all[greatest] > SETTLES_SIGMA { greatest } else { 0 }))
+}
+
+/// The duration, the programme and the sensor that together set the best apart most, of programmes of a minute; longer,
+/// if that is surer. None where no sensor is worth it.
+fn sensed(whole: &Problem, tried: &[Vec<Candidate>], apart: &Apart) -> Option<(usize, usize, Sensed)> {
+    let minute = best_sensor(whole, tried.first()?, apart)?;
+    let name = tried[0][minute.candidate].name;
+    let mut found = vec![(0, minute.candidate, minute)];
+    for (at, ranked) in tried.iter().enumerate().skip(1) {
+        if found.last().is_some_and(|(_, _, sensed)| sensed.separation > SURE_SIGMA) {
+            break;
+        }
+        let Some(same) = ranked.iter().position(|c| c.name == name) else { continue };
+        let sensed = best_sensor(whole, &ranked[same..=same], apart);
+        found.extend(sensed.map(|sensed| (at, same, sensed)));
     }
-    // What settles by itself is played; else whatever would with one more sensor.
-    let played = if settles(&minutes[0]) { 1 } else { minutes.len() };
-    let sensor = best_sensor(whole, &minutes[..played], &apart);
-    let at = sensor.as_ref().filter(|s| s.separation > SETTLES_SIGMA).map_or(0, |s| s.candidate);
-    Ok(proposal(best, true, minutes.swap_remove(at), sensor.map(|s| (s.column, s.separation))))
+    let at = surest(found.iter().map(|(_, _, sensed)| sensed.separation))?;
+    Some(found.swap_remove(at))
 }
 
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
@@ -124,13 +157,13 @@ fn none_to_play() -> Experiment {
     Experiment { next: NextExperiment::none(why), inputs: None }
 }
 
-fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<(String, f64)>) -> Experiment {
+fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<Sensed>) -> Experiment {
     let [of_best, of_rival] = [title(&best.model), title(&winner.rival.model)];
     let question = match is_open {
         true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
         false => format!("{of_best} is settled; the nearest rival is {of_rival}"),
     };
-    let (sensor, sensor_sigma) = sensor.unzip();
+    let (sensor, sensor_sigma) = sensor.map(|s| (s.column, s.separation)).unzip();
     let mut next = NextExperiment {
         why: String::new(),
         file: Some("next_experiment.csv".to_owned()),
@@ -256,10 +289,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_shortest_that_is_sure_comes_first() {
+        let chosen = |separations: &[f64]| surest(separations.iter().copied());
+        assert_eq!(chosen(&[4.0, 12.0, 30.0]), Some(1));
+        assert_eq!(chosen(&[6.0, 9.0, 8.0]), Some(1));
+        // What would not do in five minutes either is not worth the time.
+        assert_eq!(chosen(&[2.0, 3.0, 4.0]), Some(0));
+        assert_eq!(chosen(&[]), None);
+    }
+
+    #[test]
     fn programmes_stay_within_the_strokes_and_last_as_long_as_asked() {
         let moved = vec![1.0e-3, 4.0e-3, 2.5e-3];
         let strokes = strokes(&[("plunger_mm".to_owned(), moved)]);
-        for duration_s in [DURATION_S, LONGER_S[0], LONGER_S[1]] {
+        for duration_s in DURATIONS_S {
             let programmes = programmes(&strokes, 0.5, duration_s).expect("a known unit");
             assert!(programmes.len() > USUAL);
             for (name, inputs) in programmes {

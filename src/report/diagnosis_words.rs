@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(
             next_words(&d),
             "leak in line and plastic_set in muscle explain these recordings about equally well. To decide: no programme \
-             within the recorded strokes would do by itself."
+             within the recorded strokes is sure to do by itself."
         );
         let sensor = sensor_words(&d.next_experiment).expect("a sensor");
         assert_eq!(sensor, "With `pressure_kpa` recorded as well, a chirp would set them 9.1 standard errors apart.");
