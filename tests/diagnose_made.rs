@@ -55,7 +55,7 @@ fn the_answer_is_the_same_on_one_thread_and_on_three() {
 }
 
 /// Changes every run of a folder.
-fn change(folder: &Path, with: impl Fn(&Recording) -> Recording) {
+fn change(folder: &Path, mut with: impl FnMut(&Recording) -> Recording) {
     for file in ["sine.csv", "steps.csv", "chirp.csv"] {
         let path = folder.join(file);
         let recording = read_csv(&path).unwrap_or_else(|e| panic!("{e}"));
@@ -64,7 +64,7 @@ fn change(folder: &Path, with: impl Fn(&Recording) -> Recording) {
 }
 
 /// The recording with the values of one column changed.
-fn column(recording: &Recording, name: &str, with: impl Fn(f64) -> f64) -> Recording {
+fn column(recording: &Recording, name: &str, mut with: impl FnMut(f64) -> f64) -> Recording {
     let change = |c: &Channel| match c.column == name {
         true => Channel::new(name, c.values.iter().map(|v| with(*v)).collect()),
         false => c.clone(),
@@ -104,4 +104,38 @@ fn a_short_run_is_too_short() {
     let d = answer(folder.path());
     assert_eq!(d.verdict, Verdict::UnusableData);
     assert!(d.summary.contains("samples"), "{}", d.summary);
+}
+
+/// A pressure sensor with a sample in every fifth row, its noise not stated, and a last run that shows nothing: neither stands
+/// in the way of an answer.
+#[test]
+fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
+    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    let mut row = 0;
+    change(folder.path(), |r| {
+        column(r, "pressure_kpa", |v| {
+            row += 1;
+            if row % 5 == 0 { v } else { f64::NAN }
+        })
+    });
+    let inputs = read_csv(&folder.path().join("sine.csv")).expect("a run");
+    let plunger = inputs.channel("plunger_mm").expect("the input").clone();
+    let empty = Recording::new(inputs.time_s().to_vec(), vec![plunger]).expect("a run");
+    empty.write_csv(&folder.path().join("empty.csv")).expect("a file");
+    let path = folder.path().join("recordings.toml");
+    let text = std::fs::read_to_string(&path).expect("a description");
+    let stated = |line: &&str| !line.starts_with("noise_sd");
+    let mut text = text.lines().filter(stated).collect::<Vec<_>>().join("\n");
+    text.push_str(
+        "\n[[run]]\nfile = \"empty.csv\"\nnot_recorded = [\"elongation_mm\", \"pressure_kpa\", \"force_n\"]\n",
+    );
+    if !text.contains("column = \"force_n\"") {
+        text = text.replace(", \"force_n\"]", "]");
+    }
+    std::fs::write(&path, text).expect("written");
+    let d = answer(folder.path());
+    assert_eq!(d.verdict, Verdict::MissingPhysics);
+    assert!(d.effects[0].name == "leak" && d.effects[0].probability > 0.9, "{:?}", d.effects);
+    assert!((d.detection.noise_sd["pressure_kpa"] / 5.0 - 1.0).abs() < 0.2, "{:?}", d.detection.noise_sd);
+    assert!(d.warnings.iter().any(|w| w.starts_with("empty.csv: no output was recorded")), "{:?}", d.warnings);
 }

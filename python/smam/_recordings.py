@@ -25,6 +25,7 @@ def write_recordings(
     ``runs``: each run by its name, as a frame over ``time_s`` or as arrays by column. Columns end in their unit.
     ``inputs``: columns that drive the simulation; ``outputs``: columns compared with it, with the standard deviation of
     their noise in the column's unit where it is known (``{"elongation_mm": 0.02, "pressure_kpa": None}``).
+    An output that some runs lack is written as not recorded there.
     ``holdout``: runs to which nothing is fitted. ``conditions``: known numbers of a run,
     ``{"hang": {"hanging_mass_kg": 0.2}}``.
     """
@@ -34,14 +35,18 @@ def write_recordings(
     columns = [*inputs, *noise]
     _known("holdout", holdout, runs)
     _known("conditions", conditions or {}, runs)
+    frames = {name: over_time(series) for name, series in runs.items()}
+    somewhere = {column for frame in frames.values() for column in frame.columns}
     listed = []
-    for name, series in runs.items():
-        frame = over_time(series)
+    for name in runs:
+        frame = frames[name]
         missing = [column for column in columns if column not in frame.columns]
-        if missing:
+        if any(column in inputs or column not in somewhere for column in missing):
             raise ValueError(f"run {name}: there is no column {', '.join(missing)}; found: {', '.join(frame.columns)}")
-        frame[columns].to_csv(path / f"{name}.csv")
+        frame[[column for column in columns if column not in missing]].to_csv(path / f"{name}.csv")
         run: dict[str, Any] = {"file": f"{name}.csv"}
+        if missing:
+            run["not_recorded"] = missing
         if holdout:
             run["use"] = "holdout" if name in holdout else "fit"
         listed.append({**run, **(conditions or {}).get(name, {})})

@@ -67,6 +67,21 @@ def test_a_run_without_a_declared_column_is_refused() -> None:
         )
 
 
+def test_an_output_that_one_run_lacks_is_written_as_such() -> None:
+    short = {"time_s": [0.0, 0.1], "plunger_mm": [0.0, 0.1], "elongation_mm": [0.0, 0.9]}
+    folder = smam.write_recordings(
+        "mixed",
+        "muscle_bench",
+        {"a": {**short, "force_n": [0.0, 0.1]}, "b": short},
+        inputs=["plunger_mm"],
+        outputs=["elongation_mm", "force_n"],
+    )
+    text = (folder / "recordings.toml").read_text(encoding="utf-8")
+    assert text.count("not_recorded") == 1
+    assert 'not_recorded = ["force_n"]' in text.split("b.csv")[1]
+    assert "force_n" not in (folder / "b.csv").read_text(encoding="utf-8")
+
+
 def test_measured_beside_simulated() -> None:
     rig.write({"effect": [LEAK]}, "leaky")
     beside = smam.compare("leaky")

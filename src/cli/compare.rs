@@ -155,7 +155,8 @@ fn title(run: &Run) -> String {
 /// Each channel over several runs: squares weighted by samples.
 fn pool<'a>(fits: impl Iterator<Item = &'a Vec<ChannelFit>>) -> Vec<ChannelFit> {
     let mut pooled: Vec<ChannelFit> = Vec::new();
-    for fit in fits.flatten() {
+    // A run in which a channel's cells are all empty says nothing of it.
+    for fit in fits.flatten().filter(|f| f.count > 0) {
         match pooled.iter_mut().find(|p| p.column == fit.column) {
             Some(p) => {
                 let (n, m) = (p.count as f64, fit.count as f64);

@@ -111,6 +111,10 @@ fn load(arguments: &IdentifyArguments) -> Result<Loops, CliError> {
     let output = column(&arguments.output, &declared(Role::Output, "elongation_mm"));
     let mut loops = Loops { name, fit: Vec::new(), holdout: Vec::new() };
     for run in load_runs(&set, &set.runs, &mut |n| eprintln!("note: {n}"))? {
+        if run.run.not_recorded.contains(&output) {
+            eprintln!("note: {}: recorded without {output}, left out", run.run.file);
+            continue;
+        }
         let read = LoopRun::of(&run.run.file, &run.recording, [&input, &output], arguments.skip)?;
         match run.run.run_use {
             Some(RunUse::Holdout) => loops.holdout.push(read),

@@ -104,9 +104,17 @@ pub fn read_rows(path: &Path, remedy: &str) -> Result<Vec<Row>, CliError> {
     let refuse = |why: String| CliError::Usage(format!("{}: {why}\n  remedy: {remedy}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
     let row = |(i, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|e| refuse(format!("line {}: not a row of a proof: {e}", i + 1)))
+        let row: Row = serde_json::from_str(line)
+            .map_err(|e| refuse(format!("line {}: not a row of a proof, one a line: {e}", i + 1)))?;
+        match row.fault() {
+            None => Ok(row),
+            Some(fault) => Err(refuse(format!("line {}: {fault}", i + 1))),
+        }
     };
     let rows: Vec<Row> = text.lines().enumerate().map(row).collect::<Result<_, _>>()?;
+    if let Some(twice) = (1..rows.len()).find(|i| rows[..*i].iter().any(|r| r.name == rows[*i].name)) {
+        return Err(refuse(format!("line {}: {} stands twice", twice + 1, rows[twice].name)));
+    }
     if rows.is_empty() { Err(refuse("it holds no row".to_owned())) } else { Ok(rows) }
 }
 

@@ -25,9 +25,7 @@ impl Case {
         let sets = folders.iter().map(|f| RecordingSet::load(f)).collect::<Result<Vec<_>, _>>()?;
         let Some(first) = sets.first() else { return Err(DiagnoseError::Nothing) };
         refuse_repeated(&sets)?;
-        if let Some(odd) = sets.iter().find(|s| s.scene != first.scene || columns(s) != columns(first)) {
-            return Err(DiagnoseError::Mixed { first: first.dir.clone(), other: odd.dir.clone() });
-        }
+        refuse_mixed(&sets)?;
         let scene_name = scene.map_or_else(|| scene_path(first), str::to_owned);
         let base = Scene::load(&scene_name, overrides)?;
         check_channels(first, &base)?;
@@ -49,6 +47,7 @@ impl Case {
         if case.runs.is_empty() {
             return Err(DiagnoseError::Nothing);
         }
+        case.leave_out_empty();
         case.seal();
         Ok(case)
     }
@@ -104,6 +103,17 @@ impl Case {
         Ok(thin)
     }
 
+    /// Leaves out runs that show none of the outputs, unless none does.
+    fn leave_out_empty(&mut self) {
+        let shows = |r: &CaseRun| r.measured.iter().flatten().any(|v| v.is_finite());
+        if !self.runs.iter().any(shows) {
+            return;
+        }
+        let empty = self.runs.iter().filter(|r| !shows(r));
+        self.notes.extend(empty.map(|r| format!("{}: no output was recorded; the run is left out", r.file)));
+        self.runs.retain(shows);
+    }
+
     /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
     fn seal(&mut self) {
         if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
@@ -152,6 +162,29 @@ fn refuse_repeated(sets: &[RecordingSet]) -> Result<(), DiagnoseError> {
         Some(i) => Err(DiagnoseError::Repeated { folder: sets[i].dir.clone() }),
         None => Ok(()),
     }
+}
+
+/// Runs of one diagnosis are of one rig, with the same channels in whatever order.
+fn refuse_mixed(sets: &[RecordingSet]) -> Result<(), DiagnoseError> {
+    let [first, others @ ..] = sets else { return Ok(()) };
+    for other in others {
+        if other.scene != first.scene {
+            let (of_first, of_other) = (first.scene.clone(), other.scene.clone());
+            return Err(DiagnoseError::Scenes {
+                first: first.dir.clone(),
+                other: other.dir.clone(),
+                of_first,
+                of_other,
+            });
+        }
+        let lacks = |a: &RecordingSet, b: &RecordingSet| {
+            columns(a).into_iter().find(|c| !columns(b).contains(c)).map(|c| (c.to_owned(), b.dir.clone()))
+        };
+        if let Some((column, folder)) = lacks(first, other).or_else(|| lacks(other, first)) {
+            return Err(DiagnoseError::Undeclared { column, folder });
+        }
+    }
+    Ok(())
 }
 
 /// The scene has been checked: every table is an effect.

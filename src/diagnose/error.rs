@@ -25,9 +25,15 @@ pub enum DiagnoseError {
     )]
     Repeated { folder: PathBuf },
     #[error(
-        "{first} and {other} are not of one rig: scene or channels differ\n  remedy: diagnose them one after the other"
+        "{first} and {other} are not of one rig: their scenes are {of_first} and {of_other}\n  \
+         remedy: diagnose them one after the other"
     )]
-    Mixed { first: PathBuf, other: PathBuf },
+    Scenes { first: PathBuf, other: PathBuf, of_first: String, of_other: String },
+    #[error(
+        "{folder}/recordings.toml does not declare {column}, which another folder does\n  \
+         remedy: declare it there too, and list it under not_recorded in each [[run]] that lacks it"
+    )]
+    Undeclared { folder: PathBuf, column: String },
     #[error(
         "{file}: [[calibrate]] key = \"{key}\": the fast model cannot vary it\n  \
          remedy: calibrate a number of tube, coil, friction, compliance, linear muscle, cable, joint spring or axis"

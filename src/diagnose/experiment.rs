@@ -51,7 +51,10 @@ pub fn confirm<'a>(
     best: &Fit,
     rivals: impl Iterator<Item = &'a Fit>,
 ) -> Result<Experiment, RecordingError> {
-    let Some(nearest) = rivals.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
+    // Another law under the same name would be the same answer.
+    let own_title = title(&best.model);
+    let others = rivals.filter(|rival| title(&rival.model) != own_title);
+    let Some(nearest) = others.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
         let why = match best.model.effects.is_empty() {
             true => "nothing stays open that a rival could explain",
             false => "no other effect of the catalogue comes near",

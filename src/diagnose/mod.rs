@@ -208,7 +208,7 @@ fn explain(
     say("sealed runs".to_owned());
     let found = confirm::prune(&open, &sealed, found, &variants, say);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let (mut found, mut proof, confirmed) = confirm::confirm(case, found, proof, &mut warnings);
+    let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     let so_far = (&found, &proof, confirmed);
     let hypothesis = hypothesis::weigh_hypotheses(case, &noise, so_far, excess, seed, say);

@@ -4,8 +4,11 @@
 //! than half a second is asked, for what is slower may be misfit. What noise of that kind would show further away is
 //! taken off the residual's covariance there: the rest is misfit.
 
-use super::case::Case;
-use crate::recording::{median, median_interval_s};
+use std::borrow::Cow;
+
+use super::case::{Case, CaseRun};
+use crate::recording::figures::range;
+use crate::recording::{median, median_interval_s, noise_sd};
 
 /// Time over which the running mean is taken that separates misfit from noise, s, and its bounds in samples.
 const WINDOW_S: f64 = 0.5;
@@ -89,16 +92,52 @@ pub fn estimate(case: &Case, residuals: &[Vec<Vec<f64>>]) -> Vec<Noise> {
     let interval_s = case.runs.first().and_then(|r| median_interval_s(r.times_s())).unwrap_or(0.01);
     (0..case.channels.len())
         .map(|c| {
-            let channel: Vec<&[f64]> = residuals.iter().map(|run| run[c].as_slice()).collect();
-            of_channel(&channel, interval_s, case.channels[c].stated_sd)
+            let channel = on_own_clock(residuals, c);
+            let runs: Vec<&[f64]> = channel.runs.iter().map(AsRef::as_ref).collect();
+            let stated_sd = case.channels[c].stated_sd;
+            of_channel(&runs, channel.rows_per_sample * interval_s, stated_sd)
+                .unwrap_or_else(|| Noise::white(of_recording(case, c)))
         })
         .collect()
 }
 
-/// White and slow part whose covariance, once a running mean is taken off, is nearest to what was found.
-fn of_channel(runs: &[&[f64]], interval_s: f64, stated_sd: Option<f64>) -> Noise {
+/// Residuals of a channel as it was sampled.
+struct OwnClock<'a> {
+    runs: Vec<Cow<'a, [f64]>>,
+    rows_per_sample: f64,
+}
+
+/// A sensor slower than the others has a sample in every so many rows: those that are there stand side by side.
+fn on_own_clock(residuals: &[Vec<Vec<f64>>], channel: usize) -> OwnClock<'_> {
+    let runs = residuals.iter().map(|run| run[channel].as_slice()).filter(|r| r.iter().any(|v| v.is_finite()));
+    let runs: Vec<&[f64]> = runs.collect();
+    let rows: usize = runs.iter().map(|r| r.len()).sum();
+    let there = runs.iter().copied().flatten().filter(|v| v.is_finite()).count();
+    if 2 * there > rows {
+        return OwnClock { runs: runs.into_iter().map(Cow::Borrowed).collect(), rows_per_sample: 1.0 };
+    }
+    let finite = |r: &[f64]| Cow::Owned(r.iter().copied().filter(|v| v.is_finite()).collect());
+    OwnClock { runs: runs.into_iter().map(finite).collect(), rows_per_sample: rows as f64 / there.max(1) as f64 }
+}
+
+/// Deviation of a channel that the fitted runs do not have, or hardly: that of the recordings themselves, held back or not;
+/// of still fewer samples a thousandth of their range.
+fn of_recording(case: &Case, channel: usize) -> f64 {
+    let of_run = |r: &CaseRun| noise_sd(r.times_s(), &r.measured[channel]);
+    let found = case.runs.iter().filter_map(of_run).fold(0.0, f64::max);
+    let all = case.runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite());
+    let range = 1e-3 * range(&all.collect::<Vec<f64>>());
+    [found, range].into_iter().find(|sd| *sd > 0.0).unwrap_or(1.0)
+}
+
+/// White and slow part whose covariance, once a running mean is taken off, is nearest to what was found; none where too
+/// little was recorded and nothing is stated.
+fn of_channel(runs: &[&[f64]], interval_s: f64, stated_sd: Option<f64>) -> Option<Noise> {
     let half = ((WINDOW_S / interval_s) as usize).clamp(WINDOW.0, WINDOW.1) / 2;
     let fast: Vec<Vec<f64>> = runs.iter().map(|r| without_slow_part(r, half)).collect();
+    if stated_sd.is_none() && !fast.iter().flatten().any(|v| v.is_finite()) {
+        return None;
+    }
     let found: Vec<f64> = (0..READ).map(|lag| usual_product(&fast, lag)).collect();
     let filtered = |covariance: &dyn Fn(usize) -> f64| filtered(covariance, half);
     let white = filtered(&|lag| if lag == 0 { 1.0 } else { 0.0 });
@@ -122,7 +161,7 @@ fn of_channel(runs: &[&[f64]], interval_s: f64, stated_sd: Option<f64>) -> Noise
     let share = slow / variance.max(f64::MIN_POSITIVE);
     let is_seen = slow > 2.0 * error_of_slow(variance, fast.iter().flatten().filter(|v| v.is_finite()).count());
     let sd = variance.sqrt().max(f64::MIN_POSITIVE);
-    if is_seen { Noise { sd, slow_share: share.min(1.0), kept } } else { Noise::white(sd) }
+    Some(if is_seen { Noise { sd, slow_share: share.min(1.0), kept } } else { Noise::white(sd) })
 }
 
 /// Slow part that white noise alone may seem to have.
@@ -200,8 +239,8 @@ pub fn structured_excess(residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> (f64, 
     let lags = LAGS.len() as f64;
     let (mut sum, mut weight, mut variance) = (0.0, 0.0, 0.0);
     for (c, noise) in noise.iter().enumerate() {
-        let channel: Vec<&[f64]> = residuals.iter().map(|run| run[c].as_slice()).collect();
-        let count: f64 = channel.iter().copied().flatten().filter(|r| r.is_finite()).count() as f64;
+        let channel = on_own_clock(residuals, c).runs;
+        let count: f64 = channel.iter().flat_map(|r| r.iter()).filter(|r| r.is_finite()).count() as f64;
         let power = LAGS.map(|lag| mean_product(&channel, lag)).sum::<f64>() / lags;
         let own = mean_product(&channel, 0) / (noise.sd * noise.sd);
         sum += count * (power / (noise.sd * noise.sd) - noise.far());
@@ -252,7 +291,7 @@ mod tests {
     fn colour_is_read_and_is_no_misfit() {
         for (slow_share, memory, seed) in [(0.5, 2.0, 3), (0.7, 8.0, 5), (0.3, 5.0, 9), (0.7, 4.0, 11)] {
             let r = coloured(15_000, slow_share, memory, seed);
-            let found = of_channel(&[&r], 0.01, None);
+            let found = of_channel(&[&r], 0.01, None).expect("samples");
             let kept = f64::exp(-1.0 / memory);
             let inflation = 1.0 + 2.0 * slow_share * kept / (1.0 - kept);
             assert!((found.inflation() / inflation - 1.0).abs() < 0.3, "{found:?} {inflation}");
@@ -266,12 +305,26 @@ mod tests {
     #[test]
     fn white_noise_has_no_colour_and_a_slow_misfit_gives_it_none() {
         let white = noise(20_000, 3);
-        assert!(of_channel(&[&white], 0.01, None).inflation() < 1.15);
+        assert!(of_channel(&[&white], 0.01, None).expect("samples").inflation() < 1.15);
         let wave = |i: usize| (i as f64 * 0.01 * std::f64::consts::TAU * 0.15).sin();
         let with_misfit: Vec<f64> = white.iter().enumerate().map(|(i, n)| n + wave(i)).collect();
-        let found = of_channel(&[&with_misfit], 0.01, Some(1.0));
+        let found = of_channel(&[&with_misfit], 0.01, Some(1.0)).expect("samples");
         assert!(found.inflation() < 1.15, "{found:?}");
         let (excess, _) = structured_excess(&[vec![with_misfit]], &[found]);
         assert!((excess - 0.5).abs() < 0.03, "{excess}");
+    }
+
+    #[test]
+    fn a_slower_sensor_is_read_on_its_own_clock() {
+        let white = noise(3000, 5);
+        let every_fifth = |i: usize| if i.is_multiple_of(5) { white[i / 5] } else { f64::NAN };
+        let residuals = vec![vec![(0..15_000).map(every_fifth).collect::<Vec<f64>>()]];
+        let channel = on_own_clock(&residuals, 0);
+        assert_eq!((channel.runs[0].len(), channel.rows_per_sample), (3000, 5.0));
+        let found = of_channel(&[&channel.runs[0]], 0.05, None).expect("samples");
+        assert!((found.sd - 1.0).abs() < 0.06 && found.inflation() < 1.15, "{found:?}");
+        let (excess, error) = structured_excess(&residuals, &[found]);
+        assert!(excess.abs() < 4.0 * error && error < 0.05, "{excess} {error}");
+        assert!(of_channel(&[], 0.01, None).is_none());
     }
 }

@@ -3,6 +3,7 @@
 use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
+use crate::recording::noise_sd;
 
 /// Fewer samples than this say nothing.
 const LEAST_SAMPLES: usize = 200;
@@ -91,6 +92,9 @@ const FACTORS: [(f64, &str); 4] = [
     (180.0 / std::f64::consts::PI, "180/pi (degrees and radians)"),
 ];
 
+/// A channel whose spread is below so many deviations of its noise shows its noise: it says nothing of units.
+const NOISE_ALONE: f64 = 3.0;
+
 /// Compares each channel's spread with that of the scene as it stands.
 fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
     let model = Model::baseline();
@@ -107,6 +111,10 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
                 measured.push(*m);
                 simulated.push(m - r);
             }
+        }
+        let noise = problem.runs.iter().filter_map(|r| noise_sd(r.times_s(), &r.measured[c])).fold(0.0, f64::max);
+        if spread(&measured) < NOISE_ALONE * noise {
+            continue;
         }
         let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);
         let named = FACTORS.iter().find(|(f, _)| (ratio / f).ln().abs() < 0.7f64.min(f.ln().abs() / 3.0));

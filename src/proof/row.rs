@@ -62,6 +62,21 @@ impl Row {
         matches!(self.verdict, Verdict::MissingPhysics | Verdict::Ambiguous | Verdict::UnknownPhysics)
     }
 
+    /// What makes it no row that a proof could have written, if anything does.
+    pub fn fault(&self) -> Option<String> {
+        let count = self.secrets.len();
+        let fits = match self.hiding {
+            Hiding::Nothing => count == 0,
+            Hiding::One | Hiding::Unlisted => count == 1,
+            Hiding::Several => count > 1,
+        };
+        if !fits {
+            return Some(format!("{}: {count} secrets where `hiding` is {:?}", self.name, self.hiding));
+        }
+        let odd = self.effects.iter().find(|e| !(0.0..=1.0).contains(&e.probability))?;
+        Some(format!("{}: probability {} of {} is not between 0 and 1", self.name, odd.probability, odd.name))
+    }
+
     /// Probability that the answer gives to a secret.
     pub fn probability_of(&self, secret: &Secret) -> f64 {
         self.effects.iter().filter(|e| e.is(secret)).map(|e| e.probability).fold(0.0, f64::max)
@@ -146,4 +161,24 @@ fn answered(e: &crate::diagnose::NamedEffect, truth: &Truth) -> Answered {
 
 pub(super) fn read(path: &Path) -> Result<String, ProofError> {
     fs::read_to_string(path).map_err(|source| ProofError::Read { file: path.to_path_buf(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_no_proof_writes_are_named() {
+        let row = |hiding: &str, effects: &str| -> Row {
+            let text = format!(
+                r#"{{"name":"a","rig":"muscle_bench","hiding":"{hiding}","secrets":[],"is_noise_coloured":false,"is_noise_stated":true,
+                    "decoys":[],"verdict":"adequate","element":null,"effects":[{effects}],"excess":0.0,"gap_closed":null,"seconds":1.0}}"#
+            );
+            serde_json::from_str(&text).expect("a row")
+        };
+        assert_eq!(row("nothing", "").fault(), None);
+        assert_eq!(row("one", "").fault().as_deref(), Some("a: 0 secrets where `hiding` is One"));
+        let leak = r#"{"name":"leak","element":"line","probability":7.5}"#;
+        assert!(row("nothing", leak).fault().is_some_and(|f| f.contains("probability 7.5 of leak")));
+    }
 }

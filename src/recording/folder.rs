@@ -200,7 +200,10 @@ fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result
     }
     let mut channels = recording.channels().to_vec();
     for column in columns {
-        if recording.find(column).is_some() {
+        if let Some(there) = recording.find(column) {
+            if there.values.iter().all(|v| v.is_nan()) {
+                continue;
+            }
             let problem = format!(
                 "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
                  remedy: remove it from that list, or rename the column"
@@ -307,6 +310,10 @@ fn run(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Run, RecordingError>
 fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>, RecordingError> {
     let columns = keys.texts("not_recorded")?;
     let outputs: Vec<&str> = channels.iter().filter(|c| c.role == Role::Output).map(|c| c.column.as_str()).collect();
+    if let Some(twice) = (1..columns.len()).find(|i| columns[..*i].contains(&columns[*i])) {
+        let column = &columns[twice];
+        return Err(keys.error(format!("not_recorded names \"{column}\" twice\n  remedy: name it once")));
+    }
     match columns.iter().find(|c| !outputs.contains(&c.as_str())) {
         None => Ok(columns),
         Some(odd) => Err(keys.error(format!(

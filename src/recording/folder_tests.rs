@@ -138,6 +138,8 @@ fn a_run_may_lack_a_sensor_that_others_have() {
     assert_eq!(loaded.recording.columns(), ["plunger_mm", "force_n"]);
     assert!(loaded.recording.channel("force_n").unwrap().values.iter().all(|v| v.is_nan()));
     assert!(loaded.notes.is_empty());
+    std::fs::write(&csv, "time_s,plunger_mm,force_n\n0,1,\n").unwrap();
+    assert!(set.load_run(&set.runs[0]).is_ok(), "an empty column is one that was not recorded");
     std::fs::write(&csv, "time_s,plunger_mm,force_n\n0,1,2\n").unwrap();
     let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
     assert!(error.contains("\"force_n\" is there") && error.contains("remedy: remove it from that list"), "{error}");
@@ -150,6 +152,9 @@ fn what_was_not_recorded_is_an_output_that_is_declared() {
         said("[\"force_m\"]"),
         "rig/recordings.toml: [[run]] 1 (\"sine.csv\"): not_recorded names \"force_m\", which is no declared output, did \
          you mean \"force_n\"?\n  remedy: the outputs are force_n"
+    );
+    assert!(
+        said("[\"force_n\", \"force_n\"]").ends_with("not_recorded names \"force_n\" twice\n  remedy: name it once")
     );
     assert!(said("[\"plunger_mm\"]").contains("no declared output"));
     assert!(said("\"force_n\"").ends_with("must be a list of texts\n  remedy: write not_recorded = [\"force_n\"]"));
