@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use smam::conceal::{Hiding, Rig, draw, record_asked, write_case};
 use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
 use smam::effects::EffectTable;
 use smam::recording::{Channel, Recording, read_csv};
@@ -138,4 +139,25 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
     assert!(d.effects[0].name == "leak" && d.effects[0].probability > 0.9, "{:?}", d.effects);
     assert!((d.detection.noise_sd["pressure_kpa"] / 5.0 - 1.0).abs() < 0.2, "{:?}", d.detection.noise_sd);
     assert!(d.warnings.iter().any(|w| w.starts_with("empty.csv: no output was recorded")), "{:?}", d.warnings);
+}
+
+/// A coil wound tight beside a weight: no motion within the stroke tells them apart for sure, a load cell does. The answer
+/// asks for it, and the concealing plant can be given one.
+#[test]
+fn an_open_answer_asks_for_the_sensor_that_would_decide() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let drawn = draw("case_21", Rig::MuscleBench, Hiding::One, 21).unwrap_or_else(|e| panic!("{e}"));
+    write_case(&drawn, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    let d = answer(&folder.path().join("case_21"));
+    assert_eq!(d.verdict, Verdict::Ambiguous);
+    let named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!(named, ["coil_preload", "gravity_load"]);
+    let next = &d.next_experiment;
+    assert_eq!(next.sensor.as_deref(), Some("force_n"), "{next:?}");
+    let with_sensor = next.sensor_sigma.expect("a promise");
+    assert!(next.needs_sensor() && with_sensor > 2.0 * next.separation_sigma, "{next:?}");
+    assert!(next.why.contains("with force_n recorded as well") && next.file.is_some(), "{next:?}");
+    let inputs = drawn.runs[0].1.clone();
+    let more = record_asked(&drawn.truth, &inputs, Some("force_n")).unwrap_or_else(|e| panic!("{e}"));
+    assert!(more.find("force_n").is_some());
 }
