@@ -62,7 +62,9 @@ pub fn confirm<'a>(
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
     let apart = |problem: &Problem, run: &CaseRun| Some((separation(problem, best, nearest, run)?, nearest));
-    let Some(winner) = ranked(whole, best, (USUAL, DURATION_S), &apart)? else { return Ok(none_to_play()) };
+    let Some(winner) = ranked(whole, best, (USUAL, DURATION_S), &apart)?.into_iter().next() else {
+        return Ok(none_to_play());
+    };
     let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
     Ok(proposal(best, false, winner, sensor))
 }
@@ -78,15 +80,15 @@ pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Exp
     let apart = |problem: &Problem, run: &CaseRun| known.as_ref()?.least_separation(problem, best, open, run);
     let mut tried = Vec::new();
     for duration_s in DURATIONS_S {
-        let ranked = all_ranked(whole, best, (ALL, duration_s), &apart)?;
-        let Some(first) = ranked.first() else { break };
+        let programmes = ranked(whole, best, (ALL, duration_s), &apart)?;
+        let Some(first) = programmes.first() else { break };
         let is_sure = first.separation > SURE_SIGMA;
-        tried.push(ranked);
+        tried.push(programmes);
         if is_sure {
             break;
         }
     }
-    let Some(at) = surest(tried.iter().filter_map(|ranked| ranked.first()).map(|c| c.separation)) else {
+    let Some(at) = surest(tried.iter().map(|programmes| programmes[0].separation)) else {
         return Ok(none_to_play());
     };
     if tried[at][0].separation > SURE_SIGMA {
@@ -133,18 +135,8 @@ const ALL: usize = usize::MAX;
 /// How far a run sets the answer apart from a rival, and from which.
 type Apart<'a, 'c> = dyn Fn(&Problem, &CaseRun) -> Option<(f64, &'a Fit)> + 'c;
 
-/// The best of the programmes; none where none can be simulated.
-fn ranked<'a>(
-    whole: &Problem,
-    best: &Fit,
-    which: (usize, f64),
-    apart: &Apart<'a, '_>,
-) -> Result<Option<Candidate<'a>>, RecordingError> {
-    Ok(all_ranked(whole, best, which, apart)?.into_iter().next())
-}
-
 /// The programmes that can be simulated, those first that set the best apart from its rivals most.
-fn all_ranked<'a>(
+fn ranked<'a>(
     whole: &Problem,
     best: &Fit,
     which: (usize, f64),
