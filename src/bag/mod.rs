@@ -12,7 +12,7 @@ mod value;
 mod write;
 
 pub use read::{Bag, Clock, Pick, Series, Topic, read};
-pub use write::{FLOAT64, JointPositions, encode};
+pub use write::{BagWriter, FLOAT64};
 
 #[cfg(test)]
 mod tests;

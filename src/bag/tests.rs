@@ -177,8 +177,10 @@ fn read_all(bytes: &[u8]) -> Result<Bag, String> {
 }
 
 fn small() -> Vec<u8> {
-    let joints = JointPositions { names: vec!["tip".to_owned()], positions: vec![vec![0.25], vec![0.5]] };
-    encode(&[-1.0, -0.5], &[("force_n", &[1.0, 2.0]), ("tip_rad", &[3.0, f64::NAN])], &joints).unwrap()
+    let mut bag = BagWriter::new(Cursor::new(Vec::new()), &["force_n", "tip_rad"], &["tip".to_owned()]).unwrap();
+    bag.instant(-1.0, &[1.0, 3.0], &[0.25]).unwrap();
+    bag.instant(-0.5, &[2.0, f64::NAN], &[0.5]).unwrap();
+    bag.finish().unwrap().into_inner()
 }
 
 #[test]

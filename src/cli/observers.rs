@@ -68,7 +68,7 @@ impl Observer for Observers {
     }
 }
 
-/// Keeps the run in memory, for the checks or until it is written whole.
+/// Keeps the run in memory, for the checks.
 #[derive(Default)]
 pub struct Recorder {
     names: Vec<String>,

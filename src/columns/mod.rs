@@ -26,7 +26,7 @@ mod read;
 mod write;
 
 pub use read::decode;
-pub use write::encode;
+pub use write::{NumberRows, encode};
 
 /// One column of a table.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! Columns to Parquet.
 
+use std::io::{self, Write};
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
@@ -20,12 +21,21 @@ pub fn encode(table: &[NamedColumn]) -> Result<Vec<u8>, String> {
 }
 
 fn bytes(table: &[NamedColumn]) -> Result<Vec<u8>, ParquetError> {
+    let mut writer = begin(Vec::new(), table)?;
+    put_group(&mut writer, table)?;
+    writer.into_inner()
+}
+
+fn begin<W: Write + Send>(target: W, table: &[NamedColumn]) -> Result<SerializedFileWriter<W>, ParquetError> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::UNCOMPRESSED)
         // Nothing of the program's version in it: the same table is the same bytes.
         .set_created_by("smam".to_owned())
         .build();
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(table)?, Arc::new(properties))?;
+    SerializedFileWriter::new(target, schema(table)?, Arc::new(properties))
+}
+
+fn put_group<W: Write + Send>(writer: &mut SerializedFileWriter<W>, table: &[NamedColumn]) -> Result<(), ParquetError> {
     let mut group = writer.next_row_group()?;
     for (_, column) in table {
         if let Some(mut next) = group.next_column()? {
@@ -34,7 +44,85 @@ fn bytes(table: &[NamedColumn]) -> Result<Vec<u8>, ParquetError> {
         }
     }
     group.close()?;
-    writer.into_inner()
+    Ok(())
+}
+
+/// Rows that are held before they go to the file together.
+const ROWS_OF_A_GROUP: usize = 1 << 16;
+
+/// Writes a table of numbers row by row; memory does not grow with the rows.
+///
+/// ```
+/// use smam::columns::{NumberRows, decode};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut rows = NumberRows::new(tempfile::tempfile()?, &["time_s", "force_n"])?;
+/// rows.row(&[0.0, 0.05])?;
+/// rows.row(&[0.01, f64::NAN])?;
+/// let mut file = rows.finish()?;
+/// std::io::Seek::rewind(&mut file)?;
+/// assert_eq!(decode(file)?[0].1.numbers(), Some(vec![0.0, 0.01]));
+/// # Ok(())
+/// # }
+/// ```
+pub struct NumberRows<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    /// Rows that are not in the file yet.
+    held: Vec<(String, Vec<f64>)>,
+    has_group: bool,
+}
+
+impl<W: Write + Send> NumberRows<W> {
+    /// Begins a file with these columns.
+    ///
+    /// # Errors
+    /// What the target says.
+    pub fn new(target: W, columns: &[&str]) -> io::Result<Self> {
+        let held: Vec<(String, Vec<f64>)> = columns.iter().map(|name| ((*name).to_owned(), Vec::new())).collect();
+        let writer = begin(target, &table(held.clone())).map_err(io_error)?;
+        Ok(Self { writer, held, has_group: false })
+    }
+
+    /// One number for each column; NaN where there is none.
+    ///
+    /// # Errors
+    /// What the target says.
+    pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        self.held.iter_mut().zip(values).for_each(|((_, column), value)| column.push(*value));
+        if self.held.first().is_some_and(|(_, column)| column.len() >= ROWS_OF_A_GROUP) { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let rows = self.held.iter_mut().map(|(name, column)| (name.clone(), std::mem::take(column))).collect();
+        self.has_group = true;
+        put_group(&mut self.writer, &table(rows)).map_err(io_error)
+    }
+
+    /// Ends the file and gives the target back.
+    ///
+    /// # Errors
+    /// What the target says.
+    pub fn finish(mut self) -> io::Result<W> {
+        if !self.has_group || self.held.iter().any(|(_, column)| !column.is_empty()) {
+            self.flush()?;
+        }
+        self.writer.into_inner().map_err(io_error)
+    }
+}
+
+fn table(columns: Vec<(String, Vec<f64>)>) -> Vec<NamedColumn> {
+    columns.into_iter().map(|(name, values)| (name, Column::Numbers(values))).collect()
+}
+
+/// A full disk stays one.
+fn io_error(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(source) => match source.downcast::<io::Error>() {
+            Ok(source) => *source,
+            Err(other) => io::Error::other(other),
+        },
+        other => io::Error::other(other),
+    }
 }
 
 fn fill(column: &Column, writer: &mut SerializedColumnWriter) -> Result<usize, ParquetError> {

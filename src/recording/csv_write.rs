@@ -176,7 +176,7 @@ fn place(rows: RowWriter<BufWriter<NamedTempFile>>, path: &Path) -> io::Result<(
     put_in_place(file, path)
 }
 
-fn write_error(path: &Path, source: io::Error) -> RecordingError {
+pub(super) fn write_error(path: &Path, source: io::Error) -> RecordingError {
     RecordingError::Write { file: path.to_owned(), source }
 }
 

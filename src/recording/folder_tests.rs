@@ -120,7 +120,7 @@ fn runs_are_checked_against_the_declaration() {
     assert!(
         error.ends_with(
             "sine.csv: no column \"force_n\", which recordings.toml declares (found: plunger_mm, force)\n  remedy: \
-             rename the column or the [[channel]], or list it under not_recorded in this [[run]]"
+             rename the column or the [[channel]], or list it under not_recorded in the [[run]] of this file"
         ),
         "{error}"
     );

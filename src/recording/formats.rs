@@ -3,9 +3,6 @@
 use std::path::Path;
 
 use super::{Recording, RecordingError, bag_read, parquet_read, read_csv};
-use crate::bag::{self, JointPositions};
-use crate::columns::{Column, NamedColumn, encode};
-use crate::files::write_whole_bytes;
 
 /// How a file holds a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,56 +82,9 @@ pub fn read_recording(path: &Path) -> Result<Recording, RecordingError> {
     }
 }
 
-impl Recording {
-    /// Writes the recording in the format that the path's ending says; `joints` goes into a bag.
-    ///
-    /// # Errors
-    /// A format that is not written, a file that cannot be.
-    pub fn write(&self, path: &Path, joints: &JointPositions) -> Result<(), RecordingError> {
-        let failed = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
-        let bytes = match FileFormat::of(path)? {
-            FileFormat::Csv => return self.write_csv(path),
-            FileFormat::Parquet => encode(&self.table()).map_err(failed)?,
-            FileFormat::Mcap => {
-                let columns: Vec<(&str, &[f64])> =
-                    self.channels().iter().map(|c| (c.column.as_str(), c.values.as_slice())).collect();
-                bag::encode(self.time_s(), &columns, joints).map_err(failed)?
-            }
-        };
-        write_whole_bytes(path, &bytes).map_err(|source| RecordingError::Write { file: path.to_owned(), source })
-    }
-
-    fn table(&self) -> Vec<NamedColumn> {
-        let time = (super::TIME_COLUMN.to_owned(), Column::Numbers(self.time_s().to_vec()));
-        let others = self.channels().iter().map(|c| (c.column.clone(), Column::Numbers(c.values.clone())));
-        std::iter::once(time).chain(others).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Channel;
-
-    #[test]
-    fn what_is_written_is_read_back_in_every_format() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let channels = vec![
-            Channel::new("plunger_mm", vec![0.0, 1.0 / 3.0, -2.5]),
-            Channel::new("force_n", vec![1e-7, f64::NAN, 3.0]),
-        ];
-        let recording = Recording::new(vec![0.0, 0.01, 0.02], channels).expect("a recording");
-        for name in ["run.csv", "run.parquet", "run.mcap"] {
-            let path = folder.path().join(name);
-            recording.write(&path, &JointPositions::default()).expect("written");
-            let back = read_recording(&path).expect("read");
-            assert_eq!((back.time_s(), back.columns()), (recording.time_s(), recording.columns()), "{name}");
-            assert_eq!(back.channels()[0], recording.channels()[0], "{name}");
-            let force = &back.channels()[1].values;
-            assert!(force[0] == 1e-7 && force[1].is_nan() && force[2] == 3.0, "{name}: {force:?}");
-        }
-        assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 3);
-    }
 
     #[test]
     fn other_formats_are_refused_with_a_way_out() {
@@ -146,7 +96,7 @@ mod tests {
         );
         assert!(said.contains("writetable(") && said.contains("scipy.io.loadmat(") && said.contains("-v7.3"), "{said}");
         assert!(refusal("run.db3").contains("ros2 bag convert"));
-        let written = Recording::new(vec![0.0], vec![]).expect("one").write(Path::new("x.mat"), &Default::default());
+        let written = Recording::new(vec![0.0], vec![]).expect("one").write(Path::new("x.mat"));
         assert!(written.is_err());
     }
 }

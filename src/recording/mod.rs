@@ -38,6 +38,7 @@ mod schema;
 mod source;
 mod survey;
 mod unit;
+mod writer;
 
 pub use bag_read::read_bag_from;
 pub use bag_source::BagSource;
@@ -54,5 +55,6 @@ pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;
 pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
+pub use writer::RecordingWriter;
 
-pub use crate::bag::{Clock, JointPositions};
+pub use crate::bag::Clock;
