@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::case::{CaseChannel, CaseRun};
+use super::case::{Case, CaseChannel, CaseRun};
 use super::fit::{Fit, Problem};
 use super::model::{Sides, simulate};
 use super::noise::Noise;
@@ -50,8 +50,21 @@ impl Known {
         Some(Self { slopes: rows.slopes, apart })
     }
 
-    /// Distance in standard errors from the rival that a run sets apart least, after the best's numbers have been fitted to
-    /// that rival on all there would then be.
+    /// Distance in standard errors from each rival, after the best's numbers have been fitted to that rival on all there would
+    /// then be. What the best's law leaves grows with the run, and with it what counts as a difference: more of the same
+    /// settles nothing.
+    pub fn separations(&self, problem: &Problem, best: &Fit, open: &Open, run: &CaseRun) -> Option<Vec<f64>> {
+        let of = |(rival, known): (&&Fit, &DVector<f64>)| {
+            let rows = played(problem, best, rival, run)?;
+            let more = (known.len() + rows.residual.len()) as f64 / known.len() as f64;
+            let unit = if open.unit > 1.0 { open.unit * more } else { 1.0 };
+            let all = Rows::stack(&[Rows { slopes: self.slopes.clone(), residual: known.clone() }, rows])?;
+            Some(beyond(all) / unit.sqrt())
+        };
+        open.rivals.iter().zip(&self.apart).map(of).collect()
+    }
+
+    /// The least of them, and the rival.
     pub fn least_separation<'a>(
         &self,
         problem: &Problem,
@@ -59,34 +72,46 @@ impl Known {
         open: &Open<'a>,
         run: &CaseRun,
     ) -> Option<(f64, &'a Fit)> {
-        let mut least: Option<(f64, &'a Fit)> = None;
-        for (rival, known) in open.rivals.iter().zip(&self.apart) {
-            let rows = played(problem, best, rival, run)?;
-            let all = Rows::stack(&[Rows { slopes: self.slopes.clone(), residual: known.clone() }, rows])?;
-            let separation = beyond(all) / open.unit.sqrt();
-            if least.is_none_or(|(s, _)| separation < s) {
-                least = Some((separation, *rival));
-            }
-        }
-        least
+        let separations = self.separations(problem, best, open, run)?;
+        separations.into_iter().zip(open.rivals.iter().copied()).min_by(|a, b| a.0.total_cmp(&b.0))
     }
+}
+
+/// An output of the scene that was not recorded, and the noise that its sensor would have.
+type Lacking = (usize, f64);
+
+fn lacking(case: &Case) -> Vec<Lacking> {
+    let sd = |column: &str| TYPICAL_NOISE.iter().find(|(unit, _)| column.ends_with(unit)).map(|(_, sd)| *sd);
+    let outputs = case.scene.file.output.iter().enumerate();
+    let lacking = outputs.filter(|(output, _)| case.channels.iter().all(|c| c.output != *output));
+    lacking.filter_map(|(output, spec)| Some((output, sd(&spec.channel)?))).collect()
+}
+
+/// What `ask` makes of the problem that has more outputs recorded on one more run: that problem, that run.
+fn with_sensors<T>(problem: &Problem, run: &CaseRun, more: &[Lacking], ask: impl FnOnce(&Problem, &CaseRun) -> T) -> T {
+    let (mut case, mut run, mut noise) = (problem.case.clone(), run.clone(), problem.noise.to_vec());
+    for &(output, sd) in more {
+        let spec = &problem.case.scene.file.output[output];
+        let (column, has_free_zero) = (spec.channel.clone(), spec.counts_from_start);
+        case.channels.push(CaseChannel { column, output, stated_sd: Some(sd), has_free_zero });
+        run.measured.push(vec![f64::NAN; run.drive.times_s.len()]);
+        noise.push(Noise::white(sd));
+    }
+    ask(&Problem { case: &case, runs: Vec::new(), noise: &noise }, &run)
 }
 
 /// Calls `ask` with every output of the scene that was not recorded, and the problem that has it recorded on one more
 /// run: its column, that problem, that run.
 pub(super) fn with_each_sensor(problem: &Problem, run: &CaseRun, mut ask: impl FnMut(&str, &Problem, &CaseRun)) {
-    let case = problem.case;
-    for (output, spec) in case.scene.file.output.iter().enumerate() {
-        let sd = TYPICAL_NOISE.iter().find(|(unit, _)| spec.channel.ends_with(unit)).map(|(_, sd)| *sd);
-        let Some(sd) = sd.filter(|_| case.channels.iter().all(|c| c.output != output)) else { continue };
-        let mut wider = case.clone();
-        let (column, has_free_zero) = (spec.channel.clone(), spec.counts_from_start);
-        wider.channels.push(CaseChannel { column, output, stated_sd: Some(sd), has_free_zero });
-        let mut run = run.clone();
-        run.measured.push(vec![f64::NAN; run.drive.times_s.len()]);
-        let noise: Vec<Noise> = problem.noise.iter().copied().chain([Noise::white(sd)]).collect();
-        ask(&spec.channel, &Problem { case: &wider, runs: Vec::new(), noise: &noise }, &run);
+    for sensor in lacking(problem.case) {
+        let column = &problem.case.scene.file.output[sensor.0].channel;
+        with_sensors(problem, run, &[sensor], |problem, run| ask(column, problem, run));
     }
+}
+
+/// The same with all of them at once.
+pub(super) fn with_every_sensor<T>(problem: &Problem, run: &CaseRun, ask: impl FnOnce(&Problem, &CaseRun) -> T) -> T {
+    with_sensors(problem, run, &lacking(problem.case), ask)
 }
 
 #[cfg(test)]

@@ -1,24 +1,20 @@
 //! Step 8: the programme that would tell best what stays open, within the strokes and speeds that were recorded.
 
-use super::answer::{NextExperiment, SETTLES_SIGMA};
-use super::apart::{Known, separation, with_each_sensor};
+use super::answer::NextExperiment;
+use super::apart::{separation, with_each_sensor};
 use super::case::{Case, CaseRun};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::programme::{INTERVAL_S, Stroke, chirp, held, sample, sine, strokes};
 use super::search::title;
-use super::verdict::Open;
 use crate::recording::{Recording, RecordingError};
 use crate::system::TwinRun;
 
 /// Length of a proposed run, s.
-const DURATION_S: f64 = 60.0;
-/// And of those that are looked at, one after the other, until one is sure to settle what is open.
-const DURATIONS_S: [f64; 3] = [DURATION_S, 180.0, 300.0];
-/// Separation to aim at, standard errors: laws are idealisations, and what just settles on paper often does not on a rig.
-const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
+pub(super) const DURATION_S: f64 = 60.0;
 /// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
 const END: f64 = 0.15;
+
 /// A proposal with the inputs to play.
 pub struct Experiment {
     pub next: NextExperiment,
@@ -26,11 +22,11 @@ pub struct Experiment {
 }
 
 /// One programme with what it would show.
-struct Candidate<'a> {
-    name: &'static str,
+pub(super) struct Candidate<'a> {
+    pub name: &'static str,
     inputs: Recording,
     run: CaseRun,
-    separation: f64,
+    pub separation: f64,
     /// The rival that it sets apart least.
     rival: &'a Fit,
 }
@@ -69,74 +65,15 @@ pub fn confirm<'a>(
     Ok(proposal(best, false, winner, sensor))
 }
 
-/// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are. A minute long, or longer where that is surer; where none is sure
-/// to do, the programme and the sensor that together would.
-///
-/// # Errors
-/// Input columns without a known unit.
-pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
-    let known = Known::of(whole, best, open);
-    let apart = |problem: &Problem, run: &CaseRun| known.as_ref()?.least_separation(problem, best, open, run);
-    let mut tried = Vec::new();
-    for duration_s in DURATIONS_S {
-        let programmes = ranked(whole, best, (ALL, duration_s), &apart)?;
-        let Some(first) = programmes.first() else { break };
-        let is_sure = first.separation > SURE_SIGMA;
-        tried.push(programmes);
-        if is_sure {
-            break;
-        }
-    }
-    let Some(at) = surest(tried.iter().map(|programmes| programmes[0].separation)) else {
-        return Ok(none_to_play());
-    };
-    if tried[at][0].separation > SURE_SIGMA {
-        let winner = tried.swap_remove(at).swap_remove(0);
-        let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
-        return Ok(proposal(best, true, winner, sensor));
-    }
-    let by_itself = tried[at][0].separation;
-    let sensed = sensed(whole, &tried, &apart).filter(|(_, _, sensor)| sensor.separation > by_itself);
-    let (at, candidate, sensor) = sensed.map_or((at, 0, None), |(at, candidate, sensor)| (at, candidate, Some(sensor)));
-    Ok(proposal(best, true, tried.swap_remove(at).swap_remove(candidate), sensor))
-}
-
-/// The first that is sure to settle; else the greatest that should; else the first.
-fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
-    let all: Vec<f64> = separations.collect();
-    let greatest = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
-    let first_sure = all.iter().position(|s| *s > SURE_SIGMA);
-    Some(first_sure.unwrap_or(if all[greatest] > SETTLES_SIGMA { greatest } else { 0 }))
-}
-
-/// The duration, the programme and the sensor that together set the best apart most, of programmes of a minute; longer,
-/// if that is surer. None where no sensor is worth it.
-fn sensed(whole: &Problem, tried: &[Vec<Candidate>], apart: &Apart) -> Option<(usize, usize, Sensed)> {
-    let minute = best_sensor(whole, tried.first()?, apart)?;
-    let name = tried[0][minute.candidate].name;
-    let mut found = vec![(0, minute.candidate, minute)];
-    for (at, ranked) in tried.iter().enumerate().skip(1) {
-        if found.last().is_some_and(|(_, _, sensed)| sensed.separation > SURE_SIGMA) {
-            break;
-        }
-        let Some(same) = ranked.iter().position(|c| c.name == name) else { continue };
-        let sensed = best_sensor(whole, &ranked[same..=same], apart);
-        found.extend(sensed.map(|sensed| (at, same, sensed)));
-    }
-    let at = surest(found.iter().map(|(_, _, sensed)| sensed.separation))?;
-    Some(found.swap_remove(at))
-}
-
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
 const USUAL: usize = 6;
-const ALL: usize = usize::MAX;
+pub(super) const ALL: usize = usize::MAX;
 
 /// How far a run sets the answer apart from a rival, and from which.
-type Apart<'a, 'c> = dyn Fn(&Problem, &CaseRun) -> Option<(f64, &'a Fit)> + 'c;
+pub(super) type Apart<'a, 'c> = dyn Fn(&Problem, &CaseRun) -> Option<(f64, &'a Fit)> + 'c;
 
 /// The programmes that can be simulated, those first that set the best apart from its rivals most.
-fn ranked<'a>(
+pub(super) fn ranked<'a>(
     whole: &Problem,
     best: &Fit,
     which: (usize, f64),
@@ -147,12 +84,12 @@ fn ranked<'a>(
     Ok(ranked)
 }
 
-fn none_to_play() -> Experiment {
+pub(super) fn none_to_play() -> Experiment {
     let why = "no programme within the recorded strokes can be simulated";
     Experiment { next: NextExperiment::none(why), inputs: None }
 }
 
-fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<Sensed>) -> Experiment {
+pub(super) fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<Sensed>) -> Experiment {
     let [of_best, of_rival] = [title(&best.model), title(&winner.rival.model)];
     let question = match is_open {
         true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
@@ -177,18 +114,30 @@ fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<Sensed>
 fn candidates<'a>(
     whole: &Problem,
     best: &Fit,
-    (most, duration_s): (usize, f64),
+    which: (usize, f64),
     apart: &Apart<'a, '_>,
 ) -> Result<Vec<Candidate<'a>>, RecordingError> {
-    let (case, noise) = (whole.case, whole.noise);
+    let candidate = |(name, inputs, run)| {
+        let (separation, rival) = apart(whole, &run)?;
+        Some(Candidate { name, inputs, run, separation, rival })
+    };
+    Ok(playable(whole, best, which)?.into_iter().filter_map(candidate).collect())
+}
+
+/// The first `most` programmes of a duration that can be simulated, each with the run that the best would give.
+pub(super) fn playable(
+    whole: &Problem,
+    best: &Fit,
+    (most, duration_s): (usize, f64),
+) -> Result<Vec<(&'static str, Recording, CaseRun)>, RecordingError> {
+    let case = whole.case;
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
     let fast_hz = fastest_hz(case, &strokes);
     let mut list = Vec::new();
     for (name, inputs) in programmes(&strokes, fast_hz, duration_s)?.into_iter().take(most) {
-        let Some(run) = play(case, noise, best, &inputs)? else { continue };
-        let Some((separation, rival)) = apart(whole, &run) else { continue };
-        list.push(Candidate { name, inputs, run, separation, rival });
+        let run = play(case, whole.noise, best, &inputs)?;
+        list.extend(run.map(|run| (name, inputs, run)));
     }
     Ok(list)
 }
@@ -258,15 +207,15 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
 const SENSOR_WORTH: f64 = 1.5;
 
 /// What one more sensor would bring.
-struct Sensed {
+pub(super) struct Sensed {
     column: String,
-    separation: f64,
+    pub separation: f64,
     /// Which of the programmes it would be recorded with.
-    candidate: usize,
+    pub candidate: usize,
 }
 
 /// The sensor and the programme that together set the best apart most, if that is worth a sensor.
-fn best_sensor(whole: &Problem, programmes: &[Candidate], apart: &Apart) -> Option<Sensed> {
+pub(super) fn best_sensor(whole: &Problem, programmes: &[Candidate], apart: &Apart) -> Option<Sensed> {
     let mut found: Option<Sensed> = None;
     for (candidate, programme) in programmes.iter().enumerate() {
         with_each_sensor(whole, &programme.run, |column, problem, run| {
@@ -284,20 +233,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_shortest_that_is_sure_comes_first() {
-        let chosen = |separations: &[f64]| surest(separations.iter().copied());
-        assert_eq!(chosen(&[4.0, 12.0, 30.0]), Some(1));
-        assert_eq!(chosen(&[6.0, 9.0, 8.0]), Some(1));
-        // What would not do in five minutes either is not worth the time.
-        assert_eq!(chosen(&[2.0, 3.0, 4.0]), Some(0));
-        assert_eq!(chosen(&[]), None);
-    }
-
-    #[test]
     fn programmes_stay_within_the_strokes_and_last_as_long_as_asked() {
         let moved = vec![1.0e-3, 4.0e-3, 2.5e-3];
         let strokes = strokes(&[("plunger_mm".to_owned(), moved)]);
-        for duration_s in DURATIONS_S {
+        for duration_s in [DURATION_S, 300.0] {
             let programmes = programmes(&strokes, 0.5, duration_s).expect("a known unit");
             assert!(programmes.len() > USUAL);
             for (name, inputs) in programmes {

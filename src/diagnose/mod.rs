@@ -48,6 +48,7 @@ pub mod programme;
 mod prove;
 mod screening;
 mod search;
+mod settle;
 mod side_by_side;
 mod steady;
 mod summary;
@@ -240,7 +241,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = match verdict {
-        Verdict::Ambiguous => experiment::settle(&whole, &found.best, &verdict::open(&found, left))?,
+        Verdict::Ambiguous => settle::settle(&whole, &found.best, &verdict::open(&found, left))?,
         _ => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
     };
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();

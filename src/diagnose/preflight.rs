@@ -68,7 +68,10 @@ fn channels(case: &Case, found: &mut Preflight) {
             case.runs.iter().flat_map(|r| r.measured[c].iter().copied()).filter(|v| v.is_finite()).collect();
         let (low, high) = ends(&values);
         if values.is_empty() {
-            found.unusable.push(format!("{}: no value was recorded", channel.column));
+            found.unusable.push(format!(
+                "{}: no value was recorded in any run; record it in one, or take the channel out of recordings.toml",
+                channel.column
+            ));
         } else if high <= low {
             found.unusable.push(format!("{}: constant at {low}; the sensor was off or saturated", channel.column));
         } else {
