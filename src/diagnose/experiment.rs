@@ -1,7 +1,9 @@
 //! Step 8: the programme that would tell best what stays open, within the strokes and speeds that were recorded.
 
+use rayon::prelude::*;
+
 use super::answer::NextExperiment;
-use super::apart::{separation, with_each_sensor};
+use super::apart::{Foreseen, More, Question};
 use super::case::{Case, CaseRun};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
@@ -22,16 +24,13 @@ pub struct Experiment {
 }
 
 /// One programme with what it would show.
-pub(super) struct Candidate<'a> {
+pub(super) struct Candidate {
     pub name: &'static str,
     inputs: Recording,
-    run: CaseRun,
-    pub separation: f64,
-    /// The rival that it sets apart least.
-    rival: &'a Fit,
+    pub foreseen: Foreseen,
 }
 
-impl Candidate<'_> {
+impl Candidate {
     fn words(&self) -> String {
         let seconds = self.inputs.time_s().len() as f64 * INTERVAL_S;
         if seconds > DURATION_S { format!("{seconds:.0} s of {}", self.name) } else { self.name.to_owned() }
@@ -57,49 +56,57 @@ pub fn confirm<'a>(
         };
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
-    let apart = |problem: &Problem, run: &CaseRun| Some((separation(problem, best, nearest, run)?, nearest));
-    let Some(winner) = ranked(whole, best, (USUAL, DURATION_S), &apart)?.into_iter().next() else {
-        return Ok(none_to_play());
+    let question = Question::of_nearest(whole, best, nearest);
+    let mut programmes = candidates(whole, best, &question, (USUAL, DURATION_S))?;
+    let Some((at, promise)) = first(&question, &programmes) else { return Ok(none_to_play()) };
+    let winner = programmes.swap_remove(at);
+    let sensor = best_sensor(&question, std::slice::from_ref(&winner), promise.sigma);
+    Ok(proposal(best, false, (winner, promise), sensor))
+}
+
+/// How far the rival is that is set apart least, and which.
+#[derive(Clone, Copy)]
+pub(super) struct Promise<'a> {
+    pub sigma: f64,
+    rival: &'a Fit,
+}
+
+/// The programme that sets the best apart most.
+pub(super) fn first<'a>(question: &Question<'a>, programmes: &[Candidate]) -> Option<(usize, Promise<'a>)> {
+    let promised = |(at, c): (usize, &Candidate)| {
+        let (sigma, rival) = question.least(&c.foreseen, More::Nothing)?;
+        Some((at, Promise { sigma, rival }))
     };
-    let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
-    Ok(proposal(best, false, winner, sensor))
+    // Of equal ones the first.
+    let all = programmes.iter().enumerate().filter_map(promised);
+    all.rev().max_by(|(_, a), (_, b)| a.sigma.total_cmp(&b.sigma))
 }
 
 /// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
 const USUAL: usize = 6;
 pub(super) const ALL: usize = usize::MAX;
 
-/// How far a run sets the answer apart from a rival, and from which.
-pub(super) type Apart<'a, 'c> = dyn Fn(&Problem, &CaseRun) -> Option<(f64, &'a Fit)> + 'c;
-
-/// The programmes that can be simulated, those first that set the best apart from its rivals most.
-pub(super) fn ranked<'a>(
-    whole: &Problem,
-    best: &Fit,
-    which: (usize, f64),
-    apart: &Apart<'a, '_>,
-) -> Result<Vec<Candidate<'a>>, RecordingError> {
-    let mut ranked = candidates(whole, best, which, apart)?;
-    ranked.sort_by(|a, b| b.separation.total_cmp(&a.separation));
-    Ok(ranked)
-}
-
 pub(super) fn none_to_play() -> Experiment {
     let why = "no programme within the recorded strokes can be simulated";
     Experiment { next: NextExperiment::none(why), inputs: None }
 }
 
-pub(super) fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Option<Sensed>) -> Experiment {
-    let [of_best, of_rival] = [title(&best.model), title(&winner.rival.model)];
+pub(super) fn proposal(
+    best: &Fit,
+    is_open: bool,
+    (winner, promise): (Candidate, Promise),
+    sensor: Option<Sensed>,
+) -> Experiment {
+    let [of_best, of_rival] = [title(&best.model), title(&promise.rival.model)];
     let question = match is_open {
         true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
         false => format!("{of_best} is settled; the nearest rival is {of_rival}"),
     };
-    let (sensor, sensor_sigma) = sensor.map(|s| (s.column, s.separation)).unzip();
+    let (sensor, sensor_sigma) = sensor.map(|s| (s.column, s.sigma)).unzip();
     let mut next = NextExperiment {
         why: String::new(),
         file: Some("next_experiment.csv".to_owned()),
-        separation_sigma: winner.separation,
+        separation_sigma: promise.sigma,
         programme: Some(winner.words()),
         between: Some([of_best, of_rival]),
         sensor,
@@ -110,36 +117,24 @@ pub(super) fn proposal(best: &Fit, is_open: bool, winner: Candidate, sensor: Opt
     Experiment { next, inputs: Some(winner.inputs) }
 }
 
-/// The first `most` programmes with their separation; one that cannot be simulated is left out.
-fn candidates<'a>(
+/// The first `most` programmes of a duration with what they would show; one that cannot be simulated is left out.
+pub(super) fn candidates(
     whole: &Problem,
     best: &Fit,
-    which: (usize, f64),
-    apart: &Apart<'a, '_>,
-) -> Result<Vec<Candidate<'a>>, RecordingError> {
-    let candidate = |(name, inputs, run)| {
-        let (separation, rival) = apart(whole, &run)?;
-        Some(Candidate { name, inputs, run, separation, rival })
-    };
-    Ok(playable(whole, best, which)?.into_iter().filter_map(candidate).collect())
-}
-
-/// The first `most` programmes of a duration that can be simulated, each with the run that the best would give.
-pub(super) fn playable(
-    whole: &Problem,
-    best: &Fit,
+    question: &Question,
     (most, duration_s): (usize, f64),
-) -> Result<Vec<(&'static str, Recording, CaseRun)>, RecordingError> {
+) -> Result<Vec<Candidate>, RecordingError> {
     let case = whole.case;
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
-    let fast_hz = fastest_hz(case, &strokes);
-    let mut list = Vec::new();
-    for (name, inputs) in programmes(&strokes, fast_hz, duration_s)?.into_iter().take(most) {
+    let programmes = programmes(&strokes, fastest_hz(case, &strokes), duration_s)?;
+    let candidate = |(name, inputs): (&'static str, Recording)| -> Result<Option<Candidate>, RecordingError> {
         let run = play(case, whole.noise, best, &inputs)?;
-        list.extend(run.map(|run| (name, inputs, run)));
-    }
-    Ok(list)
+        let foreseen = run.and_then(|run| question.foresee(&run));
+        Ok(foreseen.map(|foreseen| Candidate { name, inputs, foreseen }))
+    };
+    let all: Vec<_> = programmes.into_par_iter().take(most).map(candidate).collect::<Result<_, _>>()?;
+    Ok(all.into_iter().flatten().collect())
 }
 
 /// Programmes of a duration, the usual ones first.
@@ -208,24 +203,25 @@ const SENSOR_WORTH: f64 = 1.5;
 
 /// What one more sensor would bring.
 pub(super) struct Sensed {
-    column: String,
-    pub separation: f64,
+    pub column: String,
+    pub sigma: f64,
     /// Which of the programmes it would be recorded with.
     pub candidate: usize,
 }
 
-/// The sensor and the programme that together set the best apart most, if that is worth a sensor.
-pub(super) fn best_sensor(whole: &Problem, programmes: &[Candidate], apart: &Apart) -> Option<Sensed> {
+/// The sensor and the programme that together set the best apart most, if that is worth a sensor: by itself a programme
+/// does so by `alone_sigma`.
+pub(super) fn best_sensor(question: &Question, programmes: &[Candidate], alone_sigma: f64) -> Option<Sensed> {
     let mut found: Option<Sensed> = None;
     for (candidate, programme) in programmes.iter().enumerate() {
-        with_each_sensor(whole, &programme.run, |column, problem, run| {
-            let Some((separation, _)) = apart(problem, run) else { return };
-            if found.as_ref().is_none_or(|f| separation > f.separation) {
-                found = Some(Sensed { column: column.to_owned(), separation, candidate });
+        for (at, column) in question.sensors().enumerate() {
+            let Some((sigma, _)) = question.least(&programme.foreseen, More::Sensor(at)) else { continue };
+            if found.as_ref().is_none_or(|f| sigma > f.sigma) {
+                found = Some(Sensed { column: column.to_owned(), sigma, candidate });
             }
-        });
+        }
     }
-    found.filter(|f| f.separation > SENSOR_WORTH * programmes[0].separation)
+    found.filter(|f| f.sigma > SENSOR_WORTH * alone_sigma)
 }
 
 #[cfg(test)]

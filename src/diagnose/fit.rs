@@ -37,7 +37,7 @@ const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
 
 /// Steps to both sides are alike; away from a bound that is near.
-fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
+pub(super) fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
     which.map(|number| probe(&numbers[number], x[number], number, sides)).collect()
 }
 

@@ -1,10 +1,9 @@
 //! Step 8 for an ambiguous answer: what would settle it, programme and sensor together.
 
 use super::answer::{NextExperiment, SETTLES_SIGMA};
-use super::apart::{Known, with_every_sensor};
-use super::case::CaseRun;
+use super::apart::{More, Question};
 use super::experiment::{
-    ALL, Apart, Candidate, DURATION_S, Experiment, Sensed, best_sensor, none_to_play, playable, proposal, ranked,
+    ALL, Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
 };
 use super::fit::{Fit, Problem};
 use super::search::title;
@@ -23,13 +22,15 @@ const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
 /// # Errors
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
-    let (open, alike) = &told_apart(whole, best, open)?;
-    let untold = (!alike.is_empty()).then(|| untold(alike));
-    if let Some(untold) = untold.as_ref().filter(|_| open.rivals.is_empty()) {
+    let Some(mut question) = Question::of_open(whole, best, open) else { return Ok(none_to_play()) };
+    let minute = candidates(whole, best, &question, (ALL, DURATION_S))?;
+    let alike = leave_out_alike(&mut question, &minute);
+    let untold = (!alike.is_empty()).then(|| untold(&alike));
+    if let Some(untold) = untold.as_ref().filter(|_| question.is_empty()) {
         let why = format!("{} explains these recordings as well as others do, and {untold}", title(&best.model));
         return Ok(Experiment { next: NextExperiment::none(&why), inputs: None });
     }
-    let mut experiment = settle_what_can_be(whole, best, open)?;
+    let mut experiment = settle_what_can_be(whole, best, &question, minute)?;
     experiment.next.why.extend(untold.map(|untold| format!("; {untold}")));
     Ok(experiment)
 }
@@ -43,46 +44,45 @@ fn untold(alike: &[&Fit]) -> String {
 /// say the same here: five minutes would make little more than twice of it.
 const ALIKE_SIGMA: f64 = 1.0;
 
-/// What could be told from the best, and the rivals that say the same.
-fn told_apart<'a>(whole: &Problem, best: &Fit, open: &Open<'a>) -> Result<(Open<'a>, Vec<&'a Fit>), RecordingError> {
-    let (mut told, mut alike) = (Open { rivals: Vec::new(), unit: open.unit }, Vec::new());
-    let Some(known) = Known::of(whole, best, open) else { return Ok((open.clone(), alike)) };
-    let mut most = vec![0.0_f64; open.rivals.len()];
-    for (_, _, run) in playable(whole, best, (ALL, DURATION_S))? {
-        let seen = with_every_sensor(whole, &run, |problem, run| known.separations(problem, best, open, run));
-        most.iter_mut().zip(seen.unwrap_or_default()).for_each(|(most, seen)| *most = most.max(seen));
-    }
-    for (rival, most) in open.rivals.iter().zip(most) {
-        if most < ALIKE_SIGMA { alike.push(*rival) } else { told.rivals.push(*rival) }
-    }
-    Ok((told, alike))
+fn leave_out_alike<'a>(question: &mut Question<'a>, minute: &[Candidate]) -> Vec<&'a Fit> {
+    let seen: Vec<Vec<f64>> = minute.iter().map(|c| question.separations(&c.foreseen, More::Everything)).collect();
+    question.count_only(|rival| seen.is_empty() || seen.iter().any(|sigmas| sigmas[rival] >= ALIKE_SIGMA))
 }
 
-fn settle_what_can_be<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
-    let known = Known::of(whole, best, open);
-    let apart = |problem: &Problem, run: &CaseRun| known.as_ref()?.least_separation(problem, best, open, run);
-    let mut tried = Vec::new();
-    for duration_s in DURATIONS_S {
-        let programmes = ranked(whole, best, (ALL, duration_s), &apart)?;
-        let Some(first) = programmes.first() else { break };
-        let is_sure = first.separation > SURE_SIGMA;
-        tried.push(programmes);
-        if is_sure {
+fn settle_what_can_be(
+    whole: &Problem,
+    best: &Fit,
+    question: &Question,
+    minute: Vec<Candidate>,
+) -> Result<Experiment, RecordingError> {
+    let mut tried = vec![minute];
+    let mut firsts = Vec::from_iter(first(question, &tried[0]));
+    for duration_s in &DURATIONS_S[1..] {
+        if firsts.last().is_none_or(|(_, promise)| promise.sigma > SURE_SIGMA) {
             break;
         }
+        tried.push(candidates(whole, best, question, (ALL, *duration_s))?);
+        match first(question, &tried[tried.len() - 1]) {
+            Some(longer) => firsts.push(longer),
+            None => break,
+        }
     }
-    let Some(at) = surest(tried.iter().map(|programmes| programmes[0].separation)) else {
-        return Ok(none_to_play());
-    };
-    if tried[at][0].separation > SURE_SIGMA {
-        let winner = tried.swap_remove(at).swap_remove(0);
-        let sensor = best_sensor(whole, std::slice::from_ref(&winner), &apart);
-        return Ok(proposal(best, true, winner, sensor));
+    let Some(at) = surest(firsts.iter().map(|(_, promise)| promise.sigma)) else { return Ok(none_to_play()) };
+    let (winner, promise) = firsts[at];
+    if promise.sigma > SURE_SIGMA {
+        let winner = tried.swap_remove(at).swap_remove(winner);
+        let sensor = best_sensor(question, std::slice::from_ref(&winner), promise.sigma);
+        return Ok(proposal(best, true, (winner, promise), sensor));
     }
-    let by_itself = tried[at][0].separation;
-    let sensed = sensed(whole, &tried, &apart).filter(|(_, _, sensor)| sensor.separation > by_itself);
-    let (at, candidate, sensor) = sensed.map_or((at, 0, None), |(at, candidate, sensor)| (at, candidate, Some(sensor)));
-    Ok(proposal(best, true, tried.swap_remove(at).swap_remove(candidate), sensor))
+    let sensed = sensed(question, &tried, &firsts).filter(|(_, sensor)| sensor.sigma > promise.sigma);
+    Ok(match sensed {
+        None => proposal(best, true, (tried.swap_remove(at).swap_remove(winner), promise), None),
+        Some((at, sensor)) => {
+            let same = tried.swap_remove(at).swap_remove(sensor.candidate);
+            let alone = first(question, std::slice::from_ref(&same)).map_or(promise, |(_, alone)| alone);
+            proposal(best, true, (same, alone), Some(sensor))
+        }
+    })
 }
 
 /// The first that is sure to settle; else the greatest that should; else the first.
@@ -93,21 +93,22 @@ fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
     Some(first_sure.unwrap_or(if all[greatest] > SETTLES_SIGMA { greatest } else { 0 }))
 }
 
-/// The duration, the programme and the sensor that together set the best apart most, of programmes of a minute; longer,
+/// The duration, and the sensor with the programme that together set the best apart most, of programmes of a minute; longer,
 /// if that is surer. None where no sensor is worth it.
-fn sensed(whole: &Problem, tried: &[Vec<Candidate>], apart: &Apart) -> Option<(usize, usize, Sensed)> {
-    let minute = best_sensor(whole, tried.first()?, apart)?;
+fn sensed(question: &Question, tried: &[Vec<Candidate>], firsts: &[(usize, Promise)]) -> Option<(usize, Sensed)> {
+    let minute = best_sensor(question, &tried[0], firsts.first()?.1.sigma)?;
     let name = tried[0][minute.candidate].name;
-    let mut found = vec![(0, minute.candidate, minute)];
-    for (at, ranked) in tried.iter().enumerate().skip(1) {
-        if found.last().is_some_and(|(_, _, sensed)| sensed.separation > SURE_SIGMA) {
+    let mut found = vec![(0, minute)];
+    for (at, programmes) in tried.iter().enumerate().skip(1) {
+        if found.last().is_some_and(|(_, sensed)| sensed.sigma > SURE_SIGMA) {
             break;
         }
-        let Some(same) = ranked.iter().position(|c| c.name == name) else { continue };
-        let sensed = best_sensor(whole, &ranked[same..=same], apart);
-        found.extend(sensed.map(|sensed| (at, same, sensed)));
+        let Some(same) = programmes.iter().position(|c| c.name == name) else { continue };
+        let Some((_, alone)) = first(question, &programmes[same..=same]) else { continue };
+        let sensed = best_sensor(question, &programmes[same..=same], alone.sigma);
+        found.extend(sensed.map(|sensed| (at, Sensed { candidate: same, ..sensed })));
     }
-    let at = surest(found.iter().map(|(_, _, sensed)| sensed.separation))?;
+    let at = surest(found.iter().map(|(_, sensed)| sensed.sigma))?;
     Some(found.swap_remove(at))
 }
 
