@@ -34,6 +34,15 @@ fn a_file_damaged_inside_is_refused() {
     assert!(said.contains("\n  remedy: write the file again"), "{said}");
 }
 
+/// Found by fuzzing: a page of some hundred bytes that claims to be two gigabytes when unpacked, for which the library makes room.
+#[test]
+fn a_page_that_claims_too_much_is_refused() {
+    let claiming = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/recordings/claims_gigabytes.parquet");
+    let said = read_recording(Path::new(claiming)).expect_err("a lie").to_string();
+    assert!(said.contains("bytes claims to be 2013265920 when unpacked"), "{said}");
+    assert!(said.contains("\n  remedy: write the file again"), "{said}");
+}
+
 /// The same recording drives the same run, whichever way it is written.
 #[test]
 fn parquet_and_csv_drive_the_same_run() {

@@ -22,6 +22,7 @@
 //! # }
 //! ```
 
+mod claims;
 mod read;
 mod write;
 

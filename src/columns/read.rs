@@ -7,6 +7,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
+use super::claims::Checked;
 use super::{Column, NamedColumn};
 
 /// So many rows may stand in a byte: a run of equal or of evenly increasing numbers takes next to none.
@@ -24,7 +25,7 @@ pub fn decode(file: File) -> Result<Vec<NamedColumn>, String> {
 
 fn table(file: File) -> Result<Vec<NamedColumn>, String> {
     let file_bytes = file.metadata().map_err(|e| e.to_string())?.len();
-    let reader = SerializedFileReader::new(file).map_err(|e| said(&e))?;
+    let reader = SerializedFileReader::new(Checked(file)).map_err(|e| said(&e))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let fields = schema.root_schema().get_fields();
     if let Some(nested) = fields.iter().find(|f| f.is_group()) {
