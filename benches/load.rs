@@ -34,7 +34,7 @@ const MISSING: [&str; 6] = [
     "",
     "name = \"trapped_air\"\nelement = \"line\"\nfree_volume_m3 = 4e-10\n",
     "name = \"leak\"\nelement = \"line\"\nconductance_m3_s_pa = 2e-17\n",
-    "name = \"plunger_backlash\"\nelement = \"syringe\"\nplay_m = 4e-5\n",
+    "name = \"plunger_backlash\"\nelement = \"syringe\"\nwidth_m = 4e-5\n",
     "name = \"viscoelasticity\"\nelement = \"muscle\"\nstiffness_n_m = 4.0\nrelaxation_time_s = 2.0\n",
     "name = \"coil_preload\"\nelement = \"muscle\"\npreload_n = 0.05\n",
 ];
