@@ -141,17 +141,19 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
     assert!(d.warnings.iter().any(|w| w.starts_with("empty.csv: no output was recorded")), "{:?}", d.warnings);
 }
 
-/// A coil wound tight beside a weight: no motion within the stroke tells them apart for sure, a load cell does. The answer
-/// asks for it, and the concealing plant can be given one.
+/// A line that warms up, of altered form, and a weight: no motion within the stroke tells the weight for sure from a coil wound
+/// tight, a load cell does. The answer asks for it, and the concealing plant can be given one.
 #[test]
 fn an_open_answer_asks_for_the_sensor_that_would_decide() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let drawn = draw("case_21", Rig::MuscleBench, Hiding::One, 21).unwrap_or_else(|e| panic!("{e}"));
+    // Case 352 of the published proof.
+    let (name, seed) = ("s2026_00352", 2026 * 1_000_003 + 352);
+    let drawn = draw(name, Rig::MuscleBench, Hiding::Several, seed).unwrap_or_else(|e| panic!("{e}"));
     write_case(&drawn, folder.path()).unwrap_or_else(|e| panic!("{e}"));
-    let d = answer(&folder.path().join("case_21"));
+    let d = answer(&folder.path().join(name));
     assert_eq!(d.verdict, Verdict::Ambiguous);
     let named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
-    assert_eq!(named, ["coil_preload", "gravity_load"]);
+    assert_eq!(named, ["thermal_expansion", "gravity_load", "coil_preload"]);
     let next = &d.next_experiment;
     assert_eq!(next.sensor.as_deref(), Some("force_n"), "{next:?}");
     let with_sensor = next.sensor_sigma.expect("a promise");

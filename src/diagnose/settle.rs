@@ -114,7 +114,13 @@ fn sensed(question: &Question, tried: &[Vec<Candidate>], firsts: &[(usize, Promi
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
+    use crate::diagnose::noise::Noise;
+    use crate::diagnose::{Case, Model, Placed, Sealed};
+    use crate::effects::{Element, ElementKind, Kind};
+    use crate::trial::make_specimen;
 
     #[test]
     fn the_shortest_that_is_sure_comes_first() {
@@ -124,5 +130,31 @@ mod tests {
         // What would not do in five minutes either is not worth the time.
         assert_eq!(chosen(&[2.0, 3.0, 4.0]), Some(0));
         assert_eq!(chosen(&[]), None);
+    }
+
+    /// A rival that is the answer in other words is named and left out; one that is not is told apart.
+    #[test]
+    fn what_says_the_same_is_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        make_specimen("muscle_bench", None, 1.0, 7, folder.path()).expect("recordings");
+        let case = Case::load(&[folder.path()], None, &[]).expect("a case");
+        let noise: Vec<Noise> = case.channels.iter().map(|c| Noise::white(c.stated_sd.expect("stated"))).collect();
+        let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let fit = |kind, element, values: &[f64]| {
+            let model = Model::baseline().plus(&Placed { kind, element, channel: None }, values);
+            let x = whole.start(&model, None);
+            let numbers = x.len();
+            Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(numbers, numbers), on_bound: Vec::new() }
+        };
+        let leak = fit(Kind::Leak, Element::of(ElementKind::Line, 0, 1), &[1e-17]);
+        let creep = fit(Kind::Viscoelasticity, Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0]);
+        let answer = |rivals: Vec<&Fit>| settle(&whole, &leak, &Open { rivals, unit: 1.0 }).expect("known units");
+        let none = answer(vec![&leak]);
+        assert!(none.inputs.is_none() && none.next.file.is_none());
+        assert!(none.next.why.ends_with("nothing that can be played and recorded here tells it from leak in line"));
+        let next = answer(vec![&leak, &creep]).next;
+        assert!(next.file.is_some() && next.separation_sigma > SETTLES_SIGMA, "{next:?}");
+        assert!(next.between.is_some_and(|[_, rival]| rival == "viscoelasticity in muscle"));
+        assert!(next.why.ends_with("tells it from leak in line"), "{}", next.why);
     }
 }
