@@ -144,7 +144,7 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
 }
 
 /// Share of what the best leaves, or explains, that counts as one unit of chi². With the whole of what is left answers were
-/// too timid: of those that stayed ambiguous nine in ten named the truth first (docs/proof.md has the calibration).
+/// too timid: of 38 that stayed ambiguous 33 named the truth first (docs/proof.md has the calibration).
 const UNIT_OF_LEFT: f64 = 1.0 / 3.0;
 const UNIT_OF_EXPLAINED: f64 = 0.005 / 3.0;
 
