@@ -64,7 +64,7 @@ pub struct Location {
 }
 
 /// Step 4 and 5: what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NamedEffect {
     pub name: String,
     pub element: String,

@@ -59,7 +59,7 @@ pub fn judge(case: &TrialCase, outcome: &Outcome, seconds: f64) -> Row {
         size: case.size.map_or(String::new(), |s| format!("{s:?}").to_lowercase()),
         value,
         excess_chi2_per_sample: d.detection.excess_chi2_per_sample,
-        judgement: judgement(truth, d.verdict, named, d.effects.len()),
+        judgement: judgement(truth, d.verdict, &d.effects),
         verdict: d.verdict,
         answer: d.effects.iter().map(|e| (words(e), e.probability)).collect(),
         found: estimate.map(|e| e.value),
@@ -69,15 +69,20 @@ pub fn judge(case: &TrialCase, outcome: &Outcome, seconds: f64) -> Row {
     }
 }
 
-fn judgement(truth: Option<&Effect<f64>>, verdict: Verdict, named: Option<&NamedEffect>, count: usize) -> Judgement {
-    match (truth, verdict) {
-        (None, Verdict::Adequate) => Judgement::Right,
-        (None, _) => Judgement::Wrong,
-        (Some(_), Verdict::Adequate) => Judgement::Missed,
-        (Some(_), Verdict::UnknownPhysics | Verdict::UnusableData) => Judgement::Unknown,
-        (Some(_), Verdict::MissingPhysics) if named.is_some() && count == 1 => Judgement::Right,
-        (Some(_), Verdict::Ambiguous) if named.is_some() => Judgement::Among,
-        _ => Judgement::Wrong,
+fn judgement(truth: Option<&Effect<f64>>, verdict: Verdict, effects: &[NamedEffect]) -> Judgement {
+    let Some(truth) = truth else {
+        return if verdict == Verdict::Adequate { Judgement::Right } else { Judgement::Wrong };
+    };
+    let is_among = effects.iter().any(|e| is_same(e, truth));
+    // A rival of a few percent stands beside an answer; it is none.
+    let mut said = effects.iter().filter(|e| e.probability > 0.5);
+    let is_alone = said.next().is_some_and(|e| is_same(e, truth)) && said.next().is_none();
+    match verdict {
+        Verdict::Adequate => Judgement::Missed,
+        Verdict::UnknownPhysics | Verdict::UnusableData => Judgement::Unknown,
+        Verdict::MissingPhysics if is_alone => Judgement::Right,
+        Verdict::Ambiguous if is_among => Judgement::Among,
+        Verdict::MissingPhysics | Verdict::Ambiguous => Judgement::Wrong,
     }
 }
 
@@ -87,4 +92,31 @@ fn is_same(named: &NamedEffect, truth: &Effect<f64>) -> bool {
 
 fn words(e: &NamedEffect) -> String {
     format!("{} {}", e.name, e.channel.as_ref().unwrap_or(&e.element))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Element, ElementKind, Kind};
+
+    #[test]
+    fn a_rival_of_a_few_percent_makes_no_answer_wrong() {
+        let element = Element::of(ElementKind::Line, 0, 1);
+        let truth = Effect { kind: Kind::Leak, element, channel: None, values: vec![1e-17] };
+        let named = |name: &str, probability: f64| NamedEffect {
+            name: name.to_owned(),
+            element: "line".to_owned(),
+            probability,
+            ..NamedEffect::default()
+        };
+        let judged = |verdict, first: f64| {
+            judgement(Some(&truth), verdict, &[named("leak", first), named("thermal_expansion", 1.0 - first)])
+        };
+        assert_eq!(judged(Verdict::MissingPhysics, 0.94), Judgement::Right);
+        assert_eq!(judged(Verdict::MissingPhysics, 0.06), Judgement::Wrong);
+        assert_eq!(judged(Verdict::Ambiguous, 0.7), Judgement::Among);
+        let both = [named("leak", 1.0), named("trapped_air", 1.0)];
+        assert_eq!(judgement(Some(&truth), Verdict::MissingPhysics, &both), Judgement::Wrong);
+        assert_eq!(judgement(None, Verdict::Adequate, &[]), Judgement::Right);
+    }
 }
