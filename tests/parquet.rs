@@ -47,6 +47,16 @@ fn pages_that_claim_too_much_are_refused() {
     }
 }
 
+/// Found by fuzzing: a page's header with more text than the file has, for which the library goes on asking for minutes.
+#[test]
+fn a_header_that_does_not_end_is_refused() {
+    let endless = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/recordings/endless_header.parquet");
+    let begun = std::time::Instant::now();
+    let said = read_recording(Path::new(endless)).expect_err("no end").to_string();
+    assert!(said.contains("\n  remedy: write the file again"), "{said}");
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
 /// The same recording drives the same run, whichever way it is written.
 #[test]
 fn parquet_and_csv_drive_the_same_run() {

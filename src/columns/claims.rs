@@ -4,7 +4,7 @@
 //! dictionary's says that it has, before it looks at the page: a file of three kilobytes can ask for all memory there is.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{self, BufReader, Read};
 
 use bytes::Bytes;
 use parquet::errors::{ParquetError, Result};
@@ -27,6 +27,19 @@ const END_BYTES: u64 = 8;
 /// A file that refuses to hand out a page which claims too much.
 pub(super) struct Checked(pub File);
 
+/// Reading on at the end of the file is an error: the library asks two thousand million times for a header's text that is not
+/// there.
+pub(super) struct UpToTheEnd(BufReader<File>);
+
+impl Read for UpToTheEnd {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        match self.0.read(to)? {
+            0 if !to.is_empty() => Err(io::ErrorKind::UnexpectedEof.into()),
+            count => Ok(count),
+        }
+    }
+}
+
 impl Length for Checked {
     fn len(&self) -> u64 {
         self.0.len()
@@ -34,14 +47,14 @@ impl Length for Checked {
 }
 
 impl ChunkReader for Checked {
-    type T = BufReader<File>;
+    type T = UpToTheEnd;
 
     /// The library reads a page's header through this, and the page itself through `get_bytes`.
     fn get_read(&self, start: u64) -> Result<Self::T> {
         if start.saturating_add(END_BYTES) != self.len() {
             check(claim(self.0.get_read(start)?)).map_err(ParquetError::General)?;
         }
-        self.0.get_read(start)
+        Ok(UpToTheEnd(self.0.get_read(start)?))
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
