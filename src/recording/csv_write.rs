@@ -51,13 +51,7 @@ impl<W: Write> RowWriter<W> {
     /// # Errors
     /// What the target says; another number of values than columns.
     pub fn row(&mut self, time_s: f64, values: &[f64]) -> io::Result<()> {
-        if values.len() != self.column_count {
-            let (given, expected) = (values.len(), self.column_count);
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                format!("a row of {given} values for {expected} columns"),
-            ));
-        }
+        check_width(values.len(), self.column_count)?;
         self.line.clear();
         let _ = write!(self.line, "{time_s}"); // a String takes every write
         for value in values {
@@ -90,6 +84,15 @@ impl<W: Write> RowWriter<W> {
         self.target.flush()?;
         Ok(self.target)
     }
+}
+
+/// A row has one value for each column.
+pub(super) fn check_width(given: usize, expected: usize) -> io::Result<()> {
+    if given == expected {
+        return Ok(());
+    }
+    let said = format!("a row of {given} values for {expected} columns");
+    Err(io::Error::new(io::ErrorKind::InvalidInput, said))
 }
 
 /// A name with a comma, quote or line break goes between quotes.

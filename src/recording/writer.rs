@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::csv_write::write_error;
+use super::csv_write::{check_width, write_error};
 use super::{CsvWriter, FileFormat, Recording, RecordingError, TIME_COLUMN};
 use crate::bag::BagWriter;
 use crate::columns::NumberRows;
@@ -35,6 +35,7 @@ use crate::files::{put_in_place, temporary_beside};
 /// ```
 pub struct RecordingWriter {
     path: PathBuf,
+    column_count: usize,
     rows: Rows,
 }
 
@@ -61,7 +62,7 @@ impl RecordingWriter {
             FileFormat::Csv => Rows::Csv(CsvWriter::create(path, columns)?),
             format => begun(format).map_err(|source| write_error(path, source))?,
         };
-        Ok(Self { path: path.to_owned(), rows })
+        Ok(Self { path: path.to_owned(), column_count: columns.len(), rows })
     }
 
     /// Writes one row: the time (s), one value per column in the column's unit, one position per joint (rad, m for sliders).
@@ -69,10 +70,11 @@ impl RecordingWriter {
     /// # Errors
     /// The file cannot be written, or the number of values is not that of the columns.
     pub fn row(&mut self, time_s: f64, values: &[f64], joint_positions: &[f64]) -> Result<(), RecordingError> {
+        let width = check_width(values.len(), self.column_count);
         let written = match &mut self.rows {
             Rows::Csv(csv) => return csv.row(time_s, values),
-            Rows::Parquet(rows) => rows.row(&[&[time_s], values].concat()),
-            Rows::Mcap(bag) => bag.instant(time_s, values, joint_positions),
+            Rows::Parquet(rows) => width.and_then(|()| rows.row(&[&[time_s], values].concat())),
+            Rows::Mcap(bag) => width.and_then(|()| bag.instant(time_s, values, joint_positions)),
         };
         written.map_err(|source| write_error(&self.path, source))
     }
@@ -150,6 +152,16 @@ mod tests {
             assert!(force.len() == 70_000 && force.iter().enumerate().all(|(i, v)| *v == i as f64), "{name}");
         }
         assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 3);
+    }
+
+    #[test]
+    fn a_row_has_a_value_for_each_column() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for name in FORMATS {
+            let mut writer = RecordingWriter::create(&folder.path().join(name), &["force_n"], &[]).expect("begun");
+            let said = writer.row(0.0, &[1.0, 2.0], &[]).expect_err("one too many").to_string();
+            assert!(said.contains(&format!("{name}: cannot be written: a row of 2 values for 1 columns")), "{said}");
+        }
     }
 
     #[test]
