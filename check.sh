@@ -33,6 +33,19 @@ cargo clippy --no-default-features --all-targets -- -D warnings
 say "what it is built from: licences, sources, pins, no unsafe code"
 python3 -B tests/dependencies/check.py
 
+say "the book's links, data and spelling"
+tools=$target/book-tools
+if [ ! -x "$tools/bin/mdbook" ]; then
+    { python3 -m venv "$tools" && "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r docs/requirements.txt; } ||
+        rm -rf "$tools"
+fi
+# Its commands are run at the end, when there is a program.
+if [ -x "$tools/bin/typos" ]; then
+    python3 -B docs/check_docs.py --typos "$tools/bin/typos"
+else
+    echo "later: mdbook and typos could not be installed (no python3 venv, or no network)"
+fi
+
 say "libraries of others, to hold bags and schemas against"
 peers=$target/peers
 if [ ! -x "$peers/bin/python" ]; then
@@ -117,16 +130,11 @@ where_it_can SMAM_REQUIRE_PYTHON python/test.sh
 say "other people's URDFs"
 where_it_can SMAM_REQUIRE_URDFS python3 tests/public_urdfs/check.py --smam "$smam"
 
-say "the book: links, data, commands, spelling"
+say "the book: its commands, and as a whole"
 docs/examples/check.sh
-tools=$target/book-tools
-if [ ! -x "$tools/bin/mdbook" ]; then
-    { python3 -m venv "$tools" && "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r docs/requirements.txt; } ||
-        rm -rf "$tools"
-fi
 if [ -x "$tools/bin/mdbook" ]; then
     TYPOS=$tools/bin/typos python3 -B -m unittest discover docs
-    python3 -B docs/check_docs.py --smam "$smam" --typos "$tools/bin/typos"
+    python3 -B docs/check_docs.py --smam "$smam"
     "$tools/bin/mdbook" build docs
 elif [ -n "${SMAM_REQUIRE_BOOK:-}" ]; then
     echo "mdbook and typos could not be installed" >&2
