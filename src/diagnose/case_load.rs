@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::effects::Effect;
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
-use crate::recording::{Recording, RecordingSet, Role, RunUse};
+use crate::recording::{PiecewiseLinear, Recording, RecordingSet, Role, RunUse};
 use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
 use crate::system::{Twin, TwinRun};
 
@@ -72,18 +72,22 @@ impl Case {
 
     fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
         let recording = &self.thinned(run)?;
-        let mut drive = TwinRun { times_s: recording.time_s().to_vec(), inputs: Vec::new(), plan: None };
+        let mut lines = Vec::new();
         for input in &self.scene.file.input {
-            let line = recording.piecewise_si(&input.channel).map_err(|e| e.in_file(&run.run.file))?;
-            drive.inputs.push(recording.time_s().iter().map(|&t| line.value(t)).collect());
+            lines.push(recording.piecewise_si(&input.channel).map_err(|e| e.in_file(&run.run.file))?);
         }
-        let lead_in = if self.scene.file.hydraulics.is_some() { lead_in(&mut drive) } else { 0 };
-        let measured = self.channels.iter().map(|c| {
-            recording.find(&c.column).map_or_else(|| vec![f64::NAN; recording.sample_count()], |x| x.values.clone())
+        let times_s = with_points_of(&lines, recording.time_s());
+        let inputs = lines.iter().map(|line| times_s.iter().map(|&t| line.value(t)).collect()).collect();
+        let measured = self.channels.iter().map(|c| match recording.find(&c.column) {
+            Some(channel) => at_times(&times_s, recording.time_s(), &channel.values),
+            None => vec![f64::NAN; times_s.len()],
         });
+        let measured = measured.collect();
+        let mut drive = TwinRun { times_s, inputs, plan: None };
+        let lead_in = if self.scene.file.hydraulics.is_some() { lead_in(&mut drive) } else { 0 };
         self.runs.push(CaseRun {
             file: run.run.file.clone(),
-            measured: measured.collect(),
+            measured,
             is_sealed: run.run.run_use == Some(RunUse::Holdout),
             open_part: None,
             twin: Arc::new(Twin::new(&scene)?),
@@ -144,6 +148,22 @@ impl Case {
         self.runs.truncate(1);
         self.runs.push(sealed);
     }
+}
+
+/// The recorded times and those at which an input has a point that was not recorded (samples that a logger lost), in order.
+fn with_points_of(lines: &[PiecewiseLinear], recorded_s: &[f64]) -> Vec<f64> {
+    let mut times_s = recorded_s.to_vec();
+    times_s.extend(lines.iter().flat_map(|line| line.times_s()));
+    times_s.sort_by(f64::total_cmp);
+    times_s.dedup();
+    times_s
+}
+
+/// What was recorded at each of more times; NaN at those that were not recorded.
+fn at_times(times_s: &[f64], recorded_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let mut samples = recorded_s.iter().zip(values).peekable();
+    let at = |t: &f64| samples.next_if(|(recorded, _)| *recorded == t).map_or(f64::NAN, |(_, value)| *value);
+    times_s.iter().map(at).collect()
 }
 
 impl CaseRun {

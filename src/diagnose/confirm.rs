@@ -6,7 +6,7 @@ use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
 use super::prove;
-use super::search::{self, Found, title};
+use super::search::{self, Found};
 use super::without::Step;
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ pub(super) fn confirm(
     if !is_asked || !gains_nothing {
         return (found, proof, Confirmed::Yes);
     }
-    let title = title(&found.best.model);
+    let title = found.best.model.title();
     if let Some(sensor) = missing_sensor(sealed, &found) {
         warnings.push(format!("the sealed runs lack {sensor}, which shows what {title} changes: it is unproven there"));
         return (found, proof, Confirmed::Yes);
@@ -89,7 +89,7 @@ pub(super) fn prune(
         let Some((_, fewer)) = best.filter(|(c, _)| *c <= enough) else { break };
         say(format!(
             "{} foretells the sealed runs better, chi2 {:.0} instead of {:.0}",
-            title(&fewer.model),
+            fewer.model.title(),
             cost(&fewer),
             cost(&found.best)
         ));
@@ -135,7 +135,7 @@ const PLACEBOS: usize = 5;
 pub fn placebos(sealed: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
     let gained = |rival: &Fit| -> Option<(String, f64)> {
         let proof = prove::prove(sealed, &found.baseline, rival, seed)?;
-        Some((title(&rival.model), proof.gap_closed))
+        Some((rival.model.title(), proof.gap_closed))
     };
     found.rivals.iter().flatten().take(PLACEBOS).filter_map(gained).collect()
 }

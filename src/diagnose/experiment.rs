@@ -8,7 +8,6 @@ use super::case::{Case, CaseRun};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::programme::{INTERVAL_S, Stroke, chirp, held, sample, sine, strokes};
-use super::search::title;
 use crate::recording::{Recording, RecordingError};
 use crate::system::TwinRun;
 
@@ -47,8 +46,8 @@ pub fn confirm<'a>(
     rivals: impl Iterator<Item = &'a Fit>,
 ) -> Result<Experiment, RecordingError> {
     // Another law under the same name would be the same answer.
-    let own_title = title(&best.model);
-    let others = rivals.filter(|rival| title(&rival.model) != own_title);
+    let own_title = best.model.title();
+    let others = rivals.filter(|rival| rival.model.title() != own_title);
     let Some(nearest) = others.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
         let why = match best.model.effects.is_empty() {
             true => "nothing stays open that a rival could explain",
@@ -97,7 +96,7 @@ pub(super) fn proposal(
     (winner, promise): (Candidate, Promise),
     sensor: Option<Sensed>,
 ) -> Experiment {
-    let [of_best, of_rival] = [title(&best.model), title(&promise.rival.model)];
+    let [of_best, of_rival] = [best.model.title(), promise.rival.model.title()];
     let question = match is_open {
         true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
         false => format!("{of_best} is settled; the nearest rival is {of_rival}"),

@@ -6,7 +6,7 @@ use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::prove::prove;
-use super::search::{Found, grow, least_gain, title};
+use super::search::{Found, grow, least_gain};
 use super::verdict::Excess;
 use super::without::Step;
 use super::{Confirmed, verdict};
@@ -53,7 +53,7 @@ fn simpler(
     if best.model.effect_numbers() > numbers || best.cost > found.best.cost - least {
         return None;
     }
-    say(format!("{} imitates, {} explains more with less", title(&found.best.model), title(&best.model)));
+    say(format!("{} imitates, {} explains more with less", found.best.model.title(), best.model.title()));
     let rivals = vec![vec![found.best.clone()]];
     (renewed.gap_closed >= proof.gap_closed).then(|| (Found { best, rivals, ..found.clone() }, renewed))
 }

@@ -46,6 +46,7 @@ mod normal;
 mod preflight;
 pub mod programme;
 mod prove;
+mod refits;
 mod screening;
 mod search;
 mod settle;
@@ -68,7 +69,6 @@ pub use files::{write_answer, write_answer_with};
 pub use fit::Fit;
 pub use model::{Model, Placed};
 pub use noise::Noise;
-pub use search::title;
 pub use side_by_side::side_by_side;
 pub use without::Step;
 
@@ -245,7 +245,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         _ => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
     };
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
-    let rivals = found.rivals.iter().flatten().map(|f| (title(&f.model), f.cost)).collect();
+    let rivals = found.rivals.iter().flatten().map(|f| (f.model.title(), f.cost)).collect();
     let mut diagnosis = Diagnosis {
         format: 1,
         scene: case.scene_name.clone(),

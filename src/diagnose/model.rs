@@ -57,6 +57,14 @@ impl Model {
         Self::default()
     }
 
+    /// Its effects in words.
+    pub fn title(&self) -> String {
+        if self.effects.is_empty() {
+            return "calibration alone".to_owned();
+        }
+        self.effects.iter().map(Placed::title).collect::<Vec<_>>().join(" + ")
+    }
+
     /// One effect more, its numbers starting at `values`.
     pub fn plus(&self, placed: &Placed, values: &[f64]) -> Self {
         let mut model = self.clone();

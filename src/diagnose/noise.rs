@@ -195,13 +195,16 @@ fn two_parts(a: &[f64], b: &[f64], y: &[f64]) -> [f64; 2] {
     }
 }
 
+/// What a running mean over the samples that are there leaves; nothing where a third of the window is missing.
 fn without_slow_part(r: &[f64], half: usize) -> Vec<f64> {
     (0..r.len())
         .map(|i| {
             if i < half || i + half >= r.len() {
                 return f64::NAN;
             }
-            r[i] - r[i - half..=i + half].iter().sum::<f64>() / (2 * half + 1) as f64
+            let window = r[i - half..=i + half].iter().filter(|v| v.is_finite());
+            let (sum, count) = window.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
+            if 3 * count > 2 * (2 * half + 1) { r[i] - sum / count as f64 } else { f64::NAN }
         })
         .collect()
 }
@@ -261,6 +264,15 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
         (0..n).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
+    }
+
+    #[test]
+    fn samples_that_are_missing_do_not_change_what_is_noise() {
+        let whole = noise(6000, 11);
+        let sparse: Vec<f64> = whole.iter().enumerate().map(|(i, v)| if i % 7 == 3 { f64::NAN } else { *v }).collect();
+        let [of_whole, of_sparse] = [&whole, &sparse].map(|r| of_channel(&[r], 0.01, None).unwrap());
+        assert!((of_sparse.sd / of_whole.sd - 1.0).abs() < 0.02, "{of_whole:?} {of_sparse:?}");
+        assert_eq!(of_sparse.slow_share, 0.0);
     }
 
     #[test]

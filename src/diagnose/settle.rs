@@ -6,7 +6,6 @@ use super::experiment::{
     ALL, Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
 };
 use super::fit::{Fit, Problem};
-use super::search::title;
 use super::verdict::Open;
 use crate::recording::RecordingError;
 
@@ -27,7 +26,7 @@ pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Exp
     let alike = leave_out_alike(&mut question, &minute);
     let untold = (!alike.is_empty()).then(|| untold(&alike));
     if let Some(untold) = untold.as_ref().filter(|_| question.is_empty()) {
-        let why = format!("{} explains these recordings as well as others do, and {untold}", title(&best.model));
+        let why = format!("{} explains these recordings as well as others do, and {untold}", best.model.title());
         return Ok(Experiment { next: NextExperiment::none(&why), inputs: None });
     }
     let mut experiment = settle_what_can_be(whole, best, &question, minute)?;
@@ -36,7 +35,7 @@ pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Exp
 }
 
 fn untold(alike: &[&Fit]) -> String {
-    let titles: Vec<String> = alike.iter().map(|fit| title(&fit.model)).collect();
+    let titles: Vec<String> = alike.iter().map(|fit| fit.model.title()).collect();
     format!("nothing that can be played and recorded here tells it from {}", titles.join(", "))
 }
 

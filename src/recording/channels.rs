@@ -147,13 +147,15 @@ impl Recording {
         self.channel(column)?.si()
     }
 
-    /// A column as a continuous function of time in SI units, to drive a simulation.
+    /// A column as a continuous function of time in SI units, to drive a simulation: straight between samples; where a logger
+    /// lost some (up to ten in a row and 0.1 s) along Akima's curve, which cuts no corners.
     ///
     /// # Errors
     /// No such column, no known unit, not a single sample.
     pub fn piecewise_si(&self, column: &str) -> Result<PiecewiseLinear, RecordingError> {
-        PiecewiseLinear::new(&self.time_s, &self.si(column)?)
-            .ok_or_else(|| RecordingError::AllMissing { column: column.to_owned() })
+        let line = PiecewiseLinear::new(&self.time_s, &self.si(column)?)
+            .ok_or_else(|| RecordingError::AllMissing { column: column.to_owned() })?;
+        Ok(line.with_lost_put_back())
     }
 
     /// A column at a time, in its own unit: straight between samples, NaN where it has none.

@@ -30,6 +30,7 @@ pub mod figures;
 mod folder;
 mod folder_keys;
 mod formats;
+mod lost;
 mod noise;
 mod one_clock;
 mod parquet_read;

@@ -1,5 +1,8 @@
 //! A sampled signal as a continuous function of time.
 
+use super::lost::put_back;
+use super::survey::median_interval_s;
+
 /// Straight lines between samples, the end values held outside.
 ///
 /// ```text
@@ -37,6 +40,13 @@ impl PiecewiseLinear {
             .map(|(time, value)| (*time, *value))
             .unzip();
         (!times_s.is_empty()).then_some(Self { times_s, values })
+    }
+
+    /// The same with points where a logger lost samples ([`super::lost`]).
+    pub(super) fn with_lost_put_back(self) -> Self {
+        let Some(median_s) = median_interval_s(&self.times_s) else { return self };
+        let (times_s, values) = put_back(self.times_s, self.values, median_s);
+        Self { times_s, values }
     }
 
     /// Times of its points, s.

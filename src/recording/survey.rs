@@ -90,7 +90,9 @@ impl Survey {
 
 impl fmt::Display for Gap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} to {} s", self.from_s, self.to_s)
+        // Ten digits drop the rounding error of times that were computed.
+        let [from_s, to_s] = [self.from_s, self.to_s].map(|s| (s * 1e10).round() / 1e10);
+        write!(f, "{from_s} to {to_s} s")
     }
 }
 

@@ -1,0 +1,129 @@
+//! Candidates for one more effect: which are worth a joint refit, the refits, and which of them may win.
+
+use rayon::prelude::*;
+
+use super::fit::{Fit, Problem};
+use super::model::{Placed, Sides};
+use super::screening::{Screened, Screening, start_values};
+use super::without::Step;
+
+/// Candidates that are refitted in full at every stage.
+const REFITTED: usize = 10;
+/// Of those, at most so many to the end, when they come within this share of the best's gain.
+const FINISHED: usize = 4;
+const NEAR: f64 = 0.1;
+/// Candidates that promise less than this share of the best are not refitted.
+const WORTH: f64 = 0.1;
+/// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
+pub(super) const BRANCH_TIE: f64 = 0.02;
+
+/// The candidates worth a full refit: the most promising of every effect.
+pub(super) fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
+    let mut picked: Vec<Screened> = Vec::new();
+    let top = screened.first().map_or(0.0, |s| s.gain);
+    for s in screened {
+        // A signature at zero size says little of laws with a threshold: they get the benefit of the doubt.
+        let promising = s.gain > 0.2 * least && s.gain > WORTH * top;
+        if promising && picked.iter().filter(|p| p.variant.placed == s.variant.placed).count() < 2 {
+            picked.push(s.clone());
+        }
+        if picked.len() >= REFITTED {
+            break;
+        }
+    }
+    picked
+}
+
+/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
+/// fitted roughly; those that come near the best are fitted to the end.
+pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
+    let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
+    let rough = best_of_each(rough.into_iter().flatten().collect());
+    let Some(best) = rough.first().map(|f| f.cost) else { return rough };
+    let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
+    let close = rough.iter().take_while(|f| f.cost <= near).count().min(FINISHED);
+    let finished: Vec<Option<Fit>> = rough[..close].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
+    let mut fits: Vec<Fit> = finished.into_iter().flatten().chain(rough[close..].iter().cloned()).collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
+/// The cheapest fit of each effect, cheapest first.
+fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut seen: Vec<Placed> = Vec::new();
+    fits.retain(|f| {
+        let last = f.model.effects.last().cloned();
+        let is_new = last.as_ref().is_some_and(|l| !seen.contains(l));
+        seen.extend(last);
+        is_new
+    });
+    fits
+}
+
+/// A rough fit with one effect more, on the slopes of the fit it starts from and those of the effect's numbers.
+fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
+    let (from, values) = (&screening.from, start_values(candidate));
+    let model = from.model.plus(&candidate.variant.placed, &values);
+    let mut start = from.x.clone();
+    start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
+    let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
+    let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);
+    slopes.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
+    problem.fit_roughly(&model, &start, slopes)
+}
+
+/// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
+pub(super) fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Vec<&'a Fit> {
+    let Some(first) = simplest(refits, before, baseline_cost) else { return Vec::new() };
+    let near = before.cost - NEARLY_AS_GOOD * (before.cost - first.cost);
+    let others = refits.iter().filter(|f| f.cost < near && f.model != first.model);
+    std::iter::once(first).chain(others.take(FINISHED)).collect()
+}
+
+/// Share of the best's gain from which another refit may stand in for it.
+const NEARLY_AS_GOOD: f64 = 0.5;
+
+pub(super) fn first_that_foretells<'a>(
+    problem: &Problem,
+    before: &Fit,
+    fits: impl Iterator<Item = &'a Fit>,
+    say: &dyn Fn(String),
+) -> Option<&'a Fit> {
+    for fit in fits {
+        if foretells(problem, before, fit) {
+            return Some(fit);
+        }
+        say(format!("{}: does not foretell runs it was not fitted to", fit.model.title()));
+    }
+    None
+}
+
+/// Whether a fit only gives an effect that is there already one more branch.
+pub(super) fn adds_branch(before: &Fit, after: &Fit) -> bool {
+    after.model.effects.last().is_some_and(|e| before.model.effects.contains(e))
+}
+
+/// The cheapest fit; but of nearly equal ones that which only gives an effect already named one more branch.
+fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
+    let cheapest = refits.first()?;
+    let tie = cheapest.cost + BRANCH_TIE * (baseline_cost - cheapest.cost).max(0.0);
+    refits.iter().take_while(|f| f.cost <= tie).find(|f| adds_branch(before, f)).or(Some(cheapest))
+}
+
+/// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
+pub(super) fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    if problem.case.is_without(Step::CrossValidation) {
+        return true;
+    }
+    let gain = |(rest, left_out): (Problem, Problem)| -> Option<f64> {
+        let cost = |fit: &Fit| {
+            let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;
+            let fitted = rest.fit_roughly(&fit.model, &fit.x, slopes)?;
+            left_out.cost_at(&fit.model, &fitted.x)
+        };
+        Some(cost(before)? - cost(after)?)
+    };
+    let folds = problem.folds();
+    folds.into_iter().filter_map(gain).sum::<f64>() > 0.0
+}
