@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use smam::conceal::{Hiding, Rig, draw, record_asked, write_case};
+use smam::conceal::{Decoy, Drawn, Hiding, Rig, draw, record_asked, write_case};
 use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
 use smam::effects::EffectTable;
 use smam::recording::{Channel, Recording, read_csv};
@@ -141,16 +141,36 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
     assert!(d.warnings.iter().any(|w| w.starts_with("empty.csv: no output was recorded")), "{:?}", d.warnings);
 }
 
+/// Case so-and-so that `smam proof --seed 2026` draws on the bench.
+fn concealed(hiding: Hiding, number: u64, folder: &Path) -> (String, Drawn) {
+    let name = format!("s2026_{number:05}");
+    let drawn = draw(&name, Rig::MuscleBench, hiding, 2026 * 1_000_003 + number).unwrap_or_else(|e| panic!("{e}"));
+    write_case(&drawn, folder).unwrap_or_else(|e| panic!("{e}"));
+    (name, drawn)
+}
+
+/// One sample in seven is lost, some of them where the plunger turns or stops: friction would remember a corner that is cut
+/// for seconds, and that is misfit of up to 0.16 per sample.
+#[test]
+fn a_logger_that_loses_samples_makes_no_false_alarm() {
+    for number in [313, 471, 517] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (name, drawn) = concealed(Hiding::Nothing, number, folder.path());
+        assert!(drawn.truth.decoys.contains(&Decoy::UnevenSampling));
+        let d = answer(&folder.path().join(name));
+        assert_eq!(d.verdict, Verdict::Adequate, "{number}: {}", d.summary);
+        let left = d.detection.excess_chi2_per_sample;
+        assert!(left < 0.015, "{number}: {left}");
+    }
+}
+
 /// A line that warms up, of altered form, and a weight: no motion within the stroke tells the weight for sure from a coil wound
 /// tight, a load cell does. The answer asks for it, and the concealing plant can be given one.
 #[test]
 fn an_open_answer_asks_for_the_sensor_that_would_decide() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    // Case 352 of the published proof.
-    let (name, seed) = ("s2026_00352", 2026 * 1_000_003 + 352);
-    let drawn = draw(name, Rig::MuscleBench, Hiding::Several, seed).unwrap_or_else(|e| panic!("{e}"));
-    write_case(&drawn, folder.path()).unwrap_or_else(|e| panic!("{e}"));
-    let d = answer(&folder.path().join(name));
+    let (name, drawn) = concealed(Hiding::Several, 352, folder.path());
+    let d = answer(&folder.path().join(&name));
     assert_eq!(d.verdict, Verdict::Ambiguous);
     let named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
     assert_eq!(named, ["thermal_expansion", "gravity_load", "coil_preload"]);

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use rayon::prelude::*;
-use smam::conceal::{Ceiling, Hiding, ceiling};
+use smam::conceal::{Ceiling, Hiding, Secret, Settling, ceiling, settling};
 use smam::proof::{Folders, ProofError, Row, VISIBLE, open};
+use smam::recording::read_csv;
 
 use super::CliError;
 use super::files::write;
@@ -41,3 +42,49 @@ pub fn write_ceiling(
         mean(&|h| h == Hiding::Unlisted, &|c| c.naming),
     ))
 }
+
+/// Computes what the proposed experiment could decide at best of every ambiguous answer that was put to one, writes settling.jsonl
+/// and prints a table.
+pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folders, out: &Path) -> Result<(), CliError> {
+    let one = |row: &&Row| -> Result<Option<(Settling, String)>, ProofError> {
+        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { return Ok(None) };
+        let Some(settled) = &row.settled else { return Ok(None) };
+        let programme = read_csv(&folders.answers.join(&row.name).join("next_experiment.csv"))?;
+        let sensor = settled.with_sensor.as_ref();
+        let is_open = |s: &Secret| row.probability_of(s) < NAMED;
+        let is_named = |s: &Secret| row.effects.iter().any(|e| e.is(s));
+        let truth = open(&row.name, seal, folders)?;
+        let found = settling(&truth, is_open, is_named, &programme, sensor.map(|s| s.column.as_str()))?;
+        eprintln!("what the experiment for {} could decide", row.name);
+        let promised = sensor.map_or(settled.promised_sigma, |s| s.promised_sigma);
+        let outcome = if settled.as_proposed().is_right { "yes" } else { "no" };
+        Ok(found.map(|f| {
+            let line = format!(
+                "| {} | {} | {} | {promised:.1} | {:.1} | {:.0} % | {outcome} |\n",
+                f.name,
+                f.hidden,
+                f.rival,
+                f.sigma,
+                100.0 * f.is_right()
+            );
+            (f, line)
+        }))
+    };
+    let found: Vec<Option<(Settling, String)>> = rows.par_iter().map(|r| one(&r)).collect::<Result<_, _>>()?;
+    let found: Vec<(Settling, String)> = found.into_iter().flatten().collect();
+    let json = |e: serde_json::Error| CliError::Failed(format!("what could be decided cannot be written as JSON: {e}"));
+    let lines: Result<Vec<String>, serde_json::Error> = found.iter().map(|(s, _)| serde_json::to_string(s)).collect();
+    write(&out.join("settling.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
+    let table: String = found.iter().map(|(_, line)| line.as_str()).collect();
+    let mean = found.iter().map(|(s, _)| s.is_right()).sum::<f64>() / found.len() as f64;
+    super::print_text(&format!(
+        "\n### One more experiment, at best, for one who knows the plant\n\n\
+         | case | hidden | taken for | promised, sigma | at best, sigma | right at best | settled |\n|---|---|---|---|---|---|---|\n\
+         {table}\nRight at best: {:.1} % of {}\n",
+        100.0 * mean,
+        found.len()
+    ))
+}
+
+/// An effect of the answer with such a probability is not open.
+const NAMED: f64 = 0.9;

@@ -12,7 +12,7 @@ use smam::diagnose::{Step, Verdict};
 use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, row, settle};
 
 use super::CliError;
-use super::ceiling::write_ceiling;
+use super::ceiling::{write_ceiling, write_settling};
 use super::diagnose::StepName;
 use super::files::take_folder;
 use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
@@ -35,7 +35,8 @@ pub struct ProofArguments {
     /// Diagnose with a step left out; answers and score go to DIR/without_STEP
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
-    /// Compute as well what could be known at best of so many visible cases that hide one thing: ceiling.jsonl
+    /// Compute as well what could be known at best of so many visible cases that hide one thing, and what the proposed
+    /// experiments could decide at best: ceiling.jsonl, settling.jsonl
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     ceiling: usize,
     /// Where cases, answers and score go; what is there already is kept
@@ -71,6 +72,7 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     write_score(&rows, &out)?;
     if arguments.ceiling > 0 {
         write_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
+        write_settling(&rows, &seals, &folders, &out)?;
     }
     Ok(ExitCode::SUCCESS)
 }

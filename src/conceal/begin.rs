@@ -7,7 +7,7 @@ use super::ConcealError;
 use super::case::Decoy;
 use super::noise::ChannelNoise;
 use super::programme::{Drive, Wave, programme};
-use super::size::Sizing;
+use super::size::{Sizing, Weighed, WeighedRun};
 use super::stock::{Calibration, Rig};
 
 /// The waveform that no diagnosis sees.
@@ -65,7 +65,7 @@ impl Begun {
     /// # Errors
     /// A plant that the solver cannot follow.
     pub fn sizing(&self) -> Result<Sizing, ConcealError> {
-        self.sizing_in(self.noise.iter().map(|n| n.sd).collect())
+        Sizing::new(self.weighed(self.noise.iter().map(|n| n.sd).collect()))
     }
 
     /// The same in units of what the noise amounts to against a slow signal.
@@ -73,12 +73,18 @@ impl Begun {
     /// # Errors
     /// A plant that the solver cannot follow.
     pub fn sizing_for_slow_signals(&self) -> Result<Sizing, ConcealError> {
-        self.sizing_in(self.noise.iter().map(ChannelNoise::against_slow_signals).collect())
+        Sizing::new(self.weighed_for_slow_signals())
     }
 
-    fn sizing_in(&self, unit: Vec<f64>) -> Result<Sizing, ConcealError> {
-        let shown: Vec<bool> = self.rig.outputs().iter().map(|o| is_shown(o.column, &self.decoys)).collect();
-        Sizing::new(self.rig, self.calibration, &self.drives, unit, shown)
+    /// The beginnings of its runs, nothing hidden yet, in units of what the noise amounts to against a slow signal.
+    pub fn weighed_for_slow_signals(&self) -> Weighed {
+        self.weighed(self.noise.iter().map(ChannelNoise::against_slow_signals).collect())
+    }
+
+    fn weighed(&self, unit: Vec<f64>) -> Weighed {
+        let shown = self.rig.outputs().iter().map(|o| is_shown(o.column, &self.decoys)).collect();
+        let runs = WeighedRun::beginnings(&self.drives);
+        Weighed { rig: self.rig, calibration: self.calibration, runs, unit, shown, present: Vec::new() }
     }
 }
 

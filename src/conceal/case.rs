@@ -10,7 +10,7 @@ use super::noise::ChannelNoise;
 use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S, Wave};
 use super::secrets::{KINDS, Kind, Secret};
-use super::solve::solve_and_read;
+use super::solve::solve;
 use super::stock::{Calibration, Rig};
 use crate::recording::{Channel, Recording};
 
@@ -217,8 +217,7 @@ pub fn record(
     random: &mut ChaCha8Rng,
 ) -> Result<Recording, ConcealError> {
     let plant = plant_of(truth, begun_s);
-    let both = |plant: &Plant, t: f64, x: &[f64]| [plant.outputs(x), plant.more_outputs(t, x)].concat();
-    let mut series = solve_and_read(&plant, drives, both)?;
+    let mut series = solve(&plant, drives)?;
     let mut more = series.split_off(truth.rig.outputs().len());
     let count = drives[0].positions_m.len();
     for ((output, series), noise) in truth.rig.outputs().iter().zip(&mut series).zip(&truth.noise) {

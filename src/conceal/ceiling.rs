@@ -57,7 +57,7 @@ pub fn ceiling(truth: &Truth) -> Result<Option<Ceiling>, ConcealError> {
 }
 
 /// Everything else that the rig might hide, in its own form, at every place.
-fn rivals(truth: &Truth, secret: &Secret) -> Vec<Secret> {
+pub(super) fn rivals(truth: &Truth, secret: &Secret) -> Vec<Secret> {
     let places = |kind: &'static Kind| {
         let channels = truth.rig.outputs().len();
         let muscles = truth.rig.muscles();
@@ -66,8 +66,7 @@ fn rivals(truth: &Truth, secret: &Secret) -> Vec<Secret> {
     };
     let mut found: Vec<Secret> = Vec::new();
     for rival in KINDS.iter().filter(|k| k.fits(truth.rig)).flat_map(places) {
-        let same = |s: &Secret| s.name == rival.name && s.element == rival.element && s.channel == rival.channel;
-        if !same(secret) && !found.iter().any(same) {
+        if !rival.is_same_thing(secret) && !found.iter().any(|s| rival.is_same_thing(s)) {
             found.push(rival);
         }
     }
@@ -75,7 +74,11 @@ fn rivals(truth: &Truth, secret: &Secret) -> Vec<Secret> {
 }
 
 /// The signature of a rival at the size at which it is most like another; its law counts as proportional to its size.
-fn best_imitation(sizing: &Sizing, mut rival: Secret, shown: &DVector<f64>) -> Result<DVector<f64>, ConcealError> {
+pub(super) fn best_imitation(
+    sizing: &Sizing,
+    mut rival: Secret,
+    shown: &DVector<f64>,
+) -> Result<DVector<f64>, ConcealError> {
     let kind = KINDS.iter().find(|k| k.name == rival.name);
     let (largest, is_signed) = kind.map_or((f64::INFINITY, true), |k| (k.largest, k.is_signed));
     let share = |own: &DVector<f64>| {

@@ -15,6 +15,7 @@ mod plant;
 mod programme;
 mod seal;
 mod secrets;
+mod settling;
 mod size;
 mod solve;
 mod stock;
@@ -29,6 +30,7 @@ pub use more::{record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;
 pub use secrets::Secret;
+pub use settling::{Settling, settling};
 pub use stock::{Calibration, Output, Rig};
 pub use write::{SEALED, write_case};
 

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::ConcealError;
 use super::case::{Truth, record};
 use super::programme::{Drive, SAMPLE_S, Wave, programme};
+use super::stock::Rig;
 use crate::recording::{PiecewiseLinear, Recording};
 
 /// Records a programme that somebody asks for: the plungers' positions in the rig's own columns; with a sensor that the
@@ -14,15 +15,24 @@ use crate::recording::{PiecewiseLinear, Recording};
 /// # Errors
 /// Columns that the rig does not have, a plant that the solver cannot follow.
 pub fn record_asked(truth: &Truth, inputs: &Recording, sensor: Option<&str>) -> Result<Recording, ConcealError> {
+    let drives = asked_drives(truth.rig, inputs)?;
+    record(truth, &drives, begins_s(truth), sensor, &mut ChaCha8Rng::seed_from_u64(!truth.seed))
+}
+
+/// What the plungers of a rig are asked to do.
+///
+/// # Errors
+/// Columns that the rig does not have.
+pub(super) fn asked_drives(rig: Rig, inputs: &Recording) -> Result<Vec<Drive>, ConcealError> {
     let end_s = inputs.time_s().last().copied().unwrap_or(0.0);
     let count = (end_s / SAMPLE_S).round() as usize + 1;
     let mut drives = Vec::new();
-    for column in truth.rig.inputs() {
+    for column in rig.inputs() {
         let asked = PiecewiseLinear::new(inputs.time_s(), &inputs.si(column)?);
         let asked = asked.ok_or_else(|| ConcealError::Solver(format!("{column}: no position is asked for")))?;
         drives.push(Drive { positions_m: (0..count).map(|k| asked.value(k as f64 * SAMPLE_S)).collect() });
     }
-    record(truth, &drives, begins_s(truth), sensor, &mut ChaCha8Rng::seed_from_u64(!truth.seed))
+    Ok(drives)
 }
 
 /// Records a waveform that is drawn, over so many seconds, with a sensor as [`record_asked`].
@@ -38,6 +48,6 @@ pub fn record_drawn(truth: &Truth, duration_s: f64, sensor: Option<&str>) -> Res
 }
 
 /// When the runs of the case have ended, s.
-fn begins_s(truth: &Truth) -> f64 {
+pub(super) fn begins_s(truth: &Truth) -> f64 {
     truth.waves.iter().map(|w| w.duration_s() + SAMPLE_S).sum()
 }

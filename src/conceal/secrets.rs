@@ -170,6 +170,11 @@ impl Secret {
         }
     }
 
+    /// Whether both are one thing in one place, of whatever size.
+    pub fn is_same_thing(&self, other: &Self) -> bool {
+        self.name == other.name && self.element == other.element && self.channel == other.channel
+    }
+
     /// Puts the physics into a plant; what a sensor does is put upon its channel later.
     pub fn install(&self, plant: &mut Plant) {
         if let Some(kind) = KINDS.iter().find(|k| k.name == self.name) {

@@ -9,52 +9,66 @@ use super::secrets::{KINDS, Secret};
 use super::solve::solve;
 use super::stock::{Calibration, Rig};
 
-/// The beginnings of a rig's own runs, on which secrets are weighed.
+/// What secrets are weighed on.
+pub struct Weighed {
+    pub rig: Rig,
+    pub calibration: Calibration,
+    pub runs: Vec<WeighedRun>,
+    /// What one unit of each output is, its noise, and whether it is recorded.
+    pub unit: Vec<f64>,
+    pub shown: Vec<bool>,
+    /// Hidden as well, their sizes as little known as the rig's own numbers.
+    pub present: Vec<Secret>,
+}
+
+/// What the plungers do in one run.
+pub struct WeighedRun {
+    /// When it begins, s after the first one.
+    pub begun_s: f64,
+    pub drives: Vec<Drive>,
+    /// One more sensor that it has: its place among [`Rig::more_sensors`], and its noise.
+    pub sensor: Option<(usize, f64)>,
+}
+
+/// So much of each of a rig's own runs is weighed, s.
+const WEIGHED_S: f64 = 30.0;
+
+impl WeighedRun {
+    /// The beginnings of runs that follow each other.
+    pub fn beginnings(runs: &[Vec<Drive>]) -> Vec<Self> {
+        let mut begun_s = 0.0;
+        let beginning = |run: &Vec<Drive>| {
+            let at_s = begun_s;
+            begun_s += run[0].positions_m.len() as f64 * SAMPLE_S;
+            let count = ((WEIGHED_S / SAMPLE_S) as usize).min(run[0].positions_m.len());
+            let drives = run.iter().map(|d| Drive { positions_m: d.positions_m[..count].to_vec() }).collect();
+            Self { begun_s: at_s, drives, sensor: None }
+        };
+        runs.iter().map(beginning).collect()
+    }
+}
+
+/// What secrets do to a rig's outputs.
 pub struct Sizing {
-    rig: Rig,
-    calibration: Calibration,
-    /// When each run begins, s after the first one, and what its plungers do.
-    runs: Vec<(f64, Vec<Drive>)>,
-    /// What one unit of each output is, and whether it is recorded.
-    unit: Vec<f64>,
-    shown: Vec<bool>,
-    /// Outputs with nothing hidden, and a basis of what the rig's own numbers can do to them.
+    weighed: Weighed,
+    /// Outputs without the secret that is weighed, and a basis of what the rig's own numbers, and the sizes of what is there as
+    /// well, can do to them.
     plain: DVector<f64>,
     basis: DMatrix<f64>,
 }
 
-/// So much of each run is weighed, s.
-const WEIGHED_S: f64 = 30.0;
-
-/// Share by which each calibrated number is moved for its slope.
+/// Share by which each calibrated number, or size, is moved for its slope.
 const SHARE: f64 = 0.01;
 /// Every so many samples are weighed: misfits are slow.
 pub const STRIDE: usize = 7;
 const ROUNDS: usize = 3;
 
 impl Sizing {
-    /// `runs`: what the plungers do, run by run; `unit`: what counts as one of each output, its noise.
-    ///
     /// # Errors
     /// A plant that the solver cannot follow.
-    pub fn new(
-        rig: Rig,
-        calibration: Calibration,
-        runs: &[Vec<Drive>],
-        unit: Vec<f64>,
-        shown: Vec<bool>,
-    ) -> Result<Self, ConcealError> {
-        let mut begun_s = 0.0;
-        let beginning = |run: &Vec<Drive>| {
-            let at_s = begun_s;
-            begun_s += run[0].positions_m.len() as f64 * SAMPLE_S;
-            let count = ((WEIGHED_S / SAMPLE_S) as usize).min(run[0].positions_m.len());
-            (at_s, run.iter().map(|d| Drive { positions_m: d.positions_m[..count].to_vec() }).collect())
-        };
-        let runs = runs.iter().map(beginning).collect();
-        let (plain, basis) = (DVector::zeros(0), DMatrix::zeros(0, 0));
-        let mut sizing = Self { rig, calibration, runs, unit, shown, plain, basis };
-        sizing.plain = sizing.weighted(None, calibration)?;
+    pub fn new(weighed: Weighed) -> Result<Self, ConcealError> {
+        let (plain, basis) = (weighed.outputs(weighed.calibration, &[])?, DMatrix::zeros(0, 0));
+        let mut sizing = Self { weighed, plain, basis };
         let decomposed = sizing.slopes()?.svd(true, false);
         sizing.basis = decomposed.u.ok_or_else(|| ConcealError::Solver("slopes without a basis".to_owned()))?;
         Ok(sizing)
@@ -84,35 +98,53 @@ impl Sizing {
     /// # Errors
     /// A plant that the solver cannot follow.
     pub fn left(&self, secret: &Secret) -> Result<DVector<f64>, ConcealError> {
-        let signature = self.weighted(Some(secret), self.calibration)? - &self.plain;
+        let signature = self.weighed.outputs(self.weighed.calibration, &[secret])? - &self.plain;
         Ok(&signature - &self.basis * (self.basis.tr_mul(&signature)))
     }
 
+    /// What the rig's own numbers do to the outputs, and the sizes of what is present.
     fn slopes(&self) -> Result<DMatrix<f64>, ConcealError> {
-        let columns = (0..Calibration::COUNT).map(|i| {
+        let mut columns = Vec::new();
+        for i in 0..Calibration::COUNT {
             let mut by = [1.0; Calibration::COUNT];
             by[i] += SHARE;
-            Ok((self.weighted(None, self.calibration.scaled(by))? - &self.plain) / SHARE)
-        });
-        Ok(DMatrix::from_columns(&columns.collect::<Result<Vec<_>, ConcealError>>()?))
-    }
-
-    /// Outputs in their units, thinned.
-    fn weighted(&self, secret: Option<&Secret>, calibration: Calibration) -> Result<DVector<f64>, ConcealError> {
-        let mut plant = Plant::new(self.rig, calibration);
-        if let Some(secret) = secret {
-            secret.install(&mut plant);
+            let moved = self.weighed.outputs(self.weighed.calibration.scaled(by), &[])?;
+            columns.push((moved - &self.plain) / SHARE);
         }
+        let usual = columns.iter().map(DVector::norm).fold(0.0, f64::max);
+        for secret in &self.weighed.present {
+            let mut more = secret.clone();
+            more.size *= 1.0 + SHARE;
+            let change = self.weighed.outputs(self.weighed.calibration, &[&more])? - &self.plain;
+            // Of a length like the others': the basis is to hold it, however little it does.
+            columns.extend((change.norm() > 0.0).then(|| &change * (usual / change.norm())));
+        }
+        Ok(DMatrix::from_columns(&columns))
+    }
+}
+
+impl Weighed {
+    /// Outputs in their units, thinned, with more secrets; one takes the place of the same that is present.
+    fn outputs(&self, calibration: Calibration, more: &[&Secret]) -> Result<DVector<f64>, ConcealError> {
+        let mut plant = Plant::new(self.rig, calibration);
+        let stays = |p: &&Secret| !more.iter().any(|m| m.is_same_thing(p));
+        let secrets: Vec<&Secret> = self.present.iter().filter(stays).chain(more.iter().copied()).collect();
+        secrets.iter().for_each(|s| s.install(&mut plant));
         let mut all = Vec::new();
-        for (begun_s, drives) in &self.runs {
-            plant.begun_s = *begun_s;
-            let series = solve(&plant, drives)?;
-            for (i, mut series) in series.into_iter().enumerate().filter(|(i, _)| self.shown[*i]) {
-                let column = self.rig.outputs()[i].column;
-                if let Some(secret) = secret.filter(|s| s.channel.as_deref() == Some(column)) {
-                    secret.corrupt(&mut series, SAMPLE_S, *begun_s);
+        for run in &self.runs {
+            plant.begun_s = run.begun_s;
+            let own = self.rig.outputs().len();
+            for (i, mut series) in solve(&plant, &run.drives)?.into_iter().enumerate() {
+                let unit = match i.checked_sub(own) {
+                    None => self.shown[i].then_some(self.unit[i]),
+                    Some(more) => run.sensor.and_then(|(sensor, noise)| (sensor == more).then_some(noise)),
+                };
+                let Some(unit) = unit else { continue };
+                let column = self.rig.outputs().get(i).map(|o| o.column);
+                for secret in secrets.iter().filter(|s| s.channel.is_some() && s.channel.as_deref() == column) {
+                    secret.corrupt(&mut series, SAMPLE_S, run.begun_s);
                 }
-                all.extend(series.iter().step_by(STRIDE).map(|x| x / self.unit[i]));
+                all.extend(series.iter().step_by(STRIDE).map(|x| x / unit));
             }
         }
         Ok(DVector::from_vec(all))

@@ -75,25 +75,14 @@ impl Interval {
     }
 }
 
-/// Outputs of a plant at every sample of its drives, by channel.
+/// Outputs of a plant at every sample of its drives, by channel: those that its rig shows, then those of the sensors that it could
+/// be given.
 ///
 /// Inputs have their corners at the samples: each interval is solved by itself, from where the one before has ended.
 ///
 /// # Errors
 /// A plant that the solver cannot follow.
 pub fn solve(plant: &Plant, drives: &[Drive]) -> Result<Vec<Vec<f64>>, ConcealError> {
-    solve_and_read(plant, drives, |plant, _, x| plant.outputs(x))
-}
-
-/// The same with whatever is read from plant, time and state at every sample, as many numbers each time.
-///
-/// # Errors
-/// A plant that the solver cannot follow.
-pub fn solve_and_read(
-    plant: &Plant,
-    drives: &[Drive],
-    read: impl Fn(&Plant, f64, &[f64]) -> Vec<f64>,
-) -> Result<Vec<Vec<f64>>, ConcealError> {
     let (plant, drives): (Arc<Plant>, Arc<[Drive]>) = (Arc::new(plant.clone()), drives.into());
     let scales: Arc<[f64]> = plant.scales().into();
     let mut scaled: Vec<f64> = plant.start().iter().zip(scales.iter()).map(|(x, s)| x / s).collect();
@@ -101,7 +90,7 @@ pub fn solve_and_read(
     let mut channels: Vec<Vec<f64>> = Vec::new();
     for k in 0..count {
         let x: Vec<f64> = scaled.iter().zip(scales.iter()).map(|(x, s)| x * s).collect();
-        let values = read(&plant, k as f64 * SAMPLE_S, &x);
+        let values = [plant.outputs(&x), plant.more_outputs(k as f64 * SAMPLE_S, &x)].concat();
         channels.resize_with(values.len(), || Vec::with_capacity(count));
         channels.iter_mut().zip(values).for_each(|(channel, value)| channel.push(value));
         if k + 1 < count {

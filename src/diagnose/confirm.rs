@@ -64,6 +64,18 @@ fn missing_sensor<'a>(sealed: &Problem<'a>, found: &Found) -> Option<&'a str> {
     (apart < SHOWN).then_some(case.channels[lacking].column.as_str())
 }
 
+/// Takes back what the fast model cannot follow on every run, sealed ones included.
+pub(super) fn take_back_unplayable(whole: &Problem, mut found: Found, warnings: &mut Vec<String>) -> Found {
+    let has_effects = !found.best.model.effects.is_empty();
+    if has_effects && whole.cost_at(&found.best.model, &found.best.x).is_none() {
+        let title = found.best.model.title();
+        warnings.push(format!("{title} fitted the open runs but cannot be simulated on all, and was dropped"));
+        found.best = found.baseline.clone();
+        found.rivals.clear();
+    }
+    found
+}
+
 /// An effect is taken back when the sealed runs are left with this share less of what is not noise.
 const LEFT_LESS: f64 = 0.1;
 

@@ -201,12 +201,13 @@ fn explain(
     say("baseline".to_owned());
     let base = baseline::baseline(case)?;
     let variants = candidates::variants(case);
-    let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say).ok_or_else(diverges)?;
+    let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say);
     let case = &*case;
     let mut warnings = [warnings, base.warnings, case.notes.clone()].concat();
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
     say("sealed runs".to_owned());
+    let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let found = confirm::prune(&open, &sealed, found, &variants, say);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
     let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);

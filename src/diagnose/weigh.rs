@@ -3,7 +3,7 @@
 use super::baseline::Baseline;
 use super::candidates::Variant;
 use super::case::{Case, Sealed};
-use super::fit::Problem;
+use super::fit::{Fit, Problem};
 use super::noise::{self, Noise};
 use super::search::{self, Found};
 
@@ -13,36 +13,56 @@ pub fn search_and_weigh(
     base: &Baseline,
     variants: &[Variant],
     say: &dyn Fn(String),
-) -> Option<(Found, Vec<Noise>)> {
+) -> (Found, Vec<Noise>) {
     let mut noise = base.noise.clone();
     let mut found = search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, say);
     for _ in 0..2 {
         if found.best.model.effects.is_empty() {
             break;
         }
-        let residuals = open_runs(case, &noise).residuals(&found.best.model, &found.best.x)?;
-        let renewed = noise::estimate(case, &residuals);
-        let weights_hold = renewed.iter().zip(&noise).all(|(new, old)| new.is_near(old));
-        noise = renewed;
-        let setting = found.best.model.setting(case, &found.best.x);
-        // What cannot be simulated on a sealed run is taken back later; the steps stay as they are.
-        if case.plan_steps(&setting, &noise).is_none() {
+        let former = case.runs.clone();
+        let Some(renewed) = renew(case, &noise, &found) else {
+            // With the former steps the fast model could follow; what it cannot on a sealed run is taken back later.
+            case.runs = former;
             break;
-        }
-        case.leave_out_unheld(&setting)?;
+        };
+        noise = renewed.noise;
         let problem = open_runs(case, &noise);
-        let start = problem.fit(&found.best.model, &found.best.x)?;
-        if weights_hold && (start.cost - found.best.cost).abs() < SAME_COST * search::least_gain(problem.samples()) {
+        let least = search::least_gain(problem.samples());
+        if renewed.weights_hold && (renewed.start.cost - found.best.cost).abs() < SAME_COST * least {
             break;
         }
-        let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
-        found = search::search(&problem, baseline, start, variants, say);
+        found = search::search(&problem, renewed.baseline, renewed.start, variants, say);
     }
-    Some((found, noise))
+    (found, noise)
 }
 
 /// Steps hold when new ones change chi² by less than this share of the least gain.
 const SAME_COST: f64 = 0.3;
+
+/// What was found and the baseline, fitted with weights and steps of their own.
+struct Renewed {
+    noise: Vec<Noise>,
+    /// Whether the former weights were good enough.
+    weights_hold: bool,
+    start: Fit,
+    baseline: Fit,
+}
+
+/// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the fast model then
+/// diverges; the case's steps are those that it does so with.
+fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
+    let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
+    let noise = noise::estimate(case, &residuals);
+    let weights_hold = noise.iter().zip(former).all(|(new, old)| new.is_near(old));
+    let setting = found.best.model.setting(case, &found.best.x);
+    case.plan_steps(&setting, &noise)?;
+    case.leave_out_unheld(&setting)?;
+    let problem = open_runs(case, &noise);
+    let start = problem.fit(&found.best.model, &found.best.x)?;
+    let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
+    Some(Renewed { noise, weights_hold, start, baseline })
+}
 
 fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
     Problem { case, runs: case.subset(Sealed::Open), noise }

@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn a_sine_is_followed() {
         let [akima, straight] = errors(|t| (6.0 * t).sin(), |k| k > 5 && k < 290 && k % 7 < 2);
-        assert!(akima < 0.05 * straight && straight > 1e-4, "{akima:e} {straight:e}");
+        assert!(akima < 0.15 * straight && straight > 1e-4, "{akima:e} {straight:e}");
     }
 
     /// Where a ramp ends in a rest, or turns, samples are lost.
