@@ -3,7 +3,7 @@
 #
 # The other way round, a run is continued from here on any machine, without the recordings of the cases that are done:
 #   mkdir -p OUT/cases && cp proof/seals.txt OUT/cases/ && cp proof/rows.jsonl OUT/
-#   smam proof --cases N --nothing N --seed 2026 --out OUT
+#   smam proof --cases N --nothing N --seed 2027 --out OUT
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -15,7 +15,7 @@ out=${1%/}
 
 mkdir -p "$here/sealed" "$here/answers"
 cp "$out/cases/seals.txt" "$out/rows.jsonl" "$here/"
-for file in score.json table.md proof.svg; do
+for file in score.json table.md proof.svg ceiling.jsonl settling.jsonl; do
     if [ -s "$out/$file" ]; then cp "$out/$file" "$here/"; fi
 done
 # Of the cases that are done; those of an earlier part stand here already.
@@ -26,5 +26,9 @@ sed 's/^{"name":"\([^"]*\)".*/\1/' "$out/rows.jsonl" | while read -r name; do
         sed "s#\"$out/cases/#\"cases/#" "$out/answers/$name/diagnosis.json" >"$here/answers/$name.json"
     fi
     [ -s "$here/sealed/$name.json" ] || { echo "$name: its sealed answer is neither here nor in $out" >&2; exit 1; }
+done
+# What a run with another seed has left here.
+for file in "$here"/sealed/*.json "$here"/answers/*.json; do
+    grep -q "^{\"name\":\"$(basename "$file" .json)\"" "$here/rows.jsonl" || rm "$file"
 done
 echo "$(wc -l <"$here/rows.jsonl") cases"

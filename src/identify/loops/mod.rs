@@ -30,6 +30,7 @@ mod data;
 mod form;
 mod intervals;
 mod problem;
+mod scout;
 mod search;
 mod swarm;
 mod warnings;

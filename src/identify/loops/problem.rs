@@ -26,8 +26,15 @@ impl<'a> Problem<'a> {
     pub fn new(runs: &'a [LoopRun], form: Form, scale: &LoopScale) -> Self {
         let specs = form.parameters(scale);
         let free = (0..specs.len()).filter(|&i| specs[i].fixed.is_none()).collect();
-        let counted = runs.iter().flat_map(|r| &r.output_mm).filter(|y| y.is_finite()).count();
+        let counted = counted_samples(runs);
         Self { runs, specs, blank: form.blank(scale), free, counted }
+    }
+
+    /// The same form on other runs, its bounds as they are.
+    pub fn on<'b>(&self, runs: &'b [LoopRun]) -> Problem<'b> {
+        let counted = counted_samples(runs);
+        let (specs, blank, free) = (self.specs.clone(), self.blank.clone(), self.free.clone());
+        Problem { runs, specs, blank, free, counted }
     }
 
     /// The free parameters' specifications.
@@ -166,6 +173,11 @@ impl<'a> Problem<'a> {
     pub fn bouc_wen(&self) -> Option<DisplacementModel<f64>> {
         self.blank.bouc_wen()
     }
+}
+
+/// Samples of the output that count.
+pub(super) fn counted_samples(runs: &[LoopRun]) -> usize {
+    runs.iter().flat_map(|r| &r.output_mm).filter(|y| y.is_finite()).count()
 }
 
 /// Model and measured where measured counts.

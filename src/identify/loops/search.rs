@@ -6,6 +6,7 @@ use super::super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise_wi
 use super::cma::{CmaOptions, cma};
 use super::form::ParameterSpec;
 use super::problem::Problem;
+use super::scout::thinned;
 use super::swarm::{SwarmOptions, least, swarm};
 
 /// How parameters are searched.
@@ -69,6 +70,8 @@ const LOOKS: usize = 32;
 const MOST_LOOKS: usize = 1 << 16;
 /// Far below what noise decides; each further step costs a Jacobian.
 const DESCENT: LmOptions = LmOptions { max_iterations: 60, relative_decrease: 1e-7, difference: 1e-6 };
+/// Enough to tell which of several ends is the lowest.
+const SCOUTED: LmOptions = LmOptions { relative_decrease: 1e-4, ..DESCENT };
 
 /// The free parameters of least F; `None` if no place within the bounds gives a model.
 pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
@@ -79,7 +82,11 @@ pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
         Method::Lm => {
             let middle = from_unit(problem, &vec![0.5; problem.free().len()]);
             let drawn = (1..options.starts.clamp(1, MOST_LOOKS)).map(|i| look(problem, i, options.seed));
-            best(std::iter::once(middle).chain(drawn).map(|place| descend(problem, &problem.with_best_gains(&place)?)))
+            best(
+                std::iter::once(middle)
+                    .chain(drawn)
+                    .map(|place| descend(problem, &problem.with_best_gains(&place)?, DESCENT)),
+            )
         }
         Method::Hybrid => hybrid(problem, options),
     }
@@ -93,20 +100,54 @@ fn best(found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
     Some(Found { evaluations, ..best }).filter(|f| f.mean_square_mm2.is_finite())
 }
 
-/// Looks around with the gains solved for, then descends from the best places.
+/// Looks around with the gains solved for, and descends from the best places and from the middle; of a long loop all that on a part
+/// of its samples, and then to the end on all of them.
 fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
+    let Some(runs) = thinned(problem.runs) else {
+        let ends = descend_all(problem, options, DESCENT);
+        return best(ends.into_iter().map(Some));
+    };
+    let scout = problem.on(&runs);
+    let ends = descend_all(&scout, options, SCOUTED);
+    let least = ends.first()?.mean_square_mm2;
+    let evaluations: usize = ends.iter().map(|f| f.evaluations).sum();
+    let mut tried: Vec<Vec<f64>> = Vec::new();
+    for end in ends.into_iter().filter(|f| f.mean_square_mm2 < AS_GOOD * least) {
+        if !tried.iter().any(|place| is_near(problem, place, &end.parameters)) {
+            tried.push(end.parameters);
+        }
+    }
+    let found = best(tried.iter().map(|place| descend(problem, place, DESCENT)))?;
+    // Those on a part of the samples count as that part.
+    let scouted = (evaluations * scout.counted()).div_ceil(problem.counted());
+    Some(Found { evaluations: found.evaluations + scouted, ..found })
+}
+
+/// Ends of descents that are gone on with: those whose F is no more than this many times the least.
+const AS_GOOD: f64 = 1.3;
+/// Share of each parameter's range within which two ends are one.
+const ONE_PLACE: f64 = 0.02;
+
+fn is_near(problem: &Problem<'_>, a: &[f64], b: &[f64]) -> bool {
+    let apart = |((spec, a), b): ((&&ParameterSpec, &f64), &f64)| (a - b).abs() / (spec.max - spec.min);
+    problem.free().iter().zip(a).zip(b).map(apart).all(|share| share < ONE_PLACE)
+}
+
+/// Where descents end from the best of some places and from the middle, lowest first. The first carries the evaluations of the looks.
+fn descend_all(problem: &Problem<'_>, options: &SearchOptions, until: LmOptions) -> Vec<Found> {
     let count = LOOKS.max(options.starts.next_power_of_two()).min(MOST_LOOKS);
     let places = (0..count).filter_map(|i| problem.with_best_gains(&look(problem, i, options.seed)));
-    let mut looks: Vec<(f64, Vec<f64>)> = Vec::with_capacity(count);
     let places: Vec<Vec<f64>> = places.collect();
-    looks.extend(problem.mean_squares(&places).into_iter().zip(places));
+    let mut looks: Vec<(f64, Vec<f64>)> = problem.mean_squares(&places).into_iter().zip(places).collect();
     looks.retain(|(f, _)| f.is_finite());
     looks.sort_by(|a, b| a.0.total_cmp(&b.0));
     // The middle too: in a box with forbidden corners it is often the surest start.
     let middle = problem.with_best_gains(&from_unit(problem, &vec![0.5; problem.free().len()]));
     let starts = looks.into_iter().map(|(_, place)| place).take(options.starts.max(1)).chain(middle);
-    let found = best(starts.map(|place| descend(problem, &place)))?;
-    Some(Found { evaluations: found.evaluations + 2 * count + 1, ..found })
+    let mut ends: Vec<Found> = starts.filter_map(|place| descend(problem, &place, until)).collect();
+    ends.sort_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
+    ends.iter_mut().take(1).for_each(|f| f.evaluations += 2 * count + 1);
+    ends
 }
 
 /// A place of the scrambled Sobol sequence over the box.
@@ -147,10 +188,9 @@ fn from_unit(problem: &Problem<'_>, place: &[f64]) -> Vec<f64> {
     problem.free().iter().zip(place).map(value).collect()
 }
 
-fn descend(problem: &Problem<'_>, start: &[f64]) -> Option<Found> {
+fn descend(problem: &Problem<'_>, start: &[f64], until: LmOptions) -> Option<Found> {
     let bounds: Vec<Bounds> = problem.free().iter().map(|s| Bounds { min: s.min, max: s.max }).collect();
     let (residuals, slopes) = (|x: &[f64]| problem.residuals(x), |x: &[f64]| problem.slopes(x));
-    let LmResult { parameters, cost, evaluations } =
-        minimise_with_slopes(&residuals, &slopes, start, &bounds, DESCENT)?;
+    let LmResult { parameters, cost, evaluations } = minimise_with_slopes(&residuals, &slopes, start, &bounds, until)?;
     Some(Found { parameters, mean_square_mm2: cost / problem.counted() as f64, evaluations })
 }
