@@ -66,12 +66,15 @@ pub struct Found {
 
 /// Places of the hybrid's look around, at least; a power of two, as the sequence likes it.
 const LOOKS: usize = 32;
+/// At most so many on a part of the samples, where they cost little: as many as the box has corners, for with many parameters most places
+/// are no model.
+const MOST_SCOUT_LOOKS: usize = 128;
 /// As far as the sequence goes.
 const MOST_LOOKS: usize = 1 << 16;
 /// Far below what noise decides; each further step costs a Jacobian.
 const DESCENT: LmOptions = LmOptions { max_iterations: 60, relative_decrease: 1e-7, difference: 1e-6 };
 /// Enough to tell which of several ends is the lowest.
-const SCOUTED: LmOptions = LmOptions { relative_decrease: 1e-4, ..DESCENT };
+const SCOUTED: LmOptions = LmOptions { relative_decrease: 1e-6, ..DESCENT };
 
 /// The free parameters of least F; `None` if no place within the bounds gives a model.
 pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
@@ -103,12 +106,14 @@ fn best(found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
 /// Looks around with the gains solved for, and descends from the best places and from the middle; of a long loop all that on a part
 /// of its samples, and then to the end on all of them.
 fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
+    let starts = options.starts.max(1);
     let Some(runs) = thinned(problem.runs) else {
-        let ends = descend_all(problem, options, DESCENT);
+        let ends = descend_all(problem, LOOKS, starts, options.seed, DESCENT);
         return best(ends.into_iter().map(Some));
     };
     let scout = problem.on(&runs);
-    let ends = descend_all(&scout, options, SCOUTED);
+    let looks = 2usize.saturating_pow(problem.free().len() as u32).clamp(LOOKS, MOST_SCOUT_LOOKS);
+    let ends = descend_all(&scout, looks, starts, options.seed, SCOUTED);
     let least = ends.first()?.mean_square_mm2;
     let evaluations: usize = ends.iter().map(|f| f.evaluations).sum();
     let mut tried: Vec<Vec<f64>> = Vec::new();
@@ -134,17 +139,17 @@ fn is_near(problem: &Problem<'_>, a: &[f64], b: &[f64]) -> bool {
 }
 
 /// Where descents end from the best of some places and from the middle, lowest first. The first carries the evaluations of the looks.
-fn descend_all(problem: &Problem<'_>, options: &SearchOptions, until: LmOptions) -> Vec<Found> {
-    let count = LOOKS.max(options.starts.next_power_of_two()).min(MOST_LOOKS);
-    let places = (0..count).filter_map(|i| problem.with_best_gains(&look(problem, i, options.seed)));
+fn descend_all(problem: &Problem<'_>, looks: usize, starts: usize, seed: u64, until: LmOptions) -> Vec<Found> {
+    let count = looks.max(starts.next_power_of_two()).min(MOST_LOOKS);
+    let places = (0..count).filter_map(|i| problem.with_best_gains(&look(problem, i, seed)));
     let places: Vec<Vec<f64>> = places.collect();
     let mut looks: Vec<(f64, Vec<f64>)> = problem.mean_squares(&places).into_iter().zip(places).collect();
     looks.retain(|(f, _)| f.is_finite());
     looks.sort_by(|a, b| a.0.total_cmp(&b.0));
     // The middle too: in a box with forbidden corners it is often the surest start.
     let middle = problem.with_best_gains(&from_unit(problem, &vec![0.5; problem.free().len()]));
-    let starts = looks.into_iter().map(|(_, place)| place).take(options.starts.max(1)).chain(middle);
-    let mut ends: Vec<Found> = starts.filter_map(|place| descend(problem, &place, until)).collect();
+    let places = looks.into_iter().map(|(_, place)| place).take(starts).chain(middle);
+    let mut ends: Vec<Found> = places.filter_map(|place| descend(problem, &place, until)).collect();
     ends.sort_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
     ends.iter_mut().take(1).for_each(|f| f.evaluations += 2 * count + 1);
     ends
