@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use crate::effects::Effect;
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
-use crate::recording::{PiecewiseLinear, Recording, RecordingSet, Role, RunUse};
+use crate::recording::{Recording, RecordingSet, Role, RunUse};
 use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
 use crate::system::{Twin, TwinRun};
 
 use super::DiagnoseError;
 use super::case::{Case, CaseChannel, CaseParameter, CaseRun};
+use super::instants::{at_times, lead_in, with_points_of};
 use super::thin::thin;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
@@ -150,22 +151,6 @@ impl Case {
     }
 }
 
-/// The recorded times and those at which an input has a point that was not recorded (samples that a logger lost), in order.
-fn with_points_of(lines: &[PiecewiseLinear], recorded_s: &[f64]) -> Vec<f64> {
-    let mut times_s = recorded_s.to_vec();
-    times_s.extend(lines.iter().flat_map(|line| line.times_s()));
-    times_s.sort_by(f64::total_cmp);
-    times_s.dedup();
-    times_s
-}
-
-/// What was recorded at each of more times; NaN at those that were not recorded.
-fn at_times(times_s: &[f64], recorded_s: &[f64], values: &[f64]) -> Vec<f64> {
-    let mut samples = recorded_s.iter().zip(values).peekable();
-    let at = |t: &f64| samples.next_if(|(recorded, _)| *recorded == t).map_or(f64::NAN, |(_, value)| *value);
-    times_s.iter().map(at).collect()
-}
-
 impl CaseRun {
     fn keep(&mut self, range: std::ops::Range<usize>) {
         let end = self.lead_in + range.end;
@@ -254,29 +239,4 @@ fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, Diagnose
         })
     };
     scene.file.calibrate.iter().map(parameter).collect()
-}
-
-/// Speed of the way from rest to the first recorded plunger position, m/s, and the rest after it, s.
-const LEAD_IN_M_S: f64 = 2.0e-3;
-const LEAD_IN_REST_S: f64 = 1.0;
-
-/// Lets a run that begins with a plunger away from zero come there from the scene's start. Returns how many instants.
-fn lead_in(drive: &mut TwinRun) -> usize {
-    let farthest = drive.inputs.iter().filter_map(|x| x.first()).fold(0.0f64, |m, x| m.max(x.abs()));
-    if farthest < 5.0e-5 {
-        return 0;
-    }
-    let start = drive.times_s[0];
-    let moving = farthest / LEAD_IN_M_S;
-    let total = moving + LEAD_IN_REST_S;
-    let count = (total / 0.02).ceil() as usize;
-    let at = |i: usize| total * i as f64 / count as f64;
-    let times: Vec<f64> = (0..count).map(|i| start - total + at(i)).collect();
-    for input in &mut drive.inputs {
-        let to = input[0];
-        let way: Vec<f64> = (0..count).map(|i| to * (at(i) / moving).min(1.0)).collect();
-        input.splice(0..0, way);
-    }
-    drive.times_s.splice(0..0, times);
-    count
 }

@@ -39,6 +39,7 @@ mod files;
 mod fit;
 mod full;
 mod hypothesis;
+mod instants;
 mod locate;
 mod model;
 mod noise;
