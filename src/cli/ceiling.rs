@@ -33,7 +33,7 @@ pub fn write_ceiling(
     write(&out.join("ceiling.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
     let mean = |is: &dyn Fn(Hiding) -> bool, value: &dyn Fn(&Ceiling) -> f64| {
         let own: Vec<f64> = found.iter().filter(|(_, h)| is(*h)).map(|(c, _)| value(c)).collect();
-        format!("{:.1} % of {}", 100.0 * own.iter().sum::<f64>() / own.len() as f64, own.len())
+        mean_share(&own)
     };
     super::print_text(&format!(
         "\n### At best, for one who knows the plant\n\n| | |\n|---|---|\n| detected | {} |\n| effect right (one effect) | {} |\n| told from everything else (not listed) | {} |\n",
@@ -76,14 +76,21 @@ pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folder
     let lines: Result<Vec<String>, serde_json::Error> = found.iter().map(|(s, _)| serde_json::to_string(s)).collect();
     write(&out.join("settling.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
     let table: String = found.iter().map(|(_, line)| line.as_str()).collect();
-    let mean = found.iter().map(|(s, _)| s.is_right()).sum::<f64>() / found.len() as f64;
+    let right: Vec<f64> = found.iter().map(|(s, _)| s.is_right()).collect();
     super::print_text(&format!(
         "\n### One more experiment, at best, for one who knows the plant\n\n\
          | case | hidden | taken for | promised, sigma | at best, sigma | right at best | settled |\n|---|---|---|---|---|---|---|\n\
-         {table}\nRight at best: {:.1} % of {}\n",
-        100.0 * mean,
-        found.len()
+         {table}\nRight at best: {}\n",
+        mean_share(&right)
     ))
+}
+
+/// Mean of shares in words.
+fn mean_share(shares: &[f64]) -> String {
+    if shares.is_empty() {
+        return "no such case".to_owned();
+    }
+    format!("{:.1} % of {}", 100.0 * shares.iter().sum::<f64>() / shares.len() as f64, shares.len())
 }
 
 /// An effect of the answer with such a probability is not open.
