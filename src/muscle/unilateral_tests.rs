@@ -94,6 +94,8 @@ proptest! {
             // Slopes jump at the touch: look only where both neighbours are on the same side.
             let sides = [&left, &right, &under, &over].map(|s| s.dvolume_dp > 0.0);
             prop_assume!(sides.iter().all(|s| *s == sides[0]));
+            // Near its pressure maximum an inflating wall runs away: there no step is small.
+            prop_assume!((over.dvolume_dp - under.dvolume_dp).abs() <= 0.01 * state.dvolume_dp);
             let pull = (pi(e + he, p) - pi(e - he, p)) / (2.0 * he);
             prop_assert!((pull - state.pull_n).abs() < 1e-6 * (1.0 + pull.abs()));
             let volume = (pi(e, p - hp) - pi(e, p + hp)) / (2.0 * hp);
