@@ -8,7 +8,7 @@ use smam::proof::{Folders, ProofError, Row, VISIBLE, open};
 use smam::recording::read_csv;
 
 use super::CliError;
-use super::files::write;
+use super::score::write_rows;
 
 /// Computes the ceiling of the first `count` visible cases that hide one thing, writes ceiling.jsonl and prints the means.
 pub fn write_ceiling(
@@ -28,9 +28,8 @@ pub fn write_ceiling(
     };
     let found: Vec<Option<(Ceiling, Hiding)>> = chosen.par_iter().map(one).collect::<Result<_, _>>()?;
     let found: Vec<(Ceiling, Hiding)> = found.into_iter().flatten().collect();
-    let json = |e: serde_json::Error| CliError::Failed(format!("a ceiling cannot be written as JSON: {e}"));
-    let lines: Result<Vec<String>, serde_json::Error> = found.iter().map(|(c, _)| serde_json::to_string(c)).collect();
-    write(&out.join("ceiling.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
+    let ceilings: Vec<&Ceiling> = found.iter().map(|(c, _)| c).collect();
+    write_rows(&ceilings, &out.join("ceiling.jsonl"))?;
     let mean = |is: &dyn Fn(Hiding) -> bool, value: &dyn Fn(&Ceiling) -> f64| {
         let own: Vec<f64> = found.iter().filter(|(_, h)| is(*h)).map(|(c, _)| value(c)).collect();
         mean_share(&own)
@@ -72,9 +71,8 @@ pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folder
     };
     let found: Vec<Option<(Settling, String)>> = rows.par_iter().map(|r| one(&r)).collect::<Result<_, _>>()?;
     let found: Vec<(Settling, String)> = found.into_iter().flatten().collect();
-    let json = |e: serde_json::Error| CliError::Failed(format!("what could be decided cannot be written as JSON: {e}"));
-    let lines: Result<Vec<String>, serde_json::Error> = found.iter().map(|(s, _)| serde_json::to_string(s)).collect();
-    write(&out.join("settling.jsonl"), &format!("{}\n", lines.map_err(json)?.join("\n")))?;
+    let settlings: Vec<&Settling> = found.iter().map(|(s, _)| s).collect();
+    write_rows(&settlings, &out.join("settling.jsonl"))?;
     let table: String = found.iter().map(|(_, line)| line.as_str()).collect();
     let right: Vec<f64> = found.iter().map(|(s, _)| s.is_right()).collect();
     super::print_text(&format!(

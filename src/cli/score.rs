@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use rayon::prelude::*;
+use serde::Serialize;
 use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
 
 use super::CliError;
@@ -90,11 +91,11 @@ pub fn open_all<'a>(
 }
 
 fn not_json(error: serde_json::Error) -> CliError {
-    CliError::Failed(format!("the score cannot be written as JSON: {error}"))
+    CliError::Failed(format!("this cannot be written as JSON: {error}"))
 }
 
-/// Writes opened cases, one a line.
-pub fn write_rows(rows: &[Row], path: &Path) -> Result<(), CliError> {
+/// Writes rows, opened cases say, one a line.
+pub fn write_rows<T: Serialize>(rows: &[T], path: &Path) -> Result<(), CliError> {
     let lines: Vec<String> = rows.iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(not_json)?;
     write(path, &format!("{}\n", lines.join("\n")))
 }

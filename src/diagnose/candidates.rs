@@ -87,10 +87,10 @@ fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
     Scene::from_file(file, &case.scene.path).is_ok()
 }
 
-/// Whether the joints that the cables bend are flexures, as the bridges beside a tube's notches are: bearings have no notches.
+/// Whether a joint is a flexure, as the bridges beside a tube's notches are: bearings have no notches.
 fn has_flexures(scene: &Scene) -> bool {
-    let joints = scene.file.mechanism.iter().flat_map(|m| &m.joint);
-    joints.into_iter().next().is_some_and(|j| j.stiffness_n_m_rad.is_some_and(|k| k > 0.0))
+    let mut joints = scene.file.mechanism.iter().flat_map(|m| &m.joint);
+    joints.any(|j| j.stiffness_n_m_rad.is_some_and(|k| k > 0.0))
 }
 
 /// Starting numbers. Where a second number bends the law (a time, a threshold), several are tried.

@@ -97,7 +97,11 @@ pub(super) fn prune(
         let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
         let best = fewer.into_iter().flatten().map(|f| (cost(&f), f)).min_by(|a, b| a.0.total_cmp(&b.0));
         let with_all = cost(&found.best);
-        let enough = with_all - LEFT_LESS * (with_all - sealed.noise_cost()).max(0.0);
+        let enough = match with_all.is_finite() {
+            true => with_all - LEFT_LESS * (with_all - sealed.noise_cost()).max(0.0),
+            // Whatever the fast model can follow is better than what it cannot.
+            false => f64::MAX,
+        };
         let Some((_, fewer)) = best.filter(|(c, _)| *c <= enough) else { break };
         say(format!(
             "{} foretells the sealed runs better, chi2 {:.0} instead of {:.0}",

@@ -208,8 +208,8 @@ fn explain(
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
     say("sealed runs".to_owned());
-    let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let found = confirm::prune(&open, &sealed, found, &variants, say);
+    let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
     let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;

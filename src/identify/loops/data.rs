@@ -19,7 +19,7 @@ pub struct LoopRun {
 impl LoopRun {
     /// The run of two columns of a recording, of any unit of length; the first `skip_s` drive the model but do not count.
     ///
-    /// A missing input is bridged by a straight line. The model is at rest at the first sample.
+    /// Where the input is missing it goes on as [`Recording::piecewise_si`] says. The model is at rest at the first sample.
     pub fn of(name: &str, recording: &Recording, [input, output]: [&str; 2], skip_s: f64) -> Result<Self, LoopError> {
         let time_s = recording.time_s().to_vec();
         let in_file = |e: RecordingError| e.in_file(name);

@@ -8,8 +8,8 @@ const ENOUGH: usize = 400;
 
 /// The runs with about [`ENOUGH`] samples that count; `None` where they have hardly more.
 ///
-/// Of each stretch of samples the first stays and those where the input is least and greatest: no turn is cut, and a state that
-/// follows the path exactly comes to the same.
+/// Of each stretch of samples the first stays, those where the input is least and greatest (no turn is cut, and a state that follows the
+/// path exactly comes to the same), and the first that shows the output.
 pub(super) fn thinned(runs: &[LoopRun]) -> Option<Vec<LoopRun>> {
     let counted = counted_samples(runs);
     // A stretch without a turn keeps two of its samples.
@@ -23,6 +23,7 @@ fn thin(run: &LoopRun, stretch: usize) -> LoopRun {
     for from in (0..run.time_s.len()).step_by(stretch) {
         let samples = from..(from + stretch).min(run.time_s.len());
         kept.push(from);
+        kept.extend(samples.clone().find(|&i| run.output_mm[i].is_finite()));
         kept.extend(samples.clone().min_by(order));
         kept.extend(samples.max_by(order));
     }
@@ -63,6 +64,15 @@ mod tests {
             assert_eq!(thin.input_mm[at], whole.input_mm[turn]);
         }
         assert!(thin.output_mm[0].is_nan());
+    }
+
+    /// An output that is slower than the input, shown in rows that nothing else would keep.
+    #[test]
+    fn an_output_in_every_fourth_row_is_still_seen() {
+        let mut slow = run(10_000);
+        slow.output_mm.iter_mut().enumerate().filter(|(i, _)| i % 4 != 1).for_each(|(_, y)| *y = f64::NAN);
+        let thin = thinned(&[slow]).expect("many samples");
+        assert!(counted_samples(&thin) > ENOUGH / 3, "{}", counted_samples(&thin));
     }
 
     #[test]

@@ -117,7 +117,7 @@ fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
     let least = ends.first()?.mean_square_mm2;
     let evaluations: usize = ends.iter().map(|f| f.evaluations).sum();
     let mut tried: Vec<Vec<f64>> = Vec::new();
-    for end in ends.into_iter().filter(|f| f.mean_square_mm2 < AS_GOOD * least) {
+    for end in ends.into_iter().filter(|f| f.mean_square_mm2 <= AS_GOOD * least) {
         if !tried.iter().any(|place| is_near(problem, place, &end.parameters)) {
             tried.push(end.parameters);
         }
