@@ -1,13 +1,15 @@
 //! Step 7, the consequences: what does not hold on sealed runs is taken back, and the full scene has the last word.
 
-use super::DiagnoseError;
 use super::answer::Proof;
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
 use super::prove;
 use super::search::{self, Found};
+use super::steady;
+use super::verdict;
 use super::without::Step;
+use super::{DiagnoseError, misfit};
 use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.
@@ -15,8 +17,15 @@ use rayon::prelude::*;
 pub enum Confirmed {
     /// It holds, or there is nothing to hold.
     Yes,
-    /// It explains the open runs for the most part, and not the sealed ones: not the whole truth.
+    /// It explains the open runs for the most part, and not the sealed ones, or a run contradicts it: not the whole truth.
     InPart,
+}
+
+impl Confirmed {
+    /// Confirmed where both are.
+    pub fn and(self, other: Self) -> Self {
+        if other == Self::InPart { other } else { self }
+    }
 }
 
 /// Takes back what does not hold on the sealed runs; what explains most of the open ones is kept as the nearest known.
@@ -112,6 +121,37 @@ pub(super) fn prune(
         found = search::settled(open, found, fewer, variants, say);
     }
     found
+}
+
+/// Takes back the effects that a run by itself would have at a size that their law cannot: they stand in for something
+/// else. Where the rest does not explain the recordings either, all stays as the nearest known, which says no more than that.
+pub(super) fn take_back_impossible(
+    whole: &Problem,
+    open: &Problem,
+    found: Found,
+    variants: &[Variant],
+    warnings: &mut Vec<String>,
+) -> (Found, Confirmed) {
+    let explains = |found: &Found| {
+        let is_left = !found.best.model.effects.is_empty();
+        is_left && misfit(whole, found).is_some_and(|(_, excess)| !verdict::is_unknown(found, excess))
+    };
+    if whole.case.is_without(Step::CrossValidation) || !explains(&found) {
+        return (found, Confirmed::Yes);
+    }
+    let mut fewer = found.clone();
+    while let Some((effect, file)) = steady::impossible_size(whole.case, &fewer.best, whole.noise) {
+        let title = fewer.best.model.effects[effect].title();
+        warnings
+            .push(format!("{title} would have a size in {file} that it cannot have: it stands in for something else"));
+        let start = open.start_without(&fewer.best, effect);
+        match open.fit(&fewer.best.model.without(effect), &start).filter(|f| !f.model.effects.is_empty()) {
+            Some(fit) => fewer = search::settled(open, fewer, fit, variants, &|_| {}),
+            None => return (found, Confirmed::InPart),
+        }
+    }
+    let stands = fewer.best.model == found.best.model || explains(&fewer);
+    if stands { (fewer, Confirmed::Yes) } else { (found, Confirmed::InPart) }
 }
 
 /// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.

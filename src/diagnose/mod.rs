@@ -210,8 +210,10 @@ fn explain(
     say("sealed runs".to_owned());
     let found = confirm::prune(&open, &sealed, found, &variants, say);
     let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
+    let (found, possible) = confirm::take_back_impossible(&whole, &open, found, &variants, &mut warnings);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
     let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
+    let confirmed = confirmed.and(possible);
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     let so_far = (&found, &proof, confirmed);
     let hypothesis = hypothesis::weigh_hypotheses(case, &noise, so_far, excess, seed, say);

@@ -174,7 +174,16 @@ fn climb(
         let worthy = candidates(&refits, best, baseline.cost)
             .into_iter()
             .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
-        let Some(winner) = first_that_foretells(problem, best, worthy, say) else { break };
+        let Some(winner) = first_that_foretells(problem, best, worthy, say) else {
+            let Some((together, rivals)) = several_at_once(problem, best, &refits, variants, least) else { break };
+            say(format!("together {}: chi2 {:.0} -> {:.0}", together.model.title(), best.cost, together.cost));
+            (way.best, way.rivals) = (together, rivals);
+            if !seen.is_new(&way.best) {
+                break;
+            }
+            way.look_around(problem, variants);
+            continue;
+        };
         say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
         let winner = winner.clone();
         way.rivals = vec![refits.into_iter().filter(|f| f.model != winner.model).collect()];
@@ -188,6 +197,41 @@ fn climb(
         way.look_around(problem, variants);
     }
     way
+}
+
+/// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which
+/// effects that only imitate another's idealised law do not.
+const TOGETHER: f64 = 0.9;
+/// Misfit per sample, in units of the noise's variance, from which it is worth looking for several at once.
+const MUCH_PER_SAMPLE: f64 = 0.3;
+
+/// Two effects or more that explain together what is left over, where none of them does its share by itself: the first that was found
+/// may stand for another, and then each of the others alone changes little. `None` if they do not, or not on runs left out.
+fn several_at_once(
+    problem: &Problem,
+    before: &Fit,
+    refits: &[Fit],
+    variants: &[Variant],
+    least: f64,
+) -> Option<(Fit, Vec<Vec<Fit>>)> {
+    let left = before.cost - problem.noise_cost();
+    if before.model.effects.is_empty() || left < MUCH_PER_SAMPLE * problem.samples() as f64 {
+        return None;
+    }
+    let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();
+    loop {
+        let (settled, rivals) = settle(problem, best, variants, least, &|_| {});
+        best = settled;
+        if before.cost - best.cost > TOGETHER * left {
+            return foretells(problem, before, &best).then_some((best, rivals));
+        }
+        if best.model.effects.len() >= MOST_EFFECTS {
+            return None;
+        }
+        let screening = screen(problem, &best, variants)?;
+        let refits = refit(problem, &screening, &pick(&screening.screened, least));
+        best = refits.into_iter().next().filter(|f| best.cost - f.cost > least)?;
+    }
 }
 
 /// What was found with another best model, and the rivals of that.

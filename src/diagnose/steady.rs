@@ -9,6 +9,7 @@ use super::model::Sides;
 use super::noise::Noise;
 use super::normal::Normal;
 use super::verdict::is_said;
+use crate::effects::Range;
 
 /// Runs disagree when their sizes spread by this many standard errors and by this share of the size.
 const SIGMA: f64 = 4.0;
@@ -45,6 +46,21 @@ fn size_in(problem: &Problem, fit: &Fit, first: usize, place: usize) -> Option<E
     let half = 1.96 * normal.covariance()[(place, place)].max(0.0).sqrt() * numbers[place].scale;
     let value = fit.x[first + place] + step;
     half.is_finite().then_some(Estimate { value, ci95: [value - half, value + half] })
+}
+
+/// The first effect that a run by itself would have at a size that its law cannot, and that run's file.
+pub fn impossible_size(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<(usize, String)> {
+    sizes_by_run(case, fit, noise).into_iter().find_map(|s| {
+        let range = fit.model.effects[s.effect].spec().parameters[0].range;
+        let (file, _) = s.runs.into_iter().find(|(_, size)| is_outside(*size, range))?;
+        Some((s.effect, file))
+    })
+}
+
+/// Whether a size lies outside a range by [`SIGMA`] standard errors.
+fn is_outside(size: Estimate, range: Range) -> bool {
+    let margin = SIGMA * (size.ci95[1] - size.ci95[0]) / 2.0 / 1.96;
+    size.value + margin < range.min || size.value - margin > range.max
 }
 
 /// Puts the sizes into the answer, and says where runs disagree.
