@@ -2,8 +2,8 @@
 
 use super::error::{HysteresisError, finite};
 use super::{
-    AsymmetricBoucWen, DisplacementModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii, SlipElement,
-    SymmetricBoucWen,
+    AsymmetricBoucWen, DisplacementModel, GrowingDahl, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
+    SlipElement, SymmetricBoucWen,
 };
 use crate::scalar::Scalar;
 use schemars::JsonSchema;
@@ -18,6 +18,7 @@ pub enum HysteresisModel<D> {
     Paper(PaperModel<D>),
     PrandtlIshlinskii(PrandtlIshlinskii<D>),
     MaxwellSlip(MaxwellSlip<D>),
+    GrowingDahl(GrowingDahl<D>),
 }
 
 impl<D> From<DisplacementModel<D>> for HysteresisModel<D> {
@@ -37,7 +38,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Symmetric(model) => Some(DisplacementModel::Symmetric(*model)),
             Self::Asymmetric(model) => Some(DisplacementModel::Asymmetric(*model)),
             Self::Paper(model) => Some(DisplacementModel::Paper(*model)),
-            Self::PrandtlIshlinskii(_) | Self::MaxwellSlip(_) => None,
+            Self::PrandtlIshlinskii(_) | Self::MaxwellSlip(_) | Self::GrowingDahl(_) => None,
         }
     }
 
@@ -63,6 +64,7 @@ impl<D: Scalar> HysteresisModel<D> {
             (Self::Symmetric(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (Self::Asymmetric(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (Self::Paper(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
+            (Self::GrowingDahl(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (_, []) => {}
         }
     }
@@ -76,6 +78,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.output(x_mm, z),
             Self::PrandtlIshlinskii(model) => model.output(x_mm, state),
             Self::MaxwellSlip(model) => model.output(x_mm, state),
+            Self::GrowingDahl(model) => model.output(x_mm, z),
         }
     }
 
@@ -128,6 +131,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::MaxwellSlip(model) => {
                 with(&["offset", "gain", "curvature", "cubic", "growth"], "stiffness", model.elements.len())
             }
+            Self::GrowingDahl(_) => with(&GrowingDahl::<f64>::PARAMETERS, "", 0),
         }
     }
 
@@ -145,6 +149,7 @@ impl<D: Scalar> HysteresisModel<D> {
                 let stiffnesses = m.elements.iter().map(|e| e.stiffness);
                 [m.offset, m.gain, m.curvature, m.cubic, m.growth].into_iter().chain(stiffnesses).collect()
             }
+            Self::GrowingDahl(model) => model.to_array().to_vec(),
         }
     }
 
@@ -157,6 +162,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.check(),
             Self::PrandtlIshlinskii(model) => model.check(),
             Self::MaxwellSlip(model) => model.check(),
+            Self::GrowingDahl(model) => model.check(),
         }
     }
 
@@ -169,6 +175,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.check_loops(),
             Self::PrandtlIshlinskii(model) => model.check_loops(range_mm[0].abs().max(range_mm[1].abs())),
             Self::MaxwellSlip(model) => model.check_loops(range_mm),
+            Self::GrowingDahl(model) => model.check_loops(range_mm),
         }
     }
 }
@@ -215,6 +222,10 @@ impl HysteresisModel<f64> {
                     gate: m.gate,
                     elements,
                 }))
+            }
+            (Self::GrowingDahl(_), values) => {
+                let values: [E; 9] = values.try_into().map_err(|_| wrong("growing Dahl", 9))?;
+                Ok(HysteresisModel::GrowingDahl(GrowingDahl::from_array(values)))
             }
             (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 5 + m.elements.len())),
             (m, _) => Err(wrong("Prandtl-Ishlinskii", m.parameters().len())),

@@ -6,6 +6,7 @@
 
 mod asymmetric;
 mod branch;
+mod dahl;
 mod error;
 mod family;
 mod lanes;
@@ -24,6 +25,7 @@ mod passivity_tests;
 mod path_tests;
 
 pub use asymmetric::AsymmetricBoucWen;
+pub use dahl::GrowingDahl;
 pub use error::HysteresisError;
 pub use family::HysteresisModel;
 pub use lanes::{LANES, mean_squares};

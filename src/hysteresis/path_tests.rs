@@ -47,7 +47,7 @@ fn timed(pieces: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-fn sampling_does_not_matter_to_sums_of_plays_and_sliders() {
+fn sampling_does_not_matter_to_plays_sliders_and_growing_friction() {
     let plays = [(1.0, 0.05), (2.0, 0.2)].map(|(weight, half_width)| PlayElement { weight, half_width });
     let sliders = [(-2.0, 0.1), (-1.0, 0.4)].map(|(stiffness, reach)| SlipElement { stiffness, reach });
     let sum = PrandtlIshlinskii { curvature: 0.1, asymmetry: 0.1, ..PrandtlIshlinskii::classical(7.0, plays.to_vec()) };
@@ -64,6 +64,7 @@ fn sampling_does_not_matter_to_sums_of_plays_and_sliders() {
         HysteresisModel::PrandtlIshlinskii(sum.clone()),
         HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii { rate_s: 0.02, ..sum }),
         HysteresisModel::MaxwellSlip(slip),
+        HysteresisModel::GrowingDahl(GrowingDahl::from_array([0.3, 9.8, 0.9, -0.15, -1.2, 2.0, 1.5, 0.17, -0.08])),
     ] {
         let last = |pieces: usize| -> f64 {
             let (time, path) = timed(pieces);

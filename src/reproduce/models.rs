@@ -21,13 +21,14 @@ struct Rival {
     colour: &'static str,
 }
 
-const RIVALS: [Rival; 6] = [
+const RIVALS: [Rival; 7] = [
     Rival { form: Form::Symmetric, parameters: Some(6.0), paper_mm2: None, colour: VERMILION },
     Rival { form: Form::Asymmetric, parameters: Some(10.0), paper_mm2: Some(0.0435), colour: ORANGE },
     Rival { form: Form::Paper, parameters: Some(7.0), paper_mm2: Some(0.0215), colour: BLUE },
     Rival { form: Form::PrandtlIshlinskii, parameters: None, paper_mm2: None, colour: GREEN },
     Rival { form: Form::MaxwellSlip, parameters: None, paper_mm2: None, colour: PURPLE },
     Rival { form: Form::MaxwellSlipGrowing, parameters: None, paper_mm2: None, colour: "#404040" },
+    Rival { form: Form::DahlGrowing, parameters: None, paper_mm2: None, colour: "#a05a2c" },
 ];
 
 /// Runs that no model has seen, and F of the paper's model there.

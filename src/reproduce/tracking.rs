@@ -17,7 +17,8 @@ use super::{Chapter, ReproduceError, Row};
 const FIGURE: &str = "feedforward";
 const DURATION_S: f64 = 30.0;
 const INTERVAL_S: f64 = 0.01;
-const FORMS: [Form; 4] = [Form::Paper, Form::Asymmetric, Form::PrandtlIshlinskiiRate, Form::MaxwellSlip];
+const FORMS: [Form; 5] =
+    [Form::Paper, Form::Asymmetric, Form::PrandtlIshlinskiiRate, Form::MaxwellSlip, Form::DahlGrowing];
 /// From rest into the wanted motion, s.
 const LEAD_IN_S: f64 = 3.0;
 /// The training run: three sines, Hz, with their shares of the range; none of them is a motion's.

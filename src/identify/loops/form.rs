@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::hysteresis::{
-    AsymmetricBoucWen, Gate, HysteresisModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii, SlipElement,
-    SymmetricBoucWen,
+    AsymmetricBoucWen, Gate, GrowingDahl, HysteresisModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
+    SlipElement, SymmetricBoucWen,
 };
 
 use super::data::LoopScale;
@@ -22,6 +22,8 @@ pub enum Form {
     MaxwellSlip,
     /// With friction that grows, or falls, along the input.
     MaxwellSlipGrowing,
+    /// The same with one state that fades instead of sliders.
+    DahlGrowing,
 }
 
 /// A parameter in a search.
@@ -58,7 +60,7 @@ const SCALE: &str =
 const ONE_SIDED: &str = "the input stays at x >= 0, where this term cannot be told from another one";
 
 impl Form {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Symmetric,
         Self::Asymmetric,
         Self::Paper,
@@ -66,6 +68,7 @@ impl Form {
         Self::PrandtlIshlinskiiRate,
         Self::MaxwellSlip,
         Self::MaxwellSlipGrowing,
+        Self::DahlGrowing,
     ];
 
     /// As on the command line.
@@ -78,6 +81,7 @@ impl Form {
             Self::PrandtlIshlinskiiRate => "prandtl-ishlinskii-rate",
             Self::MaxwellSlip => "maxwell-slip",
             Self::MaxwellSlipGrowing => "maxwell-slip-growing",
+            Self::DahlGrowing => "dahl-growing",
         }
     }
 
@@ -94,6 +98,7 @@ impl Form {
             }
             Self::MaxwellSlip => slipping(Gate::Tanh, &grid),
             Self::MaxwellSlipGrowing => slipping(Gate::None, &WIDE_GRID.map(|share| share * scale.stroke_mm())),
+            Self::DahlGrowing => HysteresisModel::GrowingDahl(GrowingDahl::from_array([0.0; 9])),
         }
     }
 
@@ -108,6 +113,7 @@ impl Form {
             Self::PrandtlIshlinskiiRate => vec![5.0, -0.1, 0.04, 0.03, 1.0, 1.2, 0.8, 1.0],
             Self::MaxwellSlip => vec![0.0, 9.0, -0.1, 0.0, 0.0, -1.0, -1.5, -1.0, -0.8],
             Self::MaxwellSlipGrowing => vec![0.5, 9.0, -0.1, 0.05, 0.4, -0.6, -0.9, -0.7, -0.6, -0.5],
+            Self::DahlGrowing => vec![0.3, 9.8, 0.9, -0.15, -1.2, 2.0, 1.5, 0.17, -0.08],
         }
     }
 
@@ -154,6 +160,10 @@ impl Form {
                 let [low, high] = scale.input_mm;
                 let most = if low < 0.0 { (0.9 / -low).min(10.0 / stroke) } else { 10.0 / stroke };
                 plain(-0.9 / high.abs().max(0.1 * stroke), most, GROWING)
+            }
+            "bend" => {
+                let most = 0.45 / scale.input_mm[0].abs().max(scale.input_mm[1].abs());
+                plain(-most, most, "the way that friction slides must not turn")
             }
             _ => gain(3.0 * slope.abs(), GAIN),
         }
