@@ -24,7 +24,7 @@ use super::identify_page::page;
 pub struct IdentifyArguments {
     /// Folder with a recordings.toml, or a CSV or Parquet file
     recordings: PathBuf,
-    /// symmetric, asymmetric, paper, prandtl-ishlinskii, prandtl-ishlinskii-rate, maxwell-slip or maxwell-slip-growing; may be given several times
+    /// symmetric, asymmetric, paper, prandtl-ishlinskii, prandtl-ishlinskii-rate, maxwell-slip, maxwell-slip-growing or dahl-growing; may be given several times
     #[arg(long, value_name = "NAME", default_value = "paper")]
     model: Vec<Form>,
     /// pso (as in the paper), cma, lm or hybrid

@@ -141,24 +141,52 @@ fn is_near(problem: &Problem<'_>, a: &[f64], b: &[f64]) -> bool {
 /// Where descents end from the best of some places and from the middle, lowest first. The first carries the evaluations of the looks.
 fn descend_all(problem: &Problem<'_>, looks: usize, starts: usize, seed: u64, until: LmOptions) -> Vec<Found> {
     let count = looks.max(starts.next_power_of_two()).min(MOST_LOOKS);
-    let places = (0..count).filter_map(|i| problem.with_best_gains(&look(problem, i, seed)));
-    let places: Vec<Vec<f64>> = places.collect();
-    let mut looks: Vec<(f64, Vec<f64>)> = problem.mean_squares(&places).into_iter().zip(places).collect();
-    looks.retain(|(f, _)| f.is_finite());
-    looks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let solved = |i: usize| {
+        let unit = unit_look(problem, i, seed);
+        Some((problem.with_best_gains(&from_unit(problem, &unit))?, unit))
+    };
+    let (places, units): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..count).filter_map(solved).unzip();
+    let values = problem.mean_squares(&places);
+    let mut order: Vec<usize> = (0..places.len()).filter(|&i| values[i].is_finite()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let chosen = spread(problem, &order, &units, starts);
     // The middle too: in a box with forbidden corners it is often the surest start.
     let middle = problem.with_best_gains(&from_unit(problem, &vec![0.5; problem.free().len()]));
-    let places = looks.into_iter().map(|(_, place)| place).take(starts).chain(middle);
+    let places = chosen.into_iter().map(|i| places[i].clone()).chain(middle);
     let mut ends: Vec<Found> = places.filter_map(|place| descend(problem, &place, until)).collect();
     ends.sort_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
     ends.iter_mut().take(1).for_each(|f| f.evaluations += 2 * count + 1);
     ends
 }
 
+/// Starts differ by this share of the range in a number that is no gain, or more: the lowest places of a look around may all lie in
+/// one valley, and the next valley may be the deeper one.
+const APART: f64 = 0.25;
+
+/// The lowest places that lie apart; the lowest of the others where too few do.
+fn spread(problem: &Problem<'_>, order: &[usize], units: &[Vec<f64>], count: usize) -> Vec<usize> {
+    let shapes: Vec<usize> = (0..problem.free().len()).filter(|&d| !problem.free()[d].is_gain).collect();
+    let is_apart = |a: usize, b: usize| shapes.iter().any(|&d| (units[a][d] - units[b][d]).abs() >= APART);
+    let mut chosen: Vec<usize> = Vec::new();
+    for &i in order {
+        if chosen.len() < count && chosen.iter().all(|&other| is_apart(i, other)) {
+            chosen.push(i);
+        }
+    }
+    let others: Vec<usize> = order.iter().copied().filter(|i| !chosen.contains(i)).collect();
+    chosen.extend(others.into_iter().take(count - chosen.len()));
+    chosen
+}
+
 /// A place of the scrambled Sobol sequence over the box.
 fn look(problem: &Problem<'_>, index: usize, seed: u64) -> Vec<f64> {
+    from_unit(problem, &unit_look(problem, index, seed))
+}
+
+/// The same in the unit box.
+fn unit_look(problem: &Problem<'_>, index: usize, seed: u64) -> Vec<f64> {
     let coordinate = |d: usize| f64::from(sobol_burley::sample(index as u32, d as u32, (seed ^ (seed >> 32)) as u32));
-    from_unit(problem, &(0..problem.free().len()).map(coordinate).collect::<Vec<_>>())
+    (0..problem.free().len()).map(coordinate).collect()
 }
 
 fn by_swarm(problem: &Problem<'_>, options: SwarmOptions, seed: u64) -> Option<Found> {
