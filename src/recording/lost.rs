@@ -1,9 +1,10 @@
 //! What an input did while the logger lost samples.
 
-/// A stretch without samples up to so many median intervals, and up to so long (s), is taken for lost samples; what is longer
-/// is a pause, or the corner points of a programme, and straight.
+/// A stretch without samples up to so many median intervals is taken for lost samples; what is longer is a pause, or the corner
+/// points of a programme, and straight.
 const MOST_LOST: f64 = 10.5;
-const LONGEST_S: f64 = 0.1;
+/// And up to so long, s.
+pub const LONGEST_LOST_S: f64 = 0.1;
 /// An interval of so many medians lacks at least one sample.
 const LEAST_LOST: f64 = 1.5;
 /// What is straight on both sides bends by less than this share of what it bends in between.
@@ -55,7 +56,7 @@ fn lost(interval_s: f64, median_s: f64) -> usize {
 
 fn is_short(interval_s: f64, median_s: f64) -> bool {
     // Clocks in floating point: ten intervals of 10 ms are a little more than 0.1 s.
-    interval_s <= MOST_LOST * median_s && interval_s <= LONGEST_S * (1.0 + 1e-6)
+    interval_s <= MOST_LOST * median_s && interval_s <= LONGEST_LOST_S * (1.0 + 1e-6)
 }
 
 /// How many samples a recording lacks between zero and its first one.

@@ -51,6 +51,7 @@ pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use folder_keys::did_you_mean;
 pub use formats::{FileFormat, read_recording};
+pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;

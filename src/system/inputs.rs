@@ -35,4 +35,12 @@ impl InputSource {
             Self::Recorded(samples) => samples.value(time_s),
         }
     }
+
+    /// Where a recorded channel begins, s.
+    pub fn begins_s(&self) -> Option<f64> {
+        match self {
+            Self::Program(_) => None,
+            Self::Recorded(samples) => samples.times_s().first().copied(),
+        }
+    }
 }

@@ -286,6 +286,24 @@ mod tests {
         assert!(worst < 0.01, "{worst} mm");
     }
 
+    /// Of a ramp that the logger joins late the rig has done the first part all the same.
+    #[test]
+    fn a_recording_that_lost_its_first_samples_is_played_from_zero() {
+        let ramp = |first: usize| {
+            let time_s: Vec<f64> = (first..200).map(|i| i as f64 * 0.01).collect();
+            let plunger = time_s.iter().map(|t| 0.5 * t).collect();
+            let recording = Recording::new(time_s.clone(), vec![Channel::new("plunger_mm", plunger)]).expect("rising");
+            let mut simulation = Simulation::new(Scene::load("muscle_bench", &[]).expect("stock")).expect("builds");
+            let line = recording.piecewise_si("plunger_mm").expect("there");
+            simulation.set_input("plunger_mm", InputSource::Recorded(line));
+            let run = record(&mut simulation, &Schedule(time_s)).expect("runs");
+            run.channel("elongation_mm").expect("there").values.clone()
+        };
+        let (whole, late) = (ramp(0), ramp(5));
+        let worst = whole[5..].iter().zip(&late).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-6, "{worst} mm");
+    }
+
     #[test]
     fn a_driver_of_an_unknown_channel_is_refused() {
         let scene = Scene::load("muscle_bench", &[]).expect("stock");

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::mechanism::Mechanism;
+use crate::recording::LONGEST_LOST_S;
 use crate::scene::Scene;
 
 use super::build::{Built, Displacement, build};
@@ -145,9 +146,11 @@ impl Simulation {
         }
     }
 
-    /// Starts the clock elsewhere than at zero: a recording's first instant.
+    /// Starts the clock elsewhere than at zero: a recording's first instant, or that of an input of which the first samples were lost
+    /// and put back ([`crate::recording::Recording::piecewise_si`]).
     pub fn start_at(&mut self, time_s: f64) {
-        self.time_s = time_s;
+        let begin_s = self.inputs.iter().filter_map(InputSource::begins_s).fold(time_s, f64::min);
+        self.time_s = if time_s - begin_s <= LONGEST_LOST_S { begin_s } else { time_s };
         self.hold_spans();
     }
 
