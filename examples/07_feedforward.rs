@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let output_mm = play(&train_s, &input_mm)?;
     let run = LoopRun { name: "training".to_owned(), time_s: train_s, input_mm, output_mm };
-    let found = identify(&[run], Form::MaxwellSlip, &SearchOptions::default())?;
+    let found = identify(&[run], Form::DahlGrowing, &SearchOptions::default())?;
     // A wanted motion with other frequencies.
     let time_s = times(30.0, 0.01);
     let wanted_mm: Vec<f64> = time_s

@@ -54,6 +54,20 @@ fn what_the_stock_rig_lacks_is_said_with_what_brings_it() {
     assert!(stock["remark"].as_str().is_some_and(|r| r.contains("lacks")));
 }
 
+/// Taught by one run and turned round, along motions that it has not seen: the error shrinks as far as each rig's goal says.
+#[test]
+fn val_feedforward_meets_its_goals() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert!(reproduce(&["feedforward"], folder.path()).status.success());
+    let rows = rows(folder.path());
+    let shrinks = |r: &&Value| r["quantity"].as_str().is_some_and(|q| q.ends_with("feedforward shrinks the error"));
+    let judged: Vec<&Value> = rows.iter().filter(shrinks).collect();
+    assert_eq!(judged.len(), 9);
+    for row in judged {
+        assert_eq!(row["standing"], "met", "{row}");
+    }
+}
+
 #[test]
 fn an_unknown_figure_is_refused_with_those_there_are() {
     let folder = tempfile::tempdir().expect("a folder");
