@@ -185,6 +185,17 @@ fn names_what_is_hidden(d: &Diagnosis, drawn: &Drawn) {
     assert_eq!(named, hidden);
 }
 
+/// A wall that stiffens: a gain of the pressure with a coil wound tight explains it down to the noise, one term with one number does so better.
+#[test]
+fn what_two_effects_only_imitate_is_unknown() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (name, drawn) = concealed(Hiding::Unlisted, [2028, 206], folder.path());
+    assert_eq!(drawn.truth.secrets[0].name, "wall_stiffens");
+    let d = answer(&folder.path().join(name));
+    assert_eq!(d.verdict, Verdict::UnknownPhysics, "{}", d.summary);
+    assert_eq!(d.location.element.as_deref(), Some("muscle"));
+}
+
 /// What two sensor effects of altered form leave over looks like plastic set, in some runs; the sealed one would have the set undo itself.
 #[test]
 fn an_effect_that_a_run_would_have_at_an_impossible_size_is_taken_back() {

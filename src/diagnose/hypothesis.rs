@@ -6,7 +6,7 @@ use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::prove::prove;
-use super::search::{Found, grow, least_gain};
+use super::search::{Found, grow};
 use super::verdict::Excess;
 use super::without::Step;
 use super::{Confirmed, verdict};
@@ -33,8 +33,12 @@ pub(super) fn weigh_hypotheses(
     }
 }
 
-/// A hypothesis of no more numbers that explains the open runs better, and the sealed ones no worse, than what the
-/// catalogue offers: then the catalogue only imitates. Not tried where nothing worth naming is left.
+/// By so much Schwarz's criterion, `chi² + numbers ln(samples)`, must be lower for a hypothesis to stand for what the catalogue names:
+/// a thing that the catalogue has is imitated by a term as well as it is explained at best, or worse.
+const CLEARLY: f64 = 20.0;
+
+/// A hypothesis of no more numbers that explains the open runs clearly better, and the sealed ones no worse, than what the
+/// catalogue offers: then the catalogue only imitates.
 fn simpler(
     case: &Case,
     noise: &[Noise],
@@ -44,13 +48,13 @@ fn simpler(
     say: &dyn Fn(String),
 ) -> Option<(Found, Proof)> {
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    let least = least_gain(open.samples());
-    let numbers = found.best.model.effect_numbers();
-    if numbers == 0 || found.best.cost < open.noise_cost() + least {
+    if found.best.model.effects.is_empty() {
         return None;
     }
     let (best, renewed) = with_terms(&open, found, &found.baseline, seed, say)?;
-    if best.model.effect_numbers() > numbers || best.cost > found.best.cost - least {
+    let numbers = |fit: &Fit| fit.model.effect_numbers();
+    let criterion = |fit: &Fit| fit.cost + numbers(fit) as f64 * (open.samples() as f64).ln();
+    if numbers(&best) > numbers(&found.best) || criterion(&best) > criterion(&found.best) - CLEARLY {
         return None;
     }
     say(format!("{} imitates, {} explains more with less", found.best.model.title(), best.model.title()));
