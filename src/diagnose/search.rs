@@ -174,23 +174,23 @@ fn climb(
         let worthy = candidates(&refits, best, baseline.cost)
             .into_iter()
             .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
-        let Some(winner) = first_that_foretells(problem, best, worthy, say) else {
-            let Some((together, rivals)) = several_at_once(problem, best, &refits, variants, least) else { break };
-            say(format!("together {}: chi2 {:.0} -> {:.0}", together.model.title(), best.cost, together.cost));
-            (way.best, way.rivals) = (together, rivals);
-            if !seen.is_new(&way.best) {
-                break;
+        let (next, rivals) = match first_that_foretells(problem, best, worthy, say).cloned() {
+            Some(winner) => {
+                say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
+                if winner.model.effects.len() > 1 {
+                    settle(problem, winner, variants, least, say)
+                } else {
+                    let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
+                    (winner, vec![rivals])
+                }
             }
-            way.look_around(problem, variants);
-            continue;
+            None => {
+                let Some((next, rivals)) = several_at_once(problem, best, &refits, variants, least) else { break };
+                say(format!("together {}: chi2 {:.0} -> {:.0}", next.model.title(), best.cost, next.cost));
+                (next, rivals)
+            }
         };
-        say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
-        let winner = winner.clone();
-        way.rivals = vec![refits.into_iter().filter(|f| f.model != winner.model).collect()];
-        way.best = winner;
-        if way.best.model.effects.len() > 1 {
-            (way.best, way.rivals) = settle(problem, way.best, variants, least, say);
-        }
+        (way.best, way.rivals) = (next, rivals);
         if !seen.is_new(&way.best) {
             break;
         }

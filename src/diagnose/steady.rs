@@ -102,6 +102,14 @@ mod tests {
     }
 
     #[test]
+    fn a_size_is_impossible_only_by_four_errors() {
+        let from_zero = Range { min: 0.0, max: 1.0 };
+        let size = |value, half| run(value, half).1;
+        assert!(is_outside(size(-0.5, 0.2), from_zero) && is_outside(size(1.5, 0.2), from_zero));
+        assert!(!is_outside(size(-0.3, 0.2), from_zero) && !is_outside(size(0.5, 0.2), from_zero));
+    }
+
+    #[test]
     fn runs_disagree_when_both_error_and_share_say_so() {
         assert!(!disagree(&[run(1.0, 0.1), run(1.1, 0.1)]));
         // Many errors apart, but near in size: idealised laws do that.

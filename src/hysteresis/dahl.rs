@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// the growth and the two curves are ours ([`crate::muscle::Friction`] is the law that they stand for).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "D: Scalar + Deserialize<'de>"))]
-pub struct GrowingDahl<D> {
+pub struct DahlGrowing<D> {
     /// `y0`, mm: where the output counts from.
     #[serde(default = "super::zero")]
     #[schemars(default = "super::zero::<f64>")]
@@ -50,8 +50,8 @@ pub struct GrowingDahl<D> {
 
 const MODEL: &str = "growing Dahl";
 
-impl<D: Scalar> GrowingDahl<D> {
-    /// Parameters in the order of [`GrowingDahl::to_array`].
+impl<D: Scalar> DahlGrowing<D> {
+    /// Parameters in the order of [`DahlGrowing::to_array`].
     pub const PARAMETERS: [&'static str; 9] =
         ["offset", "gain", "curvature", "cubic", "stiffness", "growth", "nu", "rho", "bend"];
 
@@ -73,9 +73,9 @@ impl<D: Scalar> GrowingDahl<D> {
     /// State after the input went straight from `from_mm` to `to_mm`; exact.
     ///
     /// ```
-    /// use smam::hysteresis::GrowingDahl;
+    /// use smam::hysteresis::DahlGrowing;
     ///
-    /// let model = GrowingDahl::from_array([0.0_f64, 9.0, 0.0, 0.0, -2.0, 0.5, 1.25, 0.2, 0.0]);
+    /// let model = DahlGrowing::from_array([0.0_f64, 9.0, 0.0, 0.0, -2.0, 0.5, 1.25, 0.2, 0.0]);
     /// // Far along, the state stands at (1 + rho)/nu; turned about, 1/e of the way to -(1 - rho)/nu is left after 1/nu.
     /// let limit = model.advance(0.0, 0.0, 40.0);
     /// assert!((limit - 1.2 / 1.25).abs() < 1e-12);

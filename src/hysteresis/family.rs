@@ -2,7 +2,7 @@
 
 use super::error::{HysteresisError, finite};
 use super::{
-    AsymmetricBoucWen, DisplacementModel, GrowingDahl, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
+    AsymmetricBoucWen, DahlGrowing, DisplacementModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
     SlipElement, SymmetricBoucWen,
 };
 use crate::scalar::Scalar;
@@ -18,7 +18,7 @@ pub enum HysteresisModel<D> {
     Paper(PaperModel<D>),
     PrandtlIshlinskii(PrandtlIshlinskii<D>),
     MaxwellSlip(MaxwellSlip<D>),
-    GrowingDahl(GrowingDahl<D>),
+    DahlGrowing(DahlGrowing<D>),
 }
 
 impl<D> From<DisplacementModel<D>> for HysteresisModel<D> {
@@ -38,7 +38,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Symmetric(model) => Some(DisplacementModel::Symmetric(*model)),
             Self::Asymmetric(model) => Some(DisplacementModel::Asymmetric(*model)),
             Self::Paper(model) => Some(DisplacementModel::Paper(*model)),
-            Self::PrandtlIshlinskii(_) | Self::MaxwellSlip(_) | Self::GrowingDahl(_) => None,
+            Self::PrandtlIshlinskii(_) | Self::MaxwellSlip(_) | Self::DahlGrowing(_) => None,
         }
     }
 
@@ -64,7 +64,7 @@ impl<D: Scalar> HysteresisModel<D> {
             (Self::Symmetric(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (Self::Asymmetric(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (Self::Paper(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
-            (Self::GrowingDahl(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
+            (Self::DahlGrowing(model), [z, ..]) => *z = model.advance(*z, from_mm, to_mm),
             (_, []) => {}
         }
     }
@@ -78,7 +78,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.output(x_mm, z),
             Self::PrandtlIshlinskii(model) => model.output(x_mm, state),
             Self::MaxwellSlip(model) => model.output(x_mm, state),
-            Self::GrowingDahl(model) => model.output(x_mm, z),
+            Self::DahlGrowing(model) => model.output(x_mm, z),
         }
     }
 
@@ -131,7 +131,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::MaxwellSlip(model) => {
                 with(&["offset", "gain", "curvature", "cubic", "growth"], "stiffness", model.elements.len())
             }
-            Self::GrowingDahl(_) => with(&GrowingDahl::<f64>::PARAMETERS, "", 0),
+            Self::DahlGrowing(_) => with(&DahlGrowing::<f64>::PARAMETERS, "", 0),
         }
     }
 
@@ -149,7 +149,7 @@ impl<D: Scalar> HysteresisModel<D> {
                 let stiffnesses = m.elements.iter().map(|e| e.stiffness);
                 [m.offset, m.gain, m.curvature, m.cubic, m.growth].into_iter().chain(stiffnesses).collect()
             }
-            Self::GrowingDahl(model) => model.to_array().to_vec(),
+            Self::DahlGrowing(model) => model.to_array().to_vec(),
         }
     }
 
@@ -162,7 +162,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.check(),
             Self::PrandtlIshlinskii(model) => model.check(),
             Self::MaxwellSlip(model) => model.check(),
-            Self::GrowingDahl(model) => model.check(),
+            Self::DahlGrowing(model) => model.check(),
         }
     }
 
@@ -175,7 +175,7 @@ impl<D: Scalar> HysteresisModel<D> {
             Self::Paper(model) => model.check_loops(),
             Self::PrandtlIshlinskii(model) => model.check_loops(range_mm[0].abs().max(range_mm[1].abs())),
             Self::MaxwellSlip(model) => model.check_loops(range_mm),
-            Self::GrowingDahl(model) => model.check_loops(range_mm),
+            Self::DahlGrowing(model) => model.check_loops(range_mm),
         }
     }
 }
@@ -223,9 +223,9 @@ impl HysteresisModel<f64> {
                     elements,
                 }))
             }
-            (Self::GrowingDahl(_), values) => {
+            (Self::DahlGrowing(_), values) => {
                 let values: [E; 9] = values.try_into().map_err(|_| wrong("growing Dahl", 9))?;
-                Ok(HysteresisModel::GrowingDahl(GrowingDahl::from_array(values)))
+                Ok(HysteresisModel::DahlGrowing(DahlGrowing::from_array(values)))
             }
             (Self::MaxwellSlip(m), _) => Err(wrong("Maxwell-slip", 5 + m.elements.len())),
             (m, _) => Err(wrong("Prandtl-Ishlinskii", m.parameters().len())),

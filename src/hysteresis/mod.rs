@@ -25,7 +25,7 @@ mod passivity_tests;
 mod path_tests;
 
 pub use asymmetric::AsymmetricBoucWen;
-pub use dahl::GrowingDahl;
+pub use dahl::DahlGrowing;
 pub use error::HysteresisError;
 pub use family::HysteresisModel;
 pub use lanes::{LANES, mean_squares};

@@ -99,20 +99,20 @@ proptest! {
 
     #[test]
     fn dahl_loops(growth in -0.3f64..3.0, nu in 0.1f64..4.0, rho in -0.9f64..0.9, bend in -0.15f64..0.15, path in turns(0.0)) {
-        let model = GrowingDahl::from_array([0.0, 0.0, 0.0, 0.0, 1.0, growth, nu, rho, bend]);
+        let model = DahlGrowing::from_array([0.0, 0.0, 0.0, 0.0, 1.0, growth, nu, rho, bend]);
         prop_assume!(model.check_loops([0.0, 3.0]).is_ok());
-        prop_assert!(round_work(&HysteresisModel::GrowingDahl(model), &path) > -ROUNDING);
+        prop_assert!(round_work(&HysteresisModel::DahlGrowing(model), &path) > -ROUNDING);
     }
 }
 
 /// Friction that grows faster than it fades yields energy on a small loop, and is refused.
 #[test]
 fn dahl_friction_that_grows_too_fast_is_refused() {
-    let model = |growth: f64| GrowingDahl::from_array([0.0, 0.0, 0.0, 0.0, 1.0, growth, 0.1, 0.0, 0.0]);
+    let model = |growth: f64| DahlGrowing::from_array([0.0, 0.0, 0.0, 0.0, 1.0, growth, 0.1, 0.0, 0.0]);
     assert!(model(0.1).check_loops([0.0, 3.0]).is_ok());
     assert!(model(1.0).check_loops([0.0, 3.0]).is_err());
     assert!(model(-0.5).check_loops([0.0, 3.0]).is_err());
-    assert!(GrowingDahl { rho: 1.0, ..model(0.1) }.check().is_err());
+    assert!(DahlGrowing { rho: 1.0, ..model(0.1) }.check().is_err());
 }
 
 fn slip(stiffness: [f64; 3], gate: Gate, growth: f64) -> MaxwellSlip<f64> {

@@ -64,7 +64,7 @@ fn sampling_does_not_matter_to_plays_sliders_and_growing_friction() {
         HysteresisModel::PrandtlIshlinskii(sum.clone()),
         HysteresisModel::PrandtlIshlinskii(PrandtlIshlinskii { rate_s: 0.02, ..sum }),
         HysteresisModel::MaxwellSlip(slip),
-        HysteresisModel::GrowingDahl(GrowingDahl::from_array([0.3, 9.8, 0.9, -0.15, -1.2, 2.0, 1.5, 0.17, -0.08])),
+        HysteresisModel::DahlGrowing(DahlGrowing::from_array([0.3, 9.8, 0.9, -0.15, -1.2, 2.0, 1.5, 0.17, -0.08])),
     ] {
         let last = |pieces: usize| -> f64 {
             let (time, path) = timed(pieces);

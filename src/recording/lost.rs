@@ -28,12 +28,13 @@ const STRAIGHT: f64 = 0.1;
 pub(super) fn put_back(times_s: Vec<f64>, values: Vec<f64>, median_interval_s: f64) -> (Vec<f64>, Vec<f64>) {
     let count_lost = |i: usize| lost(times_s[i + 1] - times_s[i], median_interval_s);
     let intervals = 0..times_s.len().saturating_sub(1);
-    let starts_late = lost_before(times_s.first().copied(), median_interval_s) > 0;
-    if median_interval_s <= 0.0 || times_s.len() < 2 || !starts_late && intervals.clone().all(|i| count_lost(i) == 0) {
+    let late = times_s.first().map_or(0, |first_s| lost_before(*first_s, median_interval_s));
+    let is_whole = late == 0 && intervals.clone().all(|i| count_lost(i) == 0);
+    if median_interval_s <= 0.0 || times_s.len() < 2 || is_whole {
         return (times_s, values);
     }
     let curve = Akima { times_s: &times_s, values: &values };
-    let (mut all_s, mut all) = before_first(&times_s, &values, median_interval_s);
+    let (mut all_s, mut all) = before_first(&times_s, &values, late);
     for i in intervals {
         let pieces = count_lost(i) + 1;
         all_s.push(times_s[i]);
@@ -60,18 +61,17 @@ fn is_short(interval_s: f64, median_s: f64) -> bool {
 }
 
 /// How many samples a recording lacks between zero and its first one.
-fn lost_before(first_s: Option<f64>, median_s: f64) -> usize {
-    let late = first_s.filter(|first_s| *first_s > 0.0 && is_short(*first_s, median_s));
-    late.map_or(0, |first_s| (first_s / median_s).round() as usize)
+fn lost_before(first_s: f64, median_s: f64) -> usize {
+    if first_s > 0.0 && is_short(first_s, median_s) { (first_s / median_s).round() as usize } else { 0 }
 }
 
 /// What is put between zero and the first sample comes from home if home is not farther than this many times the way that the line
 /// through the first two samples goes in that time.
 const FROM_HOME: f64 = 2.0;
 
-/// Those samples, from zero on.
-fn before_first(times_s: &[f64], values: &[f64], median_s: f64) -> (Vec<f64>, Vec<f64>) {
-    let (first_s, first, count) = (times_s[0], values[0], lost_before(times_s.first().copied(), median_s));
+/// Those samples, from zero on; of a signal of two samples or more.
+fn before_first(times_s: &[f64], values: &[f64], count: usize) -> (Vec<f64>, Vec<f64>) {
+    let (first_s, first) = (times_s[0], values[0]);
     let way = first_s * (values[1] - first) / (times_s[1] - first_s);
     let start = if (first - way).abs() <= FROM_HOME * way.abs() { 0.0 } else { first - way };
     let share = |k: usize| k as f64 / count as f64;

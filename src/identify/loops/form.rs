@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::hysteresis::{
-    AsymmetricBoucWen, Gate, GrowingDahl, HysteresisModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
+    AsymmetricBoucWen, DahlGrowing, Gate, HysteresisModel, MaxwellSlip, PaperModel, PlayElement, PrandtlIshlinskii,
     SlipElement, SymmetricBoucWen,
 };
 
@@ -98,7 +98,7 @@ impl Form {
             }
             Self::MaxwellSlip => slipping(Gate::Tanh, &grid),
             Self::MaxwellSlipGrowing => slipping(Gate::None, &WIDE_GRID.map(|share| share * scale.stroke_mm())),
-            Self::DahlGrowing => HysteresisModel::GrowingDahl(GrowingDahl::from_array([0.0; 9])),
+            Self::DahlGrowing => HysteresisModel::DahlGrowing(DahlGrowing::from_array([0.0; 9])),
         }
     }
 
