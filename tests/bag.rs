@@ -157,6 +157,17 @@ fn a_channel_that_the_bag_does_not_have_is_named_with_the_remedy() {
     );
 }
 
+#[test]
+fn a_channel_that_the_bag_has_all_the_same_was_recorded() {
+    let file = "file = \"run.mcap\"";
+    let set = SET.replace(file, &format!("{file}\nnot_recorded = [\"force_mn\"]"));
+    let refused = loaded(&fixture("zstd"), &set).expect_err("it is there");
+    assert!(refused.contains("\"force_mn\" is there, and recordings.toml says that it is not_recorded"), "{refused}");
+    let elsewhere = set.replacen("\"/ft/wrench\"", "\"/ft/wrenches\"", 1);
+    let run = loaded(&fixture("zstd"), &elsewhere).expect("a run without it");
+    assert!(run.recording.channel("force_mn").expect("filled in").values.iter().all(|v| v.is_nan()));
+}
+
 fn smam(arguments: &[&str]) {
     let done = Command::new(env!("CARGO_BIN_EXE_smam")).args(arguments).output().expect("starts");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));

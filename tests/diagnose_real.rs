@@ -29,6 +29,7 @@ fn answer(case: Case) -> Diagnosis {
         let numbers: Vec<String> = e.parameters.iter().map(|(k, v)| format!("{k} = {:.4e}", v.value)).collect();
         println!("  {:.3} {} in {}: {}", e.probability, e.name, e.element, numbers.join(", "));
     }
+    outcome.diagnosis.warnings.iter().for_each(|w| println!("  warning: {w}"));
     outcome.diagnosis
 }
 

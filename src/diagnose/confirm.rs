@@ -123,9 +123,8 @@ pub(super) fn prune(
     found
 }
 
-/// Takes back the effects that a run by itself would have at a size that their law cannot: they stand in for something
-/// else. Where the rest does not explain the recordings either, all stays as the nearest known, which says no more than that.
-pub(super) fn take_back_impossible(
+/// Takes back the effects that a run by itself contradicts: they stand in for something else. Where the rest does not explain the recordings either, all stays as the nearest known, which says no more than that.
+pub(super) fn take_back_contradicted(
     whole: &Problem,
     open: &Problem,
     found: Found,
@@ -140,10 +139,9 @@ pub(super) fn take_back_impossible(
         return (found, Confirmed::Yes);
     }
     let mut fewer = found.clone();
-    while let Some((effect, file)) = steady::impossible_size(whole.case, &fewer.best, whole.noise) {
+    while let Some((effect, how)) = steady::contradiction(whole.case, &fewer.best, whole.noise) {
         let title = fewer.best.model.effects[effect].title();
-        warnings
-            .push(format!("{title} would have a size in {file} that it cannot have: it stands in for something else"));
+        warnings.push(format!("{title} {how}: it stands in for something else"));
         let start = open.start_without(&fewer.best, effect);
         match open.fit(&fewer.best.model.without(effect), &start).filter(|f| !f.model.effects.is_empty()) {
             Some(fit) => fewer = search::settled(open, fewer, fit, variants, &|_| {}),

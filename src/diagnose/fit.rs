@@ -164,30 +164,6 @@ impl Problem<'_> {
         Some(self.weighted_residual(model, x)?.norm_squared())
     }
 
-    /// Every run left out once: the others, and it. A single run is cut into its halves.
-    pub fn folds<'s>(&'s self) -> Vec<(Problem<'s>, Problem<'s>)> {
-        let part = |runs: Vec<Cow<'s, CaseRun>>| Problem { case: self.case, runs, noise: self.noise };
-        if let [run] = &self.runs[..] {
-            let half = run.times_s().len() / 2;
-            let blank = |range: Range<usize>| -> Cow<'_, CaseRun> {
-                let mut part = run.clone().into_owned();
-                part.measured.iter_mut().for_each(|m| m[range.clone()].fill(f64::NAN));
-                Cow::Owned(part)
-            };
-            let halves = [blank(half..run.times_s().len()), blank(0..half)];
-            return vec![
-                (part(vec![halves[0].clone()]), part(vec![halves[1].clone()])),
-                (part(vec![halves[1].clone()]), part(vec![halves[0].clone()])),
-            ];
-        }
-        let without = |i: usize| {
-            let mut rest: Vec<_> = self.runs.iter().map(|r| Cow::Borrowed(r.as_ref())).collect();
-            let left_out = rest.remove(i);
-            (part(rest), part(vec![left_out]))
-        };
-        (0..self.runs.len()).map(without).collect()
-    }
-
     /// Measured minus simulated, each channel with a free zero about its own.
     pub fn subtract(&self, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let channel = |(c, measured): (usize, &Vec<f64>)| -> Vec<f64> {

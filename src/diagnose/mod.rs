@@ -37,6 +37,7 @@ mod error;
 mod experiment;
 mod files;
 mod fit;
+mod folds;
 mod full;
 mod hypothesis;
 mod instants;
@@ -210,7 +211,7 @@ fn explain(
     say("sealed runs".to_owned());
     let found = confirm::prune(&open, &sealed, found, &variants, say);
     let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
-    let (found, possible) = confirm::take_back_impossible(&whole, &open, found, &variants, &mut warnings);
+    let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, &variants, &mut warnings);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
     let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
     let confirmed = confirmed.and(possible);

@@ -19,7 +19,7 @@ const LEAST_OF_ALL: f64 = 1e-3;
 /// One more effect explains this share of all that is explained, or that share of what was left over: laws that are
 /// idealised leave something that others imitate in part.
 const FAIR_OF_ALL: f64 = 0.03;
-const FAIR_OF_LEFT: f64 = 0.5;
+const FAIR_OF_LEFT: f64 = 0.75;
 
 /// Fall of chi² that makes an effect worth naming, for so many samples.
 pub fn least_gain(samples: usize) -> f64 {
@@ -63,6 +63,9 @@ pub(super) fn search(
     let mut found = climb(problem, &baseline, way, variants, &mut seen, say);
     if is_new && found.best.model.effects.len() > 1 && leaves_much(problem, &baseline, &found.best) {
         for (other, rivals) in other_beginnings(problem, &baseline, &found.first, variants) {
+            if !leaves_much(problem, &baseline, &found.best) {
+                break;
+            }
             if !seen.is_new(&other) {
                 continue;
             }
@@ -81,7 +84,7 @@ pub(super) fn search(
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
 /// Share of the misfit that is much.
-const MUCH: f64 = 0.1;
+const MUCH: f64 = 0.05;
 
 /// The next best fits with one effect, each effect once: as they are, and settled, with the rivals of that.
 fn other_beginnings(
@@ -137,15 +140,16 @@ impl Way {
 #[derive(Default)]
 struct Seen(Vec<(Vec<String>, f64)>);
 
-/// Costs of one model that differ by less are those of one fit.
-const SAME_COST: f64 = 1.0;
+/// Costs of one model that differ by a smaller share are those of one fit: ways come to it from different sides.
+const SAME_COST: f64 = 2e-4;
 
 impl Seen {
     /// Whether no way has been here before, effects in whatever order; from now on one has.
     fn is_new(&mut self, fit: &Fit) -> bool {
         let mut effects: Vec<String> = fit.model.effects.iter().map(Placed::title).collect();
         effects.sort();
-        let is_here = |(other, cost): &(Vec<String>, f64)| *other == effects && (cost - fit.cost).abs() < SAME_COST;
+        let is_here =
+            |(other, cost): &(Vec<String>, f64)| *other == effects && (cost - fit.cost).abs() < SAME_COST * fit.cost;
         let is_new = !self.0.iter().any(is_here);
         if is_new {
             self.0.push((effects, fit.cost));
@@ -215,7 +219,7 @@ fn several_at_once(
     least: f64,
 ) -> Option<(Fit, Vec<Vec<Fit>>)> {
     let left = before.cost - problem.noise_cost();
-    if before.model.effects.is_empty() || left < MUCH_PER_SAMPLE * problem.samples() as f64 {
+    if left < MUCH_PER_SAMPLE * problem.samples() as f64 {
         return None;
     }
     let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();

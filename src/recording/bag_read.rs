@@ -17,6 +17,14 @@ pub(super) fn read_bag(path: &Path, declared: &[ChannelSpec]) -> Result<LoadedRu
     read_bag_from(source, path, declared)
 }
 
+/// The first of some channels that a bag has samples of.
+pub(super) fn found_in_bag(path: &Path, channels: &[ChannelSpec]) -> Result<Option<String>, RecordingError> {
+    let bag = bag::read(open_file(path)?, &|topic| picks(topic, channels))
+        .map_err(|problem| RecordingError::Format { file: path.to_owned(), problem })?;
+    let found = bag.series.into_iter().find(|series| series.values.iter().any(|v| v.is_finite()));
+    Ok(found.map(|series| series.column))
+}
+
 /// Reads the declared channels of a bag from anywhere; `path` stands for the file in errors. With none declared, every
 /// Float64 topic whose name ends as a column's (`/smam/force_n`) is one.
 ///

@@ -1,6 +1,6 @@
 //! A folder of recordings: `recordings.toml` and one file per run.
 
-use super::bag_read::read_bag;
+use super::bag_read::{found_in_bag, read_bag};
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::{Keys, did_you_mean};
 use super::source::unopened;
@@ -163,7 +163,10 @@ impl RecordingSet {
         let file = self.dir.join(&run.file);
         let declared = self.channels_of(run);
         let LoadedRun { recording, notes } = match FileFormat::of(&file)? {
-            FileFormat::Mcap => read_bag(&file, &declared)?,
+            FileFormat::Mcap => {
+                self.check_absent_from_bag(run, &file)?;
+                read_bag(&file, &declared)?
+            }
             _ => self.read_table(&file, &declared)?,
         };
         Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
@@ -182,6 +185,16 @@ impl RecordingSet {
         }
         let notes = self.undeclared_note(&recording).into_iter().collect();
         Ok(LoadedRun { recording, notes })
+    }
+
+    /// A table's columns are seen anyway; of a bag only those that are asked for.
+    fn check_absent_from_bag(&self, run: &Run, file: &Path) -> Result<(), RecordingError> {
+        let is_absent = |spec: &&ChannelSpec| run.not_recorded.contains(&spec.column);
+        let absent: Vec<ChannelSpec> = self.channels.iter().filter(is_absent).cloned().collect();
+        if absent.is_empty() {
+            return Ok(());
+        }
+        found_in_bag(file, &absent)?.map_or(Ok(()), |column| Err(is_there(&column, file)))
     }
 
     fn undeclared_note(&self, recording: &Recording) -> Option<String> {
@@ -204,15 +217,19 @@ fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result
             if there.values.iter().all(|v| v.is_nan()) {
                 continue;
             }
-            let problem = format!(
-                "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
-                 remedy: remove it from that list, or rename the column"
-            );
-            return Err(RecordingError::Format { file: file.to_owned(), problem });
+            return Err(is_there(column, file));
         }
         channels.push(Channel::new(column.clone(), vec![f64::NAN; recording.sample_count()]));
     }
     Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
+}
+
+fn is_there(column: &str, file: &Path) -> RecordingError {
+    let problem = format!(
+        "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
+         remedy: remove it from that list, or rename the column"
+    );
+    RecordingError::Format { file: file.to_owned(), problem }
 }
 
 /// A file that is there but no text has another remedy than one that is not there.
