@@ -48,7 +48,7 @@ fn log_coil(out: &RecordingStream, root: &str, muscle: &MuscleGraph, number: usi
         .with_radii([Radius::new_scene_units(coil.wire_radius_m as f32)]);
     out.log_static(path([root, "muscles", &muscle.name, "coil"]), &strip)?;
     // Beside the coil's middle; neighbours stand close together, so that names are staggered along them.
-    let along_m = muscle.rest_length_m * if number % 2 == 0 { 0.35 } else { 0.65 };
+    let along_m = muscle.rest_length_m * if number.is_multiple_of(2) { 0.35 } else { 0.65 };
     let name = Points3D::new([[-0.12 * muscle.rest_length_m, 0.0, along_m]])
         .with_colors([opaque(AXIS)])
         .with_radii([Radius::new_ui_points(0.0)])
