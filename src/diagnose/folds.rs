@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::case::CaseRun;
 use super::fit::Problem;
 
-impl<'a> Problem<'a> {
+impl Problem<'_> {
     /// Every run left out once: the others, and it. A single run is cut into its halves.
     pub fn runs_left_out(&self) -> Vec<(Problem<'_>, Problem<'_>)> {
         if self.runs.len() < 2 {
