@@ -171,20 +171,20 @@ fn sets_are_found_where_no_effect_leads_to_them() {
     let cases = [
         // A leak, a bubble and a drift of 300 times the noise's variance: one thermal expansion explains 97 % of it, and none of the
         // three added to it explains much of the rest. Together they do.
-        [2027, 146],
+        ([2027, 146], 0.99),
         // A lag, a softening and a preload: of two runs, neither says enough of one by itself to foretell the other.
-        [2028, 38],
+        ([2028, 38], 0.9),
         // A weight and a gain that bends: neither alone foretells, both together do; what the bend leaves is no third effect.
-        [2028, 152],
+        ([2028, 152], 0.9),
         // A leak and a bubble: the leak alone bends the calibration so far that a gain and a weight take the bubble's place.
-        [2028, 250],
+        ([2028, 250], 0.99),
     ];
-    for case in cases {
+    for (case, least_gap_closed) in cases {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (name, drawn) = concealed(Hiding::Several, case, folder.path());
         let d = answer(&folder.path().join(name));
         names_what_is_hidden(&d, &drawn);
-        assert!(d.fit.gap_closed > 0.9, "{case:?}: {}", d.fit.gap_closed);
+        assert!(d.fit.gap_closed > least_gap_closed, "{case:?}: {}", d.fit.gap_closed);
     }
 }
 

@@ -123,7 +123,8 @@ pub(super) fn prune(
     found
 }
 
-/// Takes back the effects that a run by itself contradicts: they stand in for something else. Where the rest does not explain the recordings either, all stays as the nearest known, which says no more than that.
+/// Takes back the effects that a run by itself contradicts: they stand in for something else. Where the rest does not
+/// explain the recordings either, all stays as the nearest known, which says no more than that.
 pub(super) fn take_back_contradicted(
     whole: &Problem,
     open: &Problem,
