@@ -3,7 +3,7 @@
 #
 # The other way round, a run is continued from here on any machine, without the recordings of the cases that are done:
 #   mkdir -p OUT/cases && cp proof/seals.txt OUT/cases/ && cp proof/rows.jsonl OUT/
-#   smam proof --cases N --nothing N --seed 2026 --out OUT
+#   smam proof --cases N --nothing N --seed 2029 --out OUT
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
