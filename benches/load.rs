@@ -73,7 +73,7 @@ fn play(scene: &Scene, frequency_hz: f64) -> Result<Recording, Box<dyn Error>> {
     let mut recording = sample(&[stroke], DURATION_S, |t, _| sine(t, frequency_hz))?;
     let mut simulation = Simulation::new(scene.clone())?;
     simulation.set_input("plunger_mm", InputSource::Recorded(recording.piecewise_si("plunger_mm")?));
-    let shown = record(&mut simulation, &Schedule(recording.time_s().to_vec()))?;
+    let shown = record(&mut simulation, &Schedule::at(recording.time_s().to_vec()))?;
     for (column, _) in NOISE {
         recording.push(shown.channel(column)?.clone())?;
     }

@@ -19,7 +19,7 @@ fn play(time_s: &[f64], plunger_mm: &[f64]) -> Result<Vec<f64>, Box<dyn Error>> 
     let plunger_m: Vec<f64> = plunger_mm.iter().map(|x| 1e-3 * x).collect();
     let line = PiecewiseLinear::new(time_s, &plunger_m).ok_or("times must increase")?;
     simulation.set_input("plunger_mm", InputSource::Recorded(line));
-    Ok(record(&mut simulation, &Schedule(time_s.to_vec()))?.channel("elongation_mm")?.values.clone())
+    Ok(record(&mut simulation, &Schedule::at(time_s.to_vec()))?.channel("elongation_mm")?.values.clone())
 }
 
 /// Root mean square of the difference from 3 s on: before, the muscle is led from rest into the motion.
@@ -30,7 +30,7 @@ fn rms_apart(time_s: &[f64], a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let times = |duration_s: f64, interval_s: f64| -> Vec<f64> { Schedule::even(duration_s, interval_s).0 };
+    let times = |duration_s: f64, interval_s: f64| -> Vec<f64> { Schedule::even(duration_s, interval_s).times() };
     // Training: loops of many depths.
     let train_s = times(70.0, 0.05);
     let input_mm: Vec<f64> = train_s

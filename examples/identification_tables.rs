@@ -39,13 +39,13 @@ const NON_HARMONIC: Programme = |t| 1.5 - 0.75 * (TAU * 0.1 * t).cos() - 0.75 * 
 const FASTER: Programme = |t| 1.5 - 1.5 * (TAU * 0.2 * t).cos();
 
 fn made(name: &str, programme: Programme, seconds: f64, seed: u64) -> Result<LoopRun, Box<dyn Error>> {
-    let time_s = Schedule::even(seconds, 0.01).0;
+    let time_s = Schedule::even(seconds, 0.01).times();
     let input_mm: Vec<f64> = time_s.iter().map(|&t| programme(t)).collect();
     let input_m: Vec<f64> = input_mm.iter().map(|x| x * 1e-3).collect();
     let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
     let source = PiecewiseLinear::new(&time_s, &input_m).ok_or("an empty programme")?;
     simulation.set_input("plunger_mm", InputSource::Recorded(source));
-    let recorded = record(&mut simulation, &Schedule(time_s.clone()))?;
+    let recorded = record(&mut simulation, &Schedule::at(time_s.clone()))?;
     let mut output_mm = recorded.channel("elongation_mm")?.values.clone();
     add_noise(&mut output_mm, seed);
     Ok(LoopRun { name: name.to_owned(), time_s, input_mm, output_mm })
@@ -86,7 +86,7 @@ fn rig() -> Result<(), Box<dyn Error>> {
 fn recovery(trials: u64) -> Result<(), Box<dyn Error>> {
     // Strokes of changing depth: inner loops, without which several of these parameters are not told apart.
     let programme: Programme = |t| 1.5 - 1.1 * (TAU * 0.1 * t).cos() - 0.4 * (TAU * 0.3 * t).cos();
-    let time_s = Schedule::even(30.0, 0.01).0;
+    let time_s = Schedule::even(30.0, 0.01).times();
     let input_mm: Vec<f64> = time_s.iter().map(|&t| programme(t)).collect();
     println!("truth inside its 95 % interval, of {trials} trials");
     for form in Form::ALL {

@@ -54,6 +54,11 @@ pub const FILES: &[(&str, &[u8])] = carried![
     "models/muscle_bench.urdf",
 ];
 
+/// Names of the stock scenes, `muscle_bench` first.
+pub fn scenes() -> impl Iterator<Item = &'static str> {
+    FILES.iter().filter_map(|(path, _)| path.strip_prefix("scenes/")?.strip_suffix(".toml"))
+}
+
 /// The path of a file that the program carries; none of one that it does not.
 pub fn builtin(path: &str) -> Option<PathBuf> {
     FILES.iter().any(|(known, _)| *known == path).then(|| PathBuf::from(format!("{PREFIX}{path}")))

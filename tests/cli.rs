@@ -185,6 +185,8 @@ fn checks_pass_and_fail_with_their_exit_codes_and_junit() {
     assert!(balanced(&xml), "{xml}");
     assert_eq!(listing(here.path()), ["new"], "--check writes nothing else");
     assert_eq!(smam(&["run", "driven_axis", "--check"], here.path()).status.code(), Some(0));
+    let onto_a_folder = smam(&["run", "muscle_bench", "--check", "--junit", "new"], here.path());
+    assert_eq!((onto_a_folder.status.code(), printed(&onto_a_folder).as_str()), (Some(1), ""), "before the run");
 }
 
 /// Every opened element is closed, in order.

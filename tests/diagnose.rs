@@ -55,7 +55,7 @@ fn corrected_scene_predicts(name: &str, folder: &Path, text: &str) {
     for spec in set.of_role(Role::Input) {
         simulation.set_input(&spec.column, InputSource::Recorded(measured.piecewise_si(&spec.column).expect("column")));
     }
-    let simulated = record(&mut simulation, &Schedule(measured.time_s().to_vec())).expect("runs");
+    let simulated = record(&mut simulation, &Schedule::at(measured.time_s().to_vec())).expect("runs");
     for spec in set.of_role(Role::Output) {
         let (a, b) = (measured.channel(&spec.column), simulated.channel(&spec.column));
         let (a, b) = (&a.expect("column").values, &b.expect("column").values);

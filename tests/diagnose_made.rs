@@ -141,6 +141,27 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
     assert!(d.warnings.iter().any(|w| w.starts_with("empty.csv: no output was recorded")), "{:?}", d.warnings);
 }
 
+/// A pressure that was declared and never recorded is a sensor to add, not one that the next run could be judged by.
+#[test]
+fn a_channel_that_no_run_has_is_left_out() {
+    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    change(folder.path(), |r| column(r, "pressure_kpa", |_| f64::NAN));
+    let with_empty_cells = answer(folder.path());
+    let left_out = "pressure_kpa: no run recorded it; the channel is left out";
+    assert!(with_empty_cells.warnings.iter().any(|w| w == left_out), "{:?}", with_empty_cells.warnings);
+    assert!(!with_empty_cells.detection.noise_sd.contains_key("pressure_kpa"));
+
+    let path = folder.path().join("recordings.toml");
+    let text = std::fs::read_to_string(&path).expect("a description");
+    let (before, after) = text.split_once("[[channel]]\ncolumn = \"pressure_kpa\"").expect("a channel");
+    let others = after.find("[[").map_or("", |at| &after[at..]);
+    std::fs::write(&path, format!("{before}{others}")).expect("written");
+    let undeclared = answer(folder.path());
+    assert!(!undeclared.warnings.iter().any(|w| w == left_out));
+    let said = |d: &Diagnosis| (d.verdict, d.effects.clone(), d.next_experiment.clone());
+    assert_eq!(said(&with_empty_cells), said(&undeclared));
+}
+
 /// Case so-and-so that `smam proof --seed SEED` draws on the bench.
 fn concealed(hiding: Hiding, [seed, number]: [u64; 2], folder: &Path) -> (String, Drawn) {
     let name = format!("s{seed}_{number:05}");

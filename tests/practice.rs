@@ -32,7 +32,7 @@ fn holdout_meets_noise(case: &str) {
     for spec in set.of_role(Role::Input) {
         simulation.set_input(&spec.column, InputSource::Recorded(measured.piecewise_si(&spec.column).expect("column")));
     }
-    let simulated = record(&mut simulation, &Schedule(measured.time_s().to_vec())).expect("runs");
+    let simulated = record(&mut simulation, &Schedule::at(measured.time_s().to_vec())).expect("runs");
     for spec in set.of_role(Role::Output) {
         let error = rmse(
             &measured.channel(&spec.column).expect("column").values,

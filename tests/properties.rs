@@ -104,7 +104,7 @@ proptest! {
 /// A scene driven by its own programme as a recording that begins at `start_s`.
 fn played_from(rig: &str, start_s: f64) -> Recording {
     let scene = stock(rig);
-    let times = Schedule::even(DURATION_S, 0.01).0;
+    let times = Schedule::even(DURATION_S, 0.01).times();
     let shifted: Vec<f64> = times.iter().map(|t| t + start_s).collect();
     let mut simulation = Simulation::new(scene.clone()).expect("builds");
     for (input, program) in scene.file.input.iter().zip(&scene.programs) {
@@ -113,7 +113,7 @@ fn played_from(rig: &str, start_s: f64) -> Recording {
         let source = InputSource::Recorded(drive.piecewise_si(&input.channel).expect("a known unit"));
         simulation.set_input(&input.channel, source);
     }
-    record(&mut simulation, &Schedule(shifted)).expect("runs")
+    record(&mut simulation, &Schedule::at(shifted)).expect("runs")
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn time_has_no_origin() {
 #[test]
 fn units_do_not_matter() {
     let scene = stock("muscle_bench");
-    let times = Schedule::even(DURATION_S, 0.01).0;
+    let times = Schedule::even(DURATION_S, 0.01).times();
     let metres: Vec<f64> = times.iter().map(|&t| scene.programs[0].value(t)).collect();
     let driven = |column: &str, factor: f64| {
         let values = metres.iter().map(|m| m * factor).collect();
@@ -140,7 +140,7 @@ fn units_do_not_matter() {
         let mut simulation = Simulation::new(scene.clone()).expect("builds");
         let source = InputSource::Recorded(drive.piecewise_si(column).expect("a known unit"));
         simulation.set_input("plunger_mm", source);
-        record(&mut simulation, &Schedule(times.clone())).expect("runs")
+        record(&mut simulation, &Schedule::at(times.clone())).expect("runs")
     };
     let (in_mm, in_um) = (driven("plunger_mm", 1e3), driven("plunger_um", 1e6));
     for (a, b) in in_mm.channels().iter().zip(in_um.channels()) {
@@ -156,14 +156,15 @@ fn a_run_taken_up_again_goes_on_to_the_bit() {
         let schedule = Schedule::even(DURATION_S, 0.01);
         let whole = run(stock(rig)).expect("runs");
         let mut simulation = Simulation::new(stock(rig)).expect("builds");
-        let half = schedule.0.len() / 2;
+        let times = schedule.times();
+        let half = times.len() / 2;
         // The instant where it is taken up stands in both.
-        let (first, rest) = (&schedule.0[..=half], &schedule.0[half..]);
-        let begun = record(&mut simulation, &Schedule(first.to_vec())).expect("runs");
+        let (first, rest) = (&times[..=half], &times[half..]);
+        let begun = record(&mut simulation, &Schedule::at(first.to_vec())).expect("runs");
         let mut kept = simulation.clone();
         // What goes on meanwhile does not reach what was kept.
         simulation.advance_to(DURATION_S).expect("runs");
-        let resumed = record(&mut kept, &Schedule(rest.to_vec())).expect("runs");
+        let resumed = record(&mut kept, &Schedule::at(rest.to_vec())).expect("runs");
         for ((all, first), rest) in whole.channels().iter().zip(begun.channels()).zip(resumed.channels()) {
             let joined: Vec<f64> = first.values.iter().chain(&rest.values[1..]).copied().collect();
             assert!(all.values == joined, "{rig}: {}", all.column);

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use smam::recording::{RecordingSet, recordings_schema};
-use smam::scene::{STOCK_SCENES, Scene, scene_schema};
+use smam::scene::{Scene, scene_schema};
+use smam::stock;
 
 fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
@@ -25,7 +26,7 @@ fn committed_schemas_are_what_the_program_prints() {
 
 #[test]
 fn stock_scenes_name_their_schema() {
-    for name in STOCK_SCENES {
+    for name in stock::scenes() {
         let text = fs::read_to_string(scenes().join(format!("{name}.toml"))).expect("a scene");
         assert_eq!(text.lines().next(), Some("#:schema scene.schema.json"), "{name}");
     }
@@ -57,7 +58,7 @@ fn changed(folder: &Path, text: &str, changes: &[(&str, &str)]) -> Vec<PathBuf> 
 
 #[test]
 fn stock_scenes_are_right_and_wrong_ones_wrong_to_both() {
-    let stock: Vec<PathBuf> = STOCK_SCENES.iter().map(|name| scenes().join(format!("{name}.toml"))).collect();
+    let stock: Vec<PathBuf> = stock::scenes().map(|name| scenes().join(format!("{name}.toml"))).collect();
     let folder = tempfile::tempdir().expect("a folder");
     let text = fs::read_to_string(scenes().join("muscle_bench.toml")).expect("a scene");
     let changes = [

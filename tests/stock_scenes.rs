@@ -29,7 +29,7 @@ fn run(name: &str, overrides: &[Override]) -> (Simulation, Recording) {
 
 #[test]
 fn val_expectations_hold() {
-    for name in smam::scene::STOCK_SCENES {
+    for name in smam::stock::scenes() {
         let (simulation, recording) = run(name, &[]);
         for verdict in judge(simulation.scene(), &recording).expect("judged") {
             assert!(verdict.passed, "{name}: {verdict:?}");

@@ -13,7 +13,7 @@ fn both(scene: &Scene, duration_s: f64) -> (Recording, Vec<Vec<f64>>, Vec<String
     let mut simulation = Simulation::new(scene.clone()).unwrap_or_else(|e| panic!("{e}"));
     let full = record(&mut simulation, &schedule).unwrap_or_else(|e| panic!("{e}"));
     let inputs = scene.file.input.iter().map(|i| full.si(&i.channel).expect("an input")).collect();
-    let run = TwinRun { times_s: schedule.0, inputs, plan: None };
+    let run = TwinRun { times_s: schedule.times(), inputs, plan: None };
     let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
     let fast = twin.simulate(&run, &TwinSetting { parameters: Vec::new(), effects }).expect("finite");

@@ -36,7 +36,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
     let path = scene.path.display().to_string();
     let mut simulation = Simulation::new(scene)?;
     // What an output names is looked up when a run begins: one without an instant.
-    record(&mut simulation, &Schedule(Vec::new()))?;
+    record(&mut simulation, &Schedule::at(Vec::new()))?;
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
     let file = &simulation.scene().file;
     say!(

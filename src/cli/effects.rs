@@ -7,7 +7,8 @@ use clap::Args;
 use smam::effects::{CATALOGUE, Effect, EffectSpec, ElementKind, ParameterSpec};
 use smam::recording::did_you_mean;
 use smam::report::{AffectedScene, Scale, effect_svg, greek};
-use smam::scene::{STOCK_SCENES, Scene};
+use smam::scene::Scene;
+use smam::stock;
 use smam::system::{Influence, influence};
 
 use super::CliError;
@@ -118,7 +119,7 @@ fn influences(spec: &'static EffectSpec) -> Result<Vec<Influence>, CliError> {
     for name in RIGS {
         shown.extend(on(name)?);
     }
-    for name in STOCK_SCENES.iter().filter(|name| !RIGS.contains(name)) {
+    for name in stock::scenes().filter(|name| !RIGS.contains(name)) {
         if shown.is_empty() {
             shown.extend(on(name)?);
         }

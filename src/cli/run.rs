@@ -74,6 +74,7 @@ pub struct RunArguments {
 /// Runs the command.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    refuse_folder(arguments.junit.as_deref())?;
     let scene = Scene::load(&arguments.scene, &overrides)?;
     let name = scene.file.name.clone();
     let mut simulation = Simulation::new(scene)?;
@@ -82,7 +83,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if arguments.energy {
         simulation.keep_energy_book();
     }
-    let end_s = schedule.0.last().copied().unwrap_or(0.0);
+    let end_s = schedule.last_s().unwrap_or(0.0);
     let view = simulation.scene().file.view.clone();
     let mut observers = observers(arguments, &name, &view, end_s)?;
     let begun = Instant::now();
@@ -99,7 +100,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         _ => finish(&mut observers)?,
     };
     let mut warnings = outcome?;
-    eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.0.first().unwrap_or(&0.0));
+    eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.first_s().unwrap_or(0.0));
     warnings.summary(reached_s).iter().for_each(|w| eprintln!("warning: {w}"));
     say_what_to_open(arguments, &name);
     if let Some(angles) = angles {
@@ -122,6 +123,14 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         check_steps(&recording, &mut halved, &schedule)?;
     }
     if arguments.check { check(arguments, &simulation, &recording) } else { Ok(ExitCode::SUCCESS) }
+}
+
+/// A name that a folder has is refused before the work, not after it.
+fn refuse_folder(file: Option<&Path>) -> Result<(), CliError> {
+    match file.filter(|path| path.is_dir()) {
+        Some(path) => Err(CliError::Write { file: path.to_owned(), source: std::io::ErrorKind::IsADirectory.into() }),
+        None => Ok(()),
+    }
 }
 
 /// Drives a further simulation from the recording of `--input`, which has been looked at already.
@@ -161,7 +170,7 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     }
     let first = recording.time_s().first().copied().unwrap_or(0.0);
     let within = recording.time_s().iter().copied().filter(|t| limit.is_none_or(|l| t - first <= l));
-    Ok(Schedule(within.collect()))
+    Ok(Schedule::at(within.collect()))
 }
 
 /// As many as a scene may ask for.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Args;
 use smam::files::write_whole_bytes;
 use smam::recording::did_you_mean;
-use smam::scene::{STOCK_SCENES, Scene};
+use smam::scene::Scene;
 use smam::stock;
 
 use super::CliError;
@@ -29,7 +29,7 @@ pub struct ScenesArguments {
 pub fn scenes(arguments: &ScenesArguments) -> Result<ExitCode, CliError> {
     let names = match &arguments.name {
         Some(name) => vec![known(name)?],
-        None => STOCK_SCENES.to_vec(),
+        None => stock::scenes().collect(),
     };
     for name in &names {
         let scene = carried(name)?;
@@ -45,8 +45,8 @@ pub fn scenes(arguments: &ScenesArguments) -> Result<ExitCode, CliError> {
 }
 
 fn known(name: &str) -> Result<&'static str, CliError> {
-    STOCK_SCENES.into_iter().find(|known| *known == name).ok_or_else(|| {
-        let nearest = did_you_mean(name, &STOCK_SCENES);
+    stock::scenes().find(|known| *known == name).ok_or_else(|| {
+        let nearest = did_you_mean(name, &stock::scenes().collect::<Vec<_>>());
         CliError::Usage(format!("{name}: no stock scene{nearest}\n  remedy: `smam scenes` lists them"))
     })
 }

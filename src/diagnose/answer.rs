@@ -1,6 +1,7 @@
 //! What a diagnosis answers: the keys of diagnosis.json.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,13 @@ pub enum Verdict {
     Ambiguous,
     UnknownPhysics,
     UnusableData,
+}
+
+/// As diagnosis.json has it.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
 }
 
 /// Step 2: is there more than noise?

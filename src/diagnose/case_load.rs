@@ -49,6 +49,7 @@ impl Case {
             return Err(DiagnoseError::Nothing);
         }
         case.leave_out_empty();
+        case.leave_out_unrecorded();
         case.seal();
         Ok(case)
     }
@@ -119,6 +120,20 @@ impl Case {
         self.runs.retain(shows);
     }
 
+    /// Leaves out channels that are declared and that no run has, unless none is there: nothing that is to be played next would
+    /// show them either, but as one more sensor.
+    fn leave_out_unrecorded(&mut self) {
+        let shows = |c: usize| self.runs.iter().any(|r| r.measured[c].iter().any(|v| v.is_finite()));
+        let is_there: Vec<bool> = (0..self.channels.len()).map(shows).collect();
+        if !is_there.contains(&true) {
+            return;
+        }
+        let absent = self.channels.iter().zip(&is_there).filter(|(_, is_there)| !**is_there);
+        self.notes.extend(absent.map(|(c, _)| format!("{}: no run recorded it; the channel is left out", c.column)));
+        keep_those(&mut self.channels, &is_there);
+        self.runs.iter_mut().for_each(|r| keep_those(&mut r.measured, &is_there));
+    }
+
     /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
     fn seal(&mut self) {
         if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
@@ -158,6 +173,11 @@ impl CaseRun {
         self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
         self.measured.iter_mut().for_each(|m| m.truncate(range.end));
     }
+}
+
+fn keep_those<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    items.retain(|_| keep.next().is_some_and(|k| *k));
 }
 
 /// The same runs twice would be fitted and held back at once.

@@ -46,7 +46,7 @@ pub fn agreement(case: &Case, runs: &[FullRun]) -> FullScene {
 
 fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRun, DiagnoseError> {
     let mut simulation = full_simulation(case, fit, run)?;
-    let shown = record(&mut simulation, &Schedule(run.drive.times_s.clone()))?;
+    let shown = record(&mut simulation, &Schedule::at(run.drive.times_s.clone()))?;
     let mut values = Vec::new();
     for channel in &case.channels {
         values.push(shown.channel(&channel.column)?.values[run.lead_in..].to_vec());

@@ -69,7 +69,7 @@ impl ZeroOn for Vec<Frame> {
 fn frames(case: &Case, fit: &Fit, run: &CaseRun) -> Result<(SceneGraph, Vec<Frame>), DiagnoseError> {
     let mut simulation = full_simulation(case, fit, run)?;
     let mut keeper = Keeper::default();
-    let schedule = Schedule(run.drive.times_s.clone());
+    let schedule = Schedule::at(run.drive.times_s.clone());
     match run_simulation(&mut simulation, &schedule, &AtomicBool::new(false), &mut keeper) {
         Ok(_) => {}
         Err(RunError::System(error)) => return Err(error.into()),

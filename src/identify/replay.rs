@@ -103,7 +103,7 @@ pub fn replay(
         simulation.set_input(input, InputSource::Recorded(line));
     }
     let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
-    let recorded = record(&mut simulation, &Schedule(times))?;
+    let recorded = record(&mut simulation, &Schedule::at(times))?;
     Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording)?)
 }
 

@@ -43,30 +43,43 @@ pub struct ComparedChannel {
     pub rmse: f64,
 }
 
-/// Draws the runs as columns and their channels as rows, as one self-contained SVG.
+/// Draws the runs as columns and their channels as rows, as one self-contained SVG; what a run lacks is said in its place.
 ///
 /// A cell shows measured and simulated over time, and below measured minus simulated with the band of
 /// +- 2 noise standard deviations. Lines are cut where samples are missing and at gaps. `title` says what is compared
 /// with what, `remark` what the reader must know to judge it (what was fitted); it may be empty.
 pub fn compare_svg(title: &str, remark: &str, runs: &[ComparedRun]) -> String {
-    let rows_of_cells = |group: &[ComparedRun]| group.iter().map(|run| run.channels.len()).max();
-    let groups: Vec<&[ComparedRun]> = runs.chunks(RUNS_PER_ROW).collect();
-    let row_count: usize = groups.iter().filter_map(|g| rows_of_cells(g)).sum();
+    let groups: Vec<(&[ComparedRun], Vec<&str>)> = runs.chunks(RUNS_PER_ROW).map(|g| (g, columns_of(g))).collect();
+    let row_count: usize = groups.iter().map(|(_, columns)| columns.len()).sum();
     let width = CELL_WIDTH * runs.len().clamp(2, RUNS_PER_ROW) as f64 + 2.0 * EDGE;
     let height = HEADER_HEIGHT + CELL_HEIGHT * row_count as f64 + EDGE;
     let mut svg = Svg::new(width, height);
     draw_header(&mut svg, width, title, remark);
     let mut y = HEADER_HEIGHT;
-    for group in groups {
-        for (column, run) in group.iter().enumerate() {
-            for (row, channel) in run.channels.iter().enumerate() {
-                let corner = (EDGE + CELL_WIDTH * column as f64, y + CELL_HEIGHT * row as f64);
-                draw_cell(&mut svg, corner, run, channel);
+    for (group, columns) in groups {
+        for column in columns {
+            for (i, run) in group.iter().enumerate() {
+                let corner = (EDGE + CELL_WIDTH * i as f64, y);
+                match run.channels.iter().find(|c| c.column == column) {
+                    Some(channel) => draw_cell(&mut svg, corner, run, channel),
+                    None => draw_absent(&mut svg, corner, run, column),
+                }
             }
+            y += CELL_HEIGHT;
         }
-        y += CELL_HEIGHT * rows_of_cells(group).unwrap_or(0) as f64;
     }
     svg.finish()
+}
+
+/// The channels of several runs, each once, in the order in which they come.
+fn columns_of(runs: &[ComparedRun]) -> Vec<&str> {
+    let mut columns = Vec::new();
+    for channel in runs.iter().flat_map(|run| &run.channels) {
+        if !columns.contains(&channel.column.as_str()) {
+            columns.push(&channel.column);
+        }
+    }
+    columns
 }
 
 fn draw_header(svg: &mut Svg, width: f64, title: &str, remark: &str) {
@@ -87,6 +100,11 @@ fn draw_cell(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, channel: &Com
     let residual_area = Rect { y: signal_area.bottom(), height: RESIDUAL_HEIGHT, ..signal_area };
     signal_panel(run, channel).draw(svg, signal_area);
     residual_panel(run, channel).draw(svg, residual_area);
+}
+
+fn draw_absent(svg: &mut Svg, corner: (f64, f64), run: &ComparedRun, column: &str) {
+    let middle = (corner.0 + CELL_WIDTH / 2.0, corner.1 + SIGNAL_HEIGHT / 2.0);
+    svg.text(middle, Anchor::Middle, 11.0, &format!("{}: {column} was not recorded", run.name));
 }
 
 fn signal_panel(run: &ComparedRun, channel: &ComparedChannel) -> Panel {
@@ -176,6 +194,18 @@ mod tests {
         assert!(svg.contains(">= 1.50 × noise (sd 0.0200 mm)<"));
         assert!(svg.contains(">elongation (mm)<") && svg.contains(">residual (kPa)<"));
         assert!(svg.contains(">time (s)<"));
+    }
+
+    #[test]
+    fn a_channel_has_its_row_in_every_run() {
+        let both = ["elongation_mm", "pressure_kpa"];
+        let svg = compare_svg("Rig", "", &[run("sine", &both), run("steps", &both[1..]), run("hold", &both[..1])]);
+        assert_eq!(svg.matches("<polyline").count(), 4 * 3);
+        for absent in ["steps: elongation_mm was not recorded", "hold: pressure_kpa was not recorded"] {
+            assert!(svg.contains(absent), "{absent}");
+        }
+        let height = HEADER_HEIGHT + 2.0 * CELL_HEIGHT + EDGE;
+        assert!(svg.contains(&format!("height=\"{height}\"")));
     }
 
     #[test]

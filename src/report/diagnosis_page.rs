@@ -8,9 +8,7 @@ use super::axis::three_digits;
 use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
 use super::diagnosis_bars::bars_svg;
 use super::diagnosis_map::{state_map_svg, time_lines_svg};
-use super::diagnosis_words::{
-    estimate, is_good, last_name, next_words, region_words, sensor_words, smallest_words, verdict_word,
-};
+use super::diagnosis_words::{estimate, is_good, last_name, next_words, region_words, sensor_words, smallest_words};
 use super::quantity::with;
 use super::symbols::greek;
 
@@ -20,7 +18,7 @@ pub fn diagnosis_page(outcome: &Outcome) -> String {
     let names: Vec<&str> = d.recordings.iter().map(|folder| last_name(folder)).collect();
     let mut page = HtmlPage::new(&format!("Diagnosis of {}", names.join(", ")));
     page.small(&format!("recordings: {}; scene: {}", d.recordings.join(", "), d.scene));
-    page.verdict(verdict_word(d.verdict), &d.summary, is_good(d.verdict));
+    page.verdict(&d.verdict.to_string(), &d.summary, is_good(d.verdict));
     next(&mut page, outcome);
     location(&mut page, outcome);
     what(&mut page, outcome);

@@ -9,17 +9,6 @@ pub(super) fn last_name(path: &str) -> &str {
     path.trim_end_matches(['/', '\\']).rsplit(['/', '\\']).next().filter(|name| !name.is_empty()).unwrap_or(path)
 }
 
-/// The verdict as diagnosis.json has it.
-pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Adequate => "adequate",
-        Verdict::MissingPhysics => "missing_physics",
-        Verdict::Ambiguous => "ambiguous",
-        Verdict::UnknownPhysics => "unknown_physics",
-        Verdict::UnusableData => "unusable_data",
-    }
-}
-
 /// Whether nothing is left to do about the scene.
 pub(super) fn is_good(verdict: Verdict) -> bool {
     verdict == Verdict::Adequate

@@ -111,7 +111,7 @@ impl Play {
     pub fn fast(&self) -> Result<Fast, ReproduceError> {
         let scene = self.scene()?;
         let twin = Twin::new(&scene)?;
-        let times_s = self.schedule(&scene).0;
+        let times_s = self.schedule(&scene).times();
         let given = |channel: &str| self.inputs.iter().find(|(c, _)| *c == channel).map(|(_, p)| p.clone());
         let programs =
             scene.file.input.iter().zip(&scene.programs).map(|(i, p)| given(&i.channel).unwrap_or_else(|| p.clone()));

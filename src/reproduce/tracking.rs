@@ -114,7 +114,7 @@ impl Rig {
     /// The training input, mm: from home to the middle of its range, then strokes of changing size about it.
     fn training_input_mm(&self) -> (Vec<f64>, Vec<f64>) {
         let [low, high] = self.training_mm;
-        let times = Schedule::even(TRAINING_S, TRAINING_INTERVAL_S).0;
+        let times = Schedule::even(TRAINING_S, TRAINING_INTERVAL_S).times();
         let wave = |f: f64, t: f64| (std::f64::consts::TAU * f * t).sin();
         let shape = |t: f64| TRAINING.iter().map(|(f, share)| share * wave(*f, t)).sum::<f64>();
         let lead = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * (t / LEAD_IN_S).min(1.0)).cos());
@@ -155,7 +155,7 @@ impl Rig {
 }
 
 fn times() -> Vec<f64> {
-    Schedule::even(DURATION_S, INTERVAL_S).0
+    Schedule::even(DURATION_S, INTERVAL_S).times()
 }
 
 /// How the input is chosen.

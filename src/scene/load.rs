@@ -10,21 +10,6 @@ use crate::stock;
 use super::overrides::{Override, child, entry_name};
 use super::{Program, SceneError, SceneFile, check};
 
-/// Scenes that come with the program, by name.
-pub const STOCK_SCENES: [&str; 11] = [
-    "muscle_bench",
-    "muscle_free",
-    "muscle_lift",
-    "muscle_blocked",
-    "muscle_printed_model",
-    "antagonistic_pulley",
-    "bending_catheter",
-    "grip_and_release",
-    "pressure_muscle",
-    "tendon_sheath",
-    "driven_axis",
-];
-
 /// A scene whose keys, numbers and names (within the file) are right.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -167,8 +152,8 @@ pub fn find_scene(path_or_name: &str) -> Result<PathBuf, SceneError> {
         true => SceneError::Unreadable { file: direct.to_owned(), source: std::io::ErrorKind::IsADirectory.into() },
         false => SceneError::UnknownName {
             name: path_or_name.to_owned(),
-            nearest: did_you_mean(path_or_name, &STOCK_SCENES),
-            known: STOCK_SCENES.join(", "),
+            nearest: did_you_mean(path_or_name, &stock::scenes().collect::<Vec<_>>()),
+            known: stock::scenes().collect::<Vec<_>>().join(", "),
         },
     })
 }

@@ -33,7 +33,7 @@ pub use error::SceneError;
 pub use file::*;
 pub use file_channels::*;
 pub use file_muscles::*;
-pub use load::{STOCK_SCENES, Scene, find_scene};
+pub use load::{Scene, find_scene};
 pub use overrides::{Override, calibration_key};
 pub use program::Program;
 pub use schema::scene_schema;

@@ -60,7 +60,7 @@ fn give_way(simulation: &mut Simulation, output: &OutputSpec, from: f64, to: f64
         }
         simulation.advance_to(start_s + f64::from(step) / f64::from(STEPS))?;
     }
-    let recording = record(simulation, &Schedule(vec![start_s + 1.0, start_s + 2.0]))?;
+    let recording = record(simulation, &Schedule::at(vec![start_s + 1.0, start_s + 2.0]))?;
     Ok(recording.si(&output.channel)?.last().copied().unwrap_or(f64::NAN))
 }
 
@@ -115,7 +115,7 @@ fn response(scene: &Scene, sine: Sine, frequency_hz: f64) -> Result<f64, SweepEr
         values.push(rest(scene, at, sine.plunger_m) + sine.amplitude * (TAU * phase).sin());
     }
     hold(&mut simulation, sine.input, &times, &values);
-    let recording = record(&mut simulation, &Schedule(times))?;
+    let recording = record(&mut simulation, &Schedule::at(times))?;
     fundamental(&recording, sine.channel, SAMPLES as usize)
 }
 

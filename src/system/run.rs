@@ -15,22 +15,60 @@ use super::{InputSource, Simulation, SystemError, Warnings};
 /// ```
 /// use smam::system::Schedule;
 ///
-/// assert_eq!(Schedule::even(1.0, 0.25).0, [0.0, 0.25, 0.5, 0.75, 1.0]);
+/// assert_eq!(Schedule::even(1.0, 0.25).times(), [0.0, 0.25, 0.5, 0.75, 1.0]);
 /// // The end is there even where the interval does not fit.
-/// assert_eq!(Schedule::even(1.0, 0.4).0.last(), Some(&1.0));
+/// assert_eq!(Schedule::even(1.0, 0.4).times(), [0.0, 0.4, 0.8, 1.0]);
+/// assert_eq!(Schedule::at(vec![0.0, 0.1, 0.5]).last_s(), Some(0.5));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Schedule(pub Vec<f64>);
+pub struct Schedule(Instants);
+
+/// Even ones are counted, not kept: an hour at 1 kHz has 3.6 million of them.
+#[derive(Clone, Debug, PartialEq)]
+enum Instants {
+    Even { intervals: usize, interval_s: f64, end_s: Option<f64> },
+    At(Vec<f64>),
+}
 
 impl Schedule {
     /// Equal intervals from 0 to `duration_s`, both ends included.
     pub fn even(duration_s: f64, interval_s: f64) -> Self {
-        let count = (duration_s / interval_s + 1e-9).floor() as usize;
-        let mut times: Vec<f64> = (0..=count).map(|i| i as f64 * interval_s).collect();
-        if duration_s - count as f64 * interval_s > 1e-9 * interval_s.max(1e-3) {
-            times.push(duration_s);
+        let intervals = (duration_s / interval_s + 1e-9).floor() as usize;
+        let is_left = duration_s - intervals as f64 * interval_s > 1e-9 * interval_s.max(1e-3);
+        Self(Instants::Even { intervals, interval_s, end_s: is_left.then_some(duration_s) })
+    }
+
+    /// These instants.
+    pub fn at(times_s: Vec<f64>) -> Self {
+        Self(Instants::At(times_s))
+    }
+
+    /// One instant after the other, s.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        let (even, end, listed) = match &self.0 {
+            Instants::Even { intervals, interval_s, end_s } => (Some((0..=*intervals, *interval_s)), *end_s, &[][..]),
+            Instants::At(times_s) => (None, None, &times_s[..]),
+        };
+        let even = even.into_iter().flat_map(|(count, interval_s)| count.map(move |i| i as f64 * interval_s));
+        even.chain(end).chain(listed.iter().copied())
+    }
+
+    /// All instants, s.
+    pub fn times(&self) -> Vec<f64> {
+        self.iter().collect()
+    }
+
+    /// The first instant, s; `None` where there is none.
+    pub fn first_s(&self) -> Option<f64> {
+        self.iter().next()
+    }
+
+    /// The last instant, s; `None` where there is none.
+    pub fn last_s(&self) -> Option<f64> {
+        match &self.0 {
+            Instants::Even { intervals, interval_s, end_s } => Some(end_s.unwrap_or(*intervals as f64 * interval_s)),
+            Instants::At(times_s) => times_s.last().copied(),
         }
-        Self(times)
     }
 }
 
@@ -94,11 +132,11 @@ where
 {
     let mut channels = Channels::new(simulation)?;
     let mut warnings = Warnings::default();
-    if let Some(&first) = schedule.0.first() {
+    if let Some(first) = schedule.first_s() {
         simulation.start_at(first);
     }
     observer.begin(&simulation.graph(&channels)).map_err(RunError::Observer)?;
-    for &time in &schedule.0 {
+    for time in schedule.iter() {
         if stop.load(Ordering::Relaxed) {
             break;
         }
@@ -172,7 +210,7 @@ pub fn record_driven(
     for (channel, value) in &now {
         simulation.set_input(channel, InputSource::Program(Program::constant(*value)));
     }
-    let (mut at, mut chosen) = (schedule.0.first().copied().unwrap_or(0.0), Vec::new());
+    let (mut at, mut chosen) = (schedule.first_s().unwrap_or(0.0), Vec::new());
     record_steps(simulation, schedule, |simulation, next_s, channels, values| {
         let measured = channels.names.iter().position(|n| n == driver.watched()).map_or(f64::NAN, |i| values[i]);
         chosen = driver.choose(next_s, measured);
@@ -215,7 +253,7 @@ fn check_names<'a>(
 /// use smam::system::{Schedule, Simulation, record};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let schedule = Schedule(vec![0.0, 0.05, 0.2]);
+/// let schedule = Schedule::at(vec![0.0, 0.05, 0.2]);
 /// let recording = record(&mut Simulation::new(Scene::load("muscle_bench", &[])?)?, &schedule)?;
 /// assert_eq!(recording.columns(), ["plunger_mm", "elongation_mm", "pressure_kpa", "force_n"]);
 /// assert_eq!(recording.time_s(), [0.0, 0.05, 0.2]);
@@ -233,12 +271,13 @@ fn record_steps(
     mut before: impl FnMut(&mut Simulation, f64, &Channels, &[f64]),
 ) -> Result<Recording, SystemError> {
     let mut channels = Channels::new(simulation)?;
-    if let Some(&first) = schedule.0.first() {
+    if let Some(first) = schedule.first_s() {
         simulation.start_at(first);
     }
-    let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(schedule.0.len()); channels.names.len()];
+    let times_s = schedule.times();
+    let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(times_s.len()); channels.names.len()];
     let mut values = Vec::new();
-    for &time in &schedule.0 {
+    for &time in &times_s {
         if time > simulation.time_s() {
             before(simulation, time, &channels, &values);
             simulation.advance_to(time)?;
@@ -247,7 +286,7 @@ fn record_steps(
         columns.iter_mut().zip(&values).for_each(|(column, value)| column.push(*value));
     }
     let named = channels.names.iter().zip(columns).map(|(name, values)| Channel::new(name.clone(), values));
-    Ok(Recording::new(schedule.0.clone(), named.collect())?)
+    Ok(Recording::new(times_s, named.collect())?)
 }
 
 #[cfg(test)]
@@ -296,7 +335,7 @@ mod tests {
             let mut simulation = Simulation::new(Scene::load("muscle_bench", &[]).expect("stock")).expect("builds");
             let line = recording.piecewise_si("plunger_mm").expect("there");
             simulation.set_input("plunger_mm", InputSource::Recorded(line));
-            let run = record(&mut simulation, &Schedule(time_s)).expect("runs");
+            let run = record(&mut simulation, &Schedule::at(time_s)).expect("runs");
             run.channel("elongation_mm").expect("there").values.clone()
         };
         let (whole, late) = (ramp(0), ramp(5));

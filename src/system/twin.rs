@@ -44,9 +44,9 @@ pub struct TwinRun {
 impl TwinRun {
     /// The scene's own programmes at the times of a schedule.
     pub fn of_programs(scene: &Scene, schedule: &Schedule) -> Self {
-        let Schedule(times_s) = schedule;
+        let times_s = schedule.times();
         let inputs = scene.programs.iter().map(|p| times_s.iter().map(|&t| p.value(t)).collect()).collect();
-        Self { times_s: times_s.clone(), inputs, plan: None }
+        Self { times_s, inputs, plan: None }
     }
 }
 

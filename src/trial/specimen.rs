@@ -82,7 +82,7 @@ fn play(
     for column in drive.columns() {
         simulation.set_input(column, InputSource::Recorded(drive.piecewise_si(column)?));
     }
-    let shown = record(&mut simulation, &Schedule(drive.time_s().to_vec()))?;
+    let shown = record(&mut simulation, &Schedule::at(drive.time_s().to_vec()))?;
     let mut recording = drive.clone();
     for (column, sd) in outputs {
         let mut noisy = |v: &f64| -> f64 {

@@ -46,72 +46,97 @@ pub(super) fn refuse_what_has_none(scene: &Scene, built: &Built) -> Result<(), S
 /// Joins equal hinges and takes the inertia of the start pose.
 pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -> Result<Lumped, SystemError> {
     let full = &built.plant;
-    let joints = mechanism.map_or(0, |m| m.coordinates().len());
+    let names: Vec<String> =
+        mechanism.iter().flat_map(|m| m.coordinates()).map(|coordinate| coordinate.name.clone()).collect();
+    let joints = names.len();
+    let inertia = joint_inertia(mechanism, joints);
+    let groups = groups(full, joints, &built.state, &inertia);
+    let shares = Shares::of(&groups, joints, full.dim());
+    let entry = |i: usize, j: usize| match i < joints && j < joints {
+        true => inertia[(i, j)],
+        false => full.coordinates.inertia[i * full.dim() + j],
+    };
+    let coordinates = Coordinates {
+        inertia: shares.matrix(entry),
+        damping: shares.sum(&full.coordinates.damping, 2),
+        stiffness: shares.sum(&full.coordinates.stiffness, 2),
+        rest: shares.sum(&full.coordinates.rest, 0),
+        force: shares.sum(&joint_forces(scene, mechanism, &names), 1),
+        stops: groups.iter().enumerate().flat_map(|(new, group)| lumped_stops(full, new, group)).collect(),
+        contact: None,
+    };
+    let mut plant = Plant { coordinates, ..full.clone() };
+    plant.muscles.iter_mut().for_each(|m| m.jacobian = shares.sum(&m.jacobian, 1));
+    plant.cables.iter_mut().for_each(|c| c.jacobian = shares.sum(&c.jacobian, 1));
+    let state = built.state.on_coordinates(&shares.sum(built.state.y(), 0));
+    let mut hinges: Vec<usize> = groups.iter().map(Vec::len).collect();
+    hinges.resize(shares.dim, 1);
+    let group_names: Vec<Vec<String>> = groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
+    let tables = scene.file.mechanism.as_ref().map_or(&[][..], |m| &m.joint);
+    let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
+    Ok(Lumped { joints: groups.len(), plant, state, hinges, names: group_names, spring_table })
+}
+
+fn joint_inertia(mechanism: Option<&Mechanism>, joints: usize) -> DMatrix<f64> {
     let mut inertia = DMatrix::zeros(joints, joints);
-    let mut force = vec![0.0; joints];
-    let mut names = Vec::new();
     if let (Some(mechanism), true) = (mechanism, joints > 0) {
         mechanism.mass_matrix(&mut inertia);
+    }
+    inertia
+}
+
+/// Weights in the start pose, and loads.
+fn joint_forces(scene: &Scene, mechanism: Option<&Mechanism>, names: &[String]) -> Vec<f64> {
+    let mut force = vec![0.0; names.len()];
+    if let (Some(mechanism), false) = (mechanism, names.is_empty()) {
         mechanism.weight(&mut force);
-        names = mechanism.coordinates().iter().map(|c| c.name.clone()).collect();
     }
     for load in &scene.file.load {
         if let Some(i) = names.iter().position(|n| *n == load.joint) {
             force[i] += load.force_n.or(load.torque_n_m).unwrap_or(0.0);
         }
     }
-    let groups = groups(full, joints, &built.state, &inertia);
-    let dim = groups.len() + full.dim() - joints;
-    // Each old coordinate: its new one and its share of it.
-    let mut place = vec![(0, 0.0); full.dim()];
-    for (new, group) in groups.iter().enumerate() {
-        group.iter().for_each(|&old| place[old] = (new, 1.0 / group.len() as f64));
-    }
-    (joints..full.dim()).for_each(|old| place[old] = (groups.len() + old - joints, 1.0));
-    let spread = |values: &[f64]| {
-        let mut sum = vec![0.0; dim];
-        values.iter().zip(&place).for_each(|(v, (new, share))| sum[*new] += v * share);
-        sum
-    };
-    let squared = |values: &[f64]| {
-        let mut sum = vec![0.0; dim];
-        values.iter().zip(&place).for_each(|(v, (new, share))| sum[*new] += v * share * share);
-        sum
-    };
-    let mut matrix = vec![0.0; dim * dim];
-    for (i, (a, share_a)) in place.iter().enumerate() {
-        for (j, (b, share_b)) in place.iter().enumerate() {
-            let m =
-                if i < joints && j < joints { inertia[(i, j)] } else { full.coordinates.inertia[i * full.dim() + j] };
-            matrix[a * dim + b] += m * share_a * share_b;
+    force
+}
+
+/// How old coordinates go into new ones: hinges that are joined turn by equal shares of their group's angle.
+struct Shares {
+    /// Of each old coordinate: its new one and its share of it.
+    place: Vec<(usize, f64)>,
+    /// Number of the new ones.
+    dim: usize,
+}
+
+impl Shares {
+    /// Joints go by groups, what comes after them stays as it is.
+    fn of(groups: &[Vec<usize>], joints: usize, full_dim: usize) -> Self {
+        let mut place = vec![(0, 1.0); full_dim];
+        for (new, group) in groups.iter().enumerate() {
+            group.iter().for_each(|&old| place[old] = (new, 1.0 / group.len() as f64));
         }
+        (joints..full_dim).for_each(|old| place[old].0 = groups.len() + old - joints);
+        Self { place, dim: groups.len() + full_dim - joints }
     }
-    let total = |values: &[f64]| {
-        let mut sum = vec![0.0; dim];
-        values.iter().zip(&place).for_each(|(v, (new, _))| sum[*new] += v);
+
+    /// Sums of values times a power of their shares: 0 of angles, 1 of forces and levers, 2 of springs and dampers.
+    fn sum(&self, values: &[f64], power: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; self.dim];
+        for (value, (new, share)) in values.iter().zip(&self.place) {
+            sum[*new] += (0..power).fold(*value, |product, _| product * share);
+        }
         sum
-    };
-    let mut generalised = spread(&force);
-    generalised.resize(dim, 0.0);
-    let coordinates = Coordinates {
-        inertia: matrix,
-        damping: squared(&full.coordinates.damping),
-        stiffness: squared(&full.coordinates.stiffness),
-        rest: total(&full.coordinates.rest),
-        force: generalised,
-        stops: groups.iter().enumerate().flat_map(|(new, group)| lumped_stops(full, new, group)).collect(),
-        contact: None,
-    };
-    let mut plant = Plant { coordinates, ..full.clone() };
-    plant.muscles.iter_mut().for_each(|m| m.jacobian = spread(&m.jacobian));
-    plant.cables.iter_mut().for_each(|c| c.jacobian = spread(&c.jacobian));
-    let state = built.state.on_coordinates(&total(built.state.y()));
-    let mut hinges: Vec<usize> = groups.iter().map(Vec::len).collect();
-    hinges.resize(dim, 1);
-    let group_names: Vec<Vec<String>> = groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
-    let tables = scene.file.mechanism.as_ref().map_or(&[][..], |m| &m.joint);
-    let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
-    Ok(Lumped { joints: groups.len(), plant, state, hinges, names: group_names, spring_table })
+    }
+
+    /// The same of a matrix, row by row.
+    fn matrix(&self, entry: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut matrix = vec![0.0; self.dim * self.dim];
+        for (i, (a, share_a)) in self.place.iter().enumerate() {
+            for (j, (b, share_b)) in self.place.iter().enumerate() {
+                matrix[a * self.dim + b] += entry(i, j) * share_a * share_b;
+            }
+        }
+        matrix
+    }
 }
 
 /// Joints that may be joined: equal in lever, spring, damper, rest, start and stops, and without a muscle on them.
