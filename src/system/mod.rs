@@ -44,6 +44,7 @@ mod plant;
 mod rates;
 mod rosenbrock;
 mod run;
+mod schedule;
 mod simulation;
 mod state;
 mod switching;
@@ -65,7 +66,8 @@ pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
 };
 pub use rosenbrock::Stepper;
-pub use run::{Driver, RunError, Schedule, record, record_driven, run};
+pub use run::{Driver, RunError, record, record_driven, run};
+pub use schedule::Schedule;
 pub use simulation::Simulation;
 pub use state::PlantState;
 pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};
