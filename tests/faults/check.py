@@ -4,6 +4,7 @@
     tests/faults/check.py --smam target/release/smam                  what CI runs
     tests/faults/check.py --smam target/release/smam --kills 100      what docs/reliability.md reports
     tests/faults/check.py --smam target/release/smam --part kills --only diagnose
+    tests/faults/check.py --smam target/release/smam --part determinism --other target/debug/smam
 
 A check that needs what is not here (root for a small disk, strace, libfaketime) says that it is skipped. Exit code 77: nothing can be checked
 here, because this is no Linux.
@@ -33,6 +34,7 @@ def main():
     parser.add_argument("--kills", type=int, default=5, help="kills at random moments, of each quick command; slow ones get a part of it")
     parser.add_argument("--seed", type=int, default=1, help="of the moments")
     parser.add_argument("--part", choices=PARTS, action="append", help="only this part; may be given several times")
+    parser.add_argument("--other", help="another build of the same program, which must write the same bytes")
     parser.add_argument("--only", default="", help="of the kills, only commands with this in their name")
     arguments = parser.parse_args()
     if not sys.platform.startswith("linux"):
@@ -48,9 +50,12 @@ def main():
         recordings = make_recordings(run, smam, folder)
         if "kills" in parts:
             kills.check(smam, folder / "kills", recordings, arguments.kills, arguments.seed, arguments.only, is_long)
-        for name, module in (("disk", disk), ("inputs", inputs), ("together", together), ("clock", clock), ("determinism", determinism)):
+        for name, module in (("disk", disk), ("inputs", inputs), ("together", together), ("clock", clock)):
             if name in parts:
                 module.check(smam, folder / name, recordings, is_long)
+        if "determinism" in parts:
+            other = arguments.other and str(Path(arguments.other).resolve())
+            determinism.check(smam, folder / "determinism", recordings, is_long, other)
     print(f"{len(CHECKS.faults)} faults; {CHECKS.cpu_s:.0f} s of the program's CPU time")
     print("\n".join(CHECKS.faults), file=sys.stderr)
     return 1 if CHECKS.faults else 0
