@@ -1,7 +1,7 @@
 //! Conceals an effect in a scene, records it, and lets the diagnosis look for it.
 //!
 //! ```text
-//! cargo run --release --example find_a_leak -- [SCENE] [NAME ELEMENT KEY VALUE] [--keep DIR]
+//! cargo run --release --example find_a_leak -- [SCENE] [NAME ELEMENT|CHANNEL KEY VALUE] [--keep DIR]
 //! ```
 
 use std::error::Error;
@@ -21,10 +21,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(_) => return Err("an effect needs four words: NAME ELEMENT KEY VALUE (see `smam effects`)".into()),
     };
     let (name, element, key, value): (&str, &str, &str, f64) = effect;
+    // An error of a sensor is named by the channel that has it.
+    let is_channel = name.starts_with("sensor_");
     let table = EffectTable {
         name: name.to_owned(),
-        element: element.to_owned(),
-        channel: None,
+        element: if is_channel { "sensor" } else { element }.to_owned(),
+        channel: is_channel.then(|| element.to_owned()),
         parameters: [(key.to_owned(), value)].into_iter().collect(),
     };
     // A size of zero conceals nothing.

@@ -15,6 +15,10 @@ use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case};
 use super::CliError;
 use super::files::{take_folder, write};
 
+/// The stock scenes that together can have every effect of the catalogue.
+const SCENES: [&str; 6] =
+    ["muscle_bench", "antagonistic_pulley", "bending_catheter", "pressure_muscle", "tendon_sheath", "driven_axis"];
+
 /// Arguments of `smam trial`.
 #[derive(Args)]
 #[command(after_help = "Examples:
@@ -22,7 +26,7 @@ use super::files::{take_folder, write};
   smam trial --scene muscle_bench --only-nulls --nulls 200 --seed 2")]
 pub struct TrialArguments {
     /// Scenes to hold it on
-    #[arg(long = "scene", value_name = "SCENE", default_values = ["muscle_bench", "antagonistic_pulley", "bending_catheter"])]
+    #[arg(long = "scene", value_name = "SCENE", default_values = SCENES)]
     scenes: Vec<String>,
     /// Only this effect
     #[arg(long)]
@@ -59,7 +63,7 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     if cases.is_empty() {
         return Err(no_case(&arguments.scenes.join(", ")));
     }
-    let missing: Vec<&TrialCase> = cases.iter().filter(|c| !done.iter().any(|r| r.name == c.name)).collect();
+    let missing: Vec<&TrialCase> = cases.iter().filter(|c| row_of(c, &done).is_none()).collect();
     eprintln!("{} cases, {} of them known already", cases.len(), cases.len() - missing.len());
     let _held = take_folder(&arguments.out)?;
     let file = Mutex::new(open(&path)?);
@@ -72,13 +76,18 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
         file.write_all(format!("{line}\n").as_bytes()).map_err(failed)
     })?;
     let all = read_rows(&path)?;
-    let mut rows: Vec<Row> = cases.iter().filter_map(|c| all.iter().find(|r| r.name == c.name)).cloned().collect();
+    let mut rows: Vec<Row> = cases.iter().filter_map(|c| row_of(c, &all)).cloned().collect();
     rows.sort_by(|a, b| a.scene.cmp(&b.scene));
     write(&arguments.out.join("trial.md"), &table(&rows))?;
     let wrong = rows.iter().filter(|r| r.judgement == Judgement::Wrong).count();
     let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
     say!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// A case of another seed is another case.
+fn row_of<'a>(case: &TrialCase, rows: &'a [Row]) -> Option<&'a Row> {
+    rows.iter().find(|r| r.name == case.name && r.seed == case.seed)
 }
 
 fn no_case(place: &str) -> CliError {

@@ -28,6 +28,8 @@ pub enum Judgement {
 pub struct Row {
     pub name: String,
     pub scene: String,
+    /// Of everything that was drawn for the case.
+    pub seed: u64,
     pub effect: String,
     pub element: String,
     pub size: String,
@@ -54,6 +56,7 @@ pub fn judge(case: &TrialCase, outcome: &Outcome, seconds: f64) -> Row {
     Row {
         name: case.name.clone(),
         scene: case.scene.clone(),
+        seed: case.seed,
         effect: truth.map_or("nothing", |t| t.spec().name).to_owned(),
         element: truth.map_or(String::new(), |t| t.channel.clone().unwrap_or_else(|| t.element.to_string())),
         size: case.size.map_or(String::new(), |s| format!("{s:?}").to_lowercase()),

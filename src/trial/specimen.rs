@@ -17,8 +17,17 @@ use super::TrialError;
 use super::programme::programmes;
 
 /// Standard deviation of the noise, by how a column begins: what such sensors have.
-const NOISE: [(&str, f64); 5] =
-    [("elongation", 0.02), ("pressure", 5.0), ("angle", 0.08), ("bend", 0.15), ("jaw", 0.15)];
+const NOISE: [(&str, f64); 9] = [
+    ("elongation", 0.02),
+    ("displacement", 0.05),
+    ("pressure", 5.0),
+    ("angle", 0.08),
+    ("bend", 0.15),
+    ("jaw", 0.15),
+    ("tip", 0.15),
+    ("tension", 0.05),
+    ("force", 0.5),
+];
 /// Calibrated parameters lie within this share of the scene's.
 const CALIBRATION_SPREAD: f64 = 0.2;
 

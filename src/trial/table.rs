@@ -16,6 +16,7 @@ use super::judge::{Judgement, Row};
 ///     effect: "nothing".to_owned(),
 ///     judgement: if i == 0 { Judgement::Wrong } else { Judgement::Right },
 ///     verdict: if i == 0 { Verdict::MissingPhysics } else { Verdict::Adequate },
+/// #   seed: 0,
 /// #   element: String::new(),
 /// #   size: String::new(),
 /// #   value: 0.0,
@@ -50,6 +51,19 @@ fn one_scene(text: &mut String, scene: &str, rows: &[&Row]) {
     let _ = writeln!(text, "### {scene}\n");
     if !nulls.is_empty() {
         let _ = writeln!(text, "Nothing missing: {} cases, {false_alarms} false alarms.\n", nulls.len());
+    }
+    let sizes: Vec<bool> = rows.iter().filter_map(|r| r.covered).collect();
+    if !sizes.is_empty() {
+        let count = |judgement| rows.iter().filter(|r| r.effect != "nothing" && r.judgement == judgement).count();
+        let _ = writeln!(
+            text,
+            "Something missing: {} cases, {} right, {} among others. The 95 % interval holds the size in {} of {}.\n",
+            rows.len() - nulls.len(),
+            count(Judgement::Right),
+            count(Judgement::Among),
+            sizes.iter().filter(|covered| **covered).count(),
+            sizes.len()
+        );
     }
     let _ = writeln!(text, "| effect | on | small | medium | large |\n|---|---|---|---|---|");
     let mut seen: Vec<(&str, &str)> = Vec::new();
