@@ -270,3 +270,16 @@ fn an_open_answer_asks_for_the_sensor_that_would_decide() {
     let more = record_asked(&drawn.truth, &inputs, Some("force_n")).unwrap_or_else(|e| panic!("{e}"));
     assert!(more.find("force_n").is_some());
 }
+
+/// Half the stiffness with half the gain is slower by as much as the sensor is: the calibration takes the lag in.
+#[test]
+fn a_lag_that_the_calibration_took_in_is_found_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lag = effect("sensor_lag", "displacement_mm", "time_constant_s", 0.07);
+    make_specimen("pressure_muscle", Some(&lag), 1.0, 1, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    let d = answer(folder.path());
+    let first = d.effects.first().unwrap_or_else(|| panic!("{}", d.summary));
+    assert_eq!((first.name.as_str(), first.element.as_str()), ("sensor_lag", "sensor (displacement_mm)"), "{}", d.summary);
+    let found = &first.parameters["time_constant_s"];
+    assert!(found.ci95[0] < 0.07 && 0.07 < found.ci95[1], "{found:?}");
+}

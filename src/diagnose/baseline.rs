@@ -22,8 +22,7 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     if !fit.on_bound.is_empty() {
         for &i in &fit.on_bound {
             let p = &mut case.parameters[i];
-            let half = (p.max - p.min) / 2.0;
-            (p.min, p.max) = ((p.min - half).max(p.min * 0.1), p.max + half);
+            (p.min, p.max) = widened(p.min, p.max);
             warnings.push(format!(
                 "{} met the end of its range, which was widened to {:.3e} .. {:.3e}",
                 p.key, p.min, p.max
@@ -37,6 +36,13 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     case.leave_out_unheld(&fit.model.setting(case, &fit.x)).ok_or_else(diverges)?;
     let fit = self::fit(case, &noise, Some(&fit.x))?;
     Ok(Baseline { fit, noise, warnings })
+}
+
+/// A range with half of it added on both sides; what cannot be negative stays so.
+fn widened(min: f64, max: f64) -> (f64, f64) {
+    let half = (max - min) / 2.0;
+    let low = if min < 0.0 { min - half } else { (min - half).max(0.1 * min) };
+    (low, max + half)
 }
 
 /// Steps planned at a calibration, the scene's own if none is given.
@@ -79,4 +85,16 @@ fn first_noise(case: &Case) -> Vec<Noise> {
         Noise::white(sd)
     };
     (0..case.channels.len()).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_grows_on_both_sides_and_keeps_its_sign() {
+        assert_eq!(widened(-100.0, 100.0), (-200.0, 200.0));
+        assert_eq!(widened(1.0, 4.0), (0.1, 5.5));
+        assert_eq!(widened(0.0, 2.0), (0.0, 3.0));
+    }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::effects::Effect;
 use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
 use crate::recording::{Recording, RecordingSet, Role, RunUse};
-use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
+use crate::scene::{CalibrateSpec, Override, Scene};
 use crate::system::{Twin, TwinRun};
 
 use super::DiagnoseError;
@@ -242,14 +242,11 @@ fn channels(set: &RecordingSet, scene: &Scene, twin: &Twin) -> Vec<CaseChannel> 
 }
 
 fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, DiagnoseError> {
-    let keys = scene.keys();
     let parameter = |spec: &CalibrateSpec| {
-        let key = calibration_key(&spec.key);
         let parameter = twin
-            .parameter(key)
+            .parameter(&spec.key)
             .ok_or_else(|| DiagnoseError::Parameter { file: scene.path.clone(), key: spec.key.clone() })?;
-        let value = keys.iter().find(|(k, _)| k == key).and_then(|(_, v)| v.parse().ok());
-        let start: f64 = value.unwrap_or((spec.min + spec.max) / 2.0);
+        let start = scene.number(&spec.key).unwrap_or((spec.min + spec.max) / 2.0);
         Ok(CaseParameter {
             key: spec.key.clone(),
             parameter,

@@ -173,12 +173,15 @@ fn recorded_inputs(case: &Case) -> Vec<(String, Vec<f64>)> {
 fn fastest_hz(case: &Case, strokes: &[Stroke]) -> f64 {
     let of = |(i, stroke): (usize, &Stroke)| {
         let speeds = case.runs.iter().flat_map(|r| {
-            let samples = r.drive.inputs[i].windows(2).zip(r.drive.times_s.windows(2));
+            // The way from zero to where the recording begins was not recorded.
+            let samples = r.drive.inputs[i][r.lead_in..].windows(2).zip(r.drive.times_s[r.lead_in..].windows(2));
             samples.map(|(x, t)| ((x[1] - x[0]) / (t[1] - t[0])).abs())
         });
-        speeds.fold(0.0, f64::max) / (std::f64::consts::PI * (stroke.high - stroke.low).max(f64::MIN_POSITIVE))
+        speeds.fold(0.0, f64::max) / (std::f64::consts::PI * (stroke.high - stroke.low))
     };
-    strokes.iter().enumerate().map(of).fold(1.0, f64::min).max(0.05)
+    // What never moves limits nothing.
+    let moved = strokes.iter().enumerate().filter(|(_, s)| s.high > s.low);
+    moved.map(of).fold(1.0, f64::min).max(0.05)
 }
 
 /// The run that the best model would give; its rig is that of the first recorded one. `None` when it diverges.

@@ -28,7 +28,10 @@ impl Problem<'_> {
             [(0..half, half..end), (half..end, 0..half)].map(|(kept, left_out)| {
                 let mut rest = self.borrowed();
                 rest[i] = Cow::Owned(without_samples(run, left_out));
-                (self.part(rest), self.part(vec![Cow::Owned(without_samples(run, kept))]))
+                // What is left out is foretold with the zero that the rest decides.
+                let mut foretold = without_samples(run, kept);
+                foretold.open_part = Some(rest[i].measured.clone());
+                (self.part(rest), self.part(vec![Cow::Owned(foretold)]))
             })
         };
         (0..self.runs.len()).flat_map(one).collect()

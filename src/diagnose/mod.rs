@@ -243,6 +243,13 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         Confirmed::InPart if is_open_set => Verdict::UnknownPhysics,
         _ => verdict::verdict(&found, &effects, excess, is_open_set),
     };
+    if verdict == Verdict::UnknownPhysics && !open_is_loud(&case, &noise, &found) {
+        warnings.push(
+            "the open runs are explained down to their noise: what is left shows in the sealed runs alone, and cannot be named \
+             from the others; record more runs of their kind, or hold back another one (use = \"holdout\" in recordings.toml)"
+                .to_owned(),
+        );
+    }
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = match verdict {
@@ -277,6 +284,16 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         just_visible,
         next_inputs: experiment.inputs,
         case,
+    })
+}
+
+/// Whether the open runs hold more than noise that the best does not explain.
+fn open_is_loud(case: &Case, noise: &[Noise], found: &Found) -> bool {
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let residuals = open.residuals(&found.best.model, &found.best.x);
+    residuals.is_none_or(|r| {
+        let (excess, error) = noise::structured_excess(&r, noise);
+        verdict::is_loud(excess, error)
     })
 }
 

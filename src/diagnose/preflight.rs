@@ -87,13 +87,36 @@ fn channels(case: &Case, found: &mut Preflight) {
     }
 }
 
-/// Factors by which a channel is typically wrong, with their names.
-const FACTORS: [(f64, &str); 4] = [
-    (1000.0, "1000 (a prefix: milli, kilo)"),
-    (1.0e-3, "1/1000 (a prefix: milli, kilo)"),
-    (std::f64::consts::PI / 180.0, "pi/180 (degrees and radians)"),
-    (180.0 / std::f64::consts::PI, "180/pi (degrees and radians)"),
+/// Factors by which a channel is typically wrong, with their names and the unit that the column must end in.
+const FACTORS: [(f64, &str, &str); 6] = [
+    (1000.0, "1000 (a prefix: milli, kilo)", ""),
+    (1.0e-3, "1/1000 (a prefix: milli, kilo)", ""),
+    (std::f64::consts::PI / 180.0, "pi/180 (degrees and radians)", "_deg"),
+    (180.0 / std::f64::consts::PI, "180/pi (degrees and radians)", "_rad"),
+    (0.01, "1/100 (bar in place of kPa)", "_kpa"),
+    (100.0, "100 (kPa in place of bar)", "_bar"),
 ];
+
+/// How long a recording counts as beginning, s, and how far from the scene it may begin, in deviations of its noise and
+/// as a share of its spread.
+const BEGINNING_S: f64 = 0.3;
+const BEGINS_OFF: f64 = 10.0;
+const BEGINS_OFF_SHARE: f64 = 0.05;
+
+/// How far from the scene a channel begins, in the same way in every run that begins at zero.
+fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
+    let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
+    let offsets: Vec<f64> = at_zero
+        .filter_map(|(run, residual)| {
+            let until = run.times_s().first()? + BEGINNING_S;
+            let early = run.times_s().iter().zip(&residual[channel]).take_while(|(t, _)| **t <= until);
+            let known: Vec<f64> = early.map(|(_, r)| *r).filter(|r| r.is_finite()).collect();
+            (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+        })
+        .collect();
+    let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
+    offsets.iter().all(|o| (o - mean).abs() < 0.2 * mean.abs()).then_some(mean).filter(|m| m.is_finite())
+}
 
 /// A channel whose spread is below so many deviations of its noise shows its noise: it says nothing of units.
 const NOISE_ALONE: f64 = 3.0;
@@ -120,23 +143,56 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
             continue;
         }
         let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);
-        let named = FACTORS.iter().find(|(f, _)| (ratio / f).ln().abs() < 0.7f64.min(f.ln().abs() / 3.0));
-        if let Some((_, words)) = named.filter(|_| !(0.05..=20.0).contains(&ratio)) {
-            found.unusable.push(format!(
-                "{}: moves {ratio:.3e} times as far as the scene does: a factor of {words}; mend the unit in the column's name",
-                channel.column
-            ));
-        }
         let correlation = correlation(&measured, &simulated);
-        if correlation < -0.8 {
-            found.unusable.push(format!("{}: runs against the scene: sign or channel swapped?", channel.column));
-        } else if correlation < 0.3 {
-            found.warnings.push(format!(
-                "{}: hardly follows the scene (correlation {correlation:.2}): channels swapped?",
-                channel.column
+        let column = &channel.column;
+        if let Some(words) = wrong_unit(column, ratio) {
+            found.unusable.push(format!(
+                "{column}: moves {ratio:.3e} times as far as the scene does: a factor of {words}; mend the unit in the column's name"
             ));
+        } else if correlation < -0.8 {
+            found.unusable.push(format!("{column}: runs against the scene: sign or channel swapped?"));
+        } else if correlation < 0.3 {
+            found
+                .warnings
+                .push(format!("{column}: hardly follows the scene (correlation {correlation:.2}): channels swapped?"));
+        } else {
+            let least_off = (BEGINS_OFF * noise).max(BEGINS_OFF_SHARE * spread(&simulated));
+            let off = begins_off(problem, &residuals, c).filter(|off| off.abs() > least_off);
+            found.warnings.extend(odd_size(column, ratio));
+            found.warnings.extend(off.map(|off| other_zero(column, off)));
         }
     }
+}
+
+/// The factor by which a unit is wrong, where the ratio of the spreads is far from 1 and near to one.
+fn wrong_unit(column: &str, ratio: f64) -> Option<&'static str> {
+    let is_near = |factor: f64| (ratio / factor).ln().abs() < 0.7f64.min(factor.ln().abs() / 3.0);
+    let named = FACTORS.iter().find(|(factor, _, suffix)| column.ends_with(suffix) && is_near(*factor));
+    named.filter(|_| !(0.05..=20.0).contains(&ratio)).map(|(_, words, _)| *words)
+}
+
+/// Spreads that differ by a larger factor may be of two units; missing physics can do that too.
+const ODD_RATIO: f64 = 3.0;
+/// kPa in a psi.
+const KPA_PER_PSI: f64 = 6.894_757;
+
+fn odd_size(column: &str, ratio: f64) -> Option<String> {
+    let psi = if column.ends_with("_kpa") && (ratio * KPA_PER_PSI).ln().abs() < 0.25 {
+        " (psi in place of kPa?)"
+    } else {
+        ""
+    };
+    (ratio.ln().abs() > ODD_RATIO.ln()).then(|| {
+        format!("{column}: moves {ratio:.3} times as far as the scene does: make sure of its unit{psi} before believing what is named")
+    })
+}
+
+fn other_zero(column: &str, off: f64) -> String {
+    let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
+    format!(
+        "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
+         absolute pressure), subtract it"
+    )
 }
 
 fn ends(values: &[f64]) -> (f64, f64) {

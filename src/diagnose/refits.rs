@@ -14,10 +14,12 @@ const FINISHED: usize = 4;
 const NEAR: f64 = 0.1;
 /// Candidates that promise less than this share of the best are not refitted.
 const WORTH: f64 = 0.1;
+/// At most so many that the calibration may hide.
+const SWALLOWED: usize = 2;
 /// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
 pub(super) const BRANCH_TIE: f64 = 0.02;
 
-/// The candidates worth a full refit: the most promising of every effect.
+/// The candidates worth a full refit: the most promising of every effect, and some that the calibration may hide.
 pub(super) fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
     let mut picked: Vec<Screened> = Vec::new();
     let top = screened.first().map_or(0.0, |s| s.gain);
@@ -31,7 +33,16 @@ pub(super) fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
             break;
         }
     }
+    picked.extend(swallowed(screened));
     picked
+}
+
+/// Effects that the calibration has taken in, the most visible first. Their signatures promise nothing: at another calibration
+/// they may explain more than all that do.
+fn swallowed(screened: &[Screened]) -> Vec<Screened> {
+    let mut taken_in: Vec<&Screened> = screened.iter().filter(|s| s.is_swallowed).collect();
+    taken_in.sort_by(|a, b| a.typical_over_least().total_cmp(&b.typical_over_least()).reverse());
+    taken_in.into_iter().take(SWALLOWED).cloned().collect()
 }
 
 /// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
@@ -67,6 +78,12 @@ fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option
     let model = from.model.plus(&candidate.variant.placed, &values);
     let mut start = from.x.clone();
     start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
+    if candidate.is_swallowed {
+        // Where the calibration stands the effect is not wanted: it begins where the scene has it.
+        let calibrated = problem.case.parameters.iter().map(|p| p.start);
+        start.iter_mut().zip(calibrated).for_each(|(x, scene)| *x = scene);
+        return problem.fit(&model, &start);
+    }
     let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
     let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);
     slopes.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
@@ -119,15 +136,16 @@ const FORETOLD: f64 = 0.5;
 /// Where the other runs say too little about an effect or the calibration beside it, it is carried too far: then it must foretell halves
 /// of runs, all others known, and much better.
 pub(super) fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
-    let gain = |(rest, left_out): (Problem, Problem)| -> Option<f64> {
+    // A fold on which the model before cannot be played says nothing; one on which that with more in it cannot is not foretold.
+    let gain = |(rest, left_out): (Problem, Problem)| -> f64 {
         let cost = |fit: &Fit| {
             let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;
             let fitted = rest.fit_roughly(&fit.model, &fit.x, slopes)?;
             left_out.cost_at(&fit.model, &fitted.x)
         };
-        Some(cost(before)? - cost(after)?)
+        cost(before).map_or(0.0, |was| was - cost(after).unwrap_or(f64::INFINITY))
     };
-    let all = |folds: Vec<(Problem, Problem)>| folds.into_iter().filter_map(gain).sum::<f64>();
+    let all = |folds: Vec<(Problem, Problem)>| folds.into_iter().map(gain).sum::<f64>();
     problem.case.is_without(Step::CrossValidation)
         || all(problem.runs_left_out()) > 0.0
         || all(problem.halves_left_out()) > FORETOLD * (before.cost - after.cost)

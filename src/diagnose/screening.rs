@@ -24,6 +24,9 @@ pub struct Screened {
     pub size: f64,
     /// Size that would gain [`least_gain`]: what could just be seen.
     pub least_size: f64,
+    /// Whether the calibration has taken the effect in: it imitates nearly all of the signature, and what it does not
+    /// points out of the effect's range. A misfit may then still be that effect's, at a size that only a refit finds.
+    pub is_swallowed: bool,
     /// The signature without what the calibration can imitate, of unit length.
     direction: Arc<DVector<f64>>,
 }
@@ -39,6 +42,11 @@ impl Screened {
 }
 
 impl Screened {
+    /// How much more than just visible the effect is at its typical size.
+    pub fn typical_over_least(&self) -> f64 {
+        self.variant.placed.spec().parameters[0].typical.abs() / self.least_size
+    }
+
     /// Cosine of the angle between two signatures: 1 where no recording of this kind tells the effects apart.
     pub fn likeness(&self, other: &Self) -> f64 {
         if self.direction.len() == other.direction.len() { self.direction.dot(&other.direction).abs() } else { 0.0 }
@@ -69,6 +77,12 @@ pub(super) fn screen(problem: &Problem, from: &Fit, variants: &[Variant]) -> Opt
     Some(Screening { from: from.clone(), slopes: known.slopes, screened })
 }
 
+/// The same share from which on nothing is left but rounding.
+const NOTHING_LEFT: f64 = 1e-9;
+/// Length of what the calibration cannot imitate of a signature, as a share of the signature, below which it may have taken
+/// the effect in.
+const SWALLOWED: f64 = 0.5;
+
 /// What every variant promises, best first.
 fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
     let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
@@ -82,12 +96,13 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
             let signature = orthogonal(&basis, &raw);
             let length = signature.norm();
             let scale = variant.placed.spec().parameters[0].typical.abs();
-            let amplitude = if length > 1e-9 * raw.norm() { signature.dot(&left) / length } else { 0.0 };
+            let amplitude = if length > NOTHING_LEFT * raw.norm() { signature.dot(&left) / length } else { 0.0 };
             let range = variant.placed.spec().parameters[0].range;
             let feasible = (amplitude > 0.0 && range.max > 0.0) || (amplitude < 0.0 && range.min < 0.0);
             Screened {
                 gain: if feasible { amplitude * amplitude } else { 0.0 },
                 size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
+                is_swallowed: !feasible && length > NOTHING_LEFT * raw.norm() && length < SWALLOWED * raw.norm(),
                 least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
                 direction: Arc::new(signature / length.max(f64::MIN_POSITIVE)),
                 variant: variant.clone(),

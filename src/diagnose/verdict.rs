@@ -24,15 +24,19 @@ pub struct Excess {
     pub error: f64,
 }
 
+/// Whether a misfit per sample is more than noise.
+pub fn is_loud(excess: f64, error: f64) -> bool {
+    excess > 5.0 * error && excess > LEFT_LEAST
+}
+
 /// Whether more is left than the catalogue explains.
 pub fn is_unknown(found: &Found, excess: Excess) -> bool {
-    let loud = |e: f64| e > 5.0 * excess.error && e > LEFT_LEAST;
     let effects = &found.best.model.effects;
     if effects.iter().any(|e| e.kind.is_hypothetical()) {
         return true;
     }
     let left = if effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
-    loud(excess.best) && excess.best > left
+    is_loud(excess.best, excess.error) && excess.best > left
 }
 
 /// What the search and what is left amount to; in a closed set nothing is unknown.

@@ -42,6 +42,8 @@ pub struct Chain<D> {
     pub inertance_pa_s2_m3: D,
     /// Gauge pressure at which the fluid boils, Pa.
     pub cavitation_pressure_pa: f64,
+    /// The line's own compliance in each of its end nodes, m³/Pa.
+    pub end_share_m3_pa: f64,
 }
 
 /// What hangs on the last node: the muscle.
@@ -68,7 +70,19 @@ impl<D: Scalar> Chain<D> {
             quadratic_pa_s2_m6: D::constant(0.0),
             inertance_pa_s2_m3: D::constant(line.inertance_pa_s2_m3(fluid) / n as f64),
             cavitation_pressure_pa: fluid.cavitation_gauge_pressure_pa(),
+            end_share_m3_pa: share / 2.0,
         }
+    }
+
+    /// Puts another compliance before the line; the first node keeps its share of the line's own.
+    pub fn set_upstream(&mut self, upstream_m3_pa: D) {
+        self.compliance_m3_pa[0] = upstream_m3_pa + self.end_share_m3_pa;
+    }
+
+    /// Puts another compliance behind the line; the last node keeps its share of the line's own.
+    pub fn set_downstream(&mut self, downstream_m3_pa: D) {
+        let last = self.segments();
+        self.compliance_m3_pa[last] = downstream_m3_pa + self.end_share_m3_pa;
     }
 
     /// Number of flow segments.
@@ -169,5 +183,21 @@ impl<D: Scalar> Chain<D> {
     pub fn dissipation_w(&self, row: &[D]) -> D {
         let resistance = |q: D| self.resistance_pa_s_m3 + self.quadratic_pa_s2_m6 * q.abs();
         ChainRow::of(row, self.segments()).flow_m3_s.iter().map(|&q| resistance(q) * q * q).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_in_again_leaves_the_chain_as_it_was() {
+        let line =
+            Line { length_m: 1.0, bore_m: 8e-4, segments: 2, compliance_m3_pa: 8e-15, momentum_factor: 4.0 / 3.0 };
+        let chain = Chain::new(&line, &Fluid::default(), 8e-15_f64, 2.6e-15);
+        let mut again = chain.clone();
+        again.set_upstream(8e-15);
+        again.set_downstream(2.6e-15);
+        assert_eq!(again.compliance_m3_pa, chain.compliance_m3_pa);
     }
 }

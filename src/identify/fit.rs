@@ -102,9 +102,7 @@ pub fn fit_rig_parameters(
 
 /// The value in the scene, else the middle of the range.
 fn start_value(scene: &Scene, spec: &CalibrateSpec) -> f64 {
-    let key = calibration_key(&spec.key);
-    let found = scene.keys().into_iter().find(|(k, _)| k == key);
-    found.and_then(|(_, v)| v.parse().ok()).unwrap_or((spec.min + spec.max) / 2.0)
+    scene.number(&spec.key).unwrap_or((spec.min + spec.max) / 2.0)
 }
 
 /// One over the scale of each output's residual.
@@ -113,7 +111,9 @@ fn weights(set: &RecordingSet, runs: &[RecordedRun]) -> Vec<f64> {
     let scale = outputs.map(|spec| {
         let values = runs.iter().filter_map(|r| r.recording.find(&spec.column)).flat_map(|c| c.values.iter().copied());
         let (low, high) = values.filter(|v| v.is_finite()).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-        spec.noise_sd.unwrap_or(((high - low) / 100.0).max(f64::MIN_POSITIVE))
+        // A channel that never moves is weighed by its level.
+        let span = if high > low { high - low } else { high.abs() };
+        spec.noise_sd.unwrap_or(if span > 0.0 && span.is_finite() { span / 100.0 } else { 1.0 })
     });
     scale.map(|s| 1.0 / s).collect()
 }

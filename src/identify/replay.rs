@@ -104,7 +104,7 @@ pub fn replay(
     }
     let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
     let recorded = record(&mut simulation, &Schedule::at(times))?;
-    Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording)?)
+    Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording, every.max(1))?)
 }
 
 /// Shifts the outputs that count from the start of a recording to the recording's first sample.
@@ -112,14 +112,14 @@ fn begin_where_recorded(
     scene: &Scene,
     simulated: &Recording,
     measured: &Recording,
+    every: usize,
 ) -> Result<Recording, RecordingError> {
     let shifted = simulated.channels().iter().map(|channel| {
         let spec = scene.file.output.iter().find(|o| o.channel == channel.column);
-        let first = |values: &[f64]| values.iter().copied().find(|v| v.is_finite());
-        let pair = spec
-            .filter(|s| s.counts_from_start)
-            .and_then(|_| Some(first(&measured.find(&channel.column)?.values)? - first(&channel.values)?));
-        let shift = pair.unwrap_or(0.0);
+        let known = spec.filter(|s| s.counts_from_start).and_then(|_| measured.find(&channel.column));
+        // Both at one instant: the first at which something was measured and is simulated.
+        let pairs = known.into_iter().flat_map(|m| m.values.iter().step_by(every).zip(&channel.values));
+        let shift = pairs.map(|(m, s)| m - s).find(|d| d.is_finite()).unwrap_or(0.0);
         Channel::new(channel.column.clone(), channel.values.iter().map(|v| v + shift).collect())
     });
     Recording::new(simulated.time_s().to_vec(), shifted.collect())

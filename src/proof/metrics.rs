@@ -247,14 +247,16 @@ fn settled(rows: &[Row]) -> [Metric; 3] {
     ]
 }
 
-/// Whether true sizes lie in their intervals; laws of altered form have no size of the catalogue's.
+/// Whether true sizes lie in the intervals given for them; laws of altered form have no size of the catalogue's.
 fn sizes(one: &[&Row]) -> Metric {
-    let has_size = |r: &Row| r.secrets.iter().all(|s| !s.is_altered) && r.effects.iter().any(|e| e.size.is_some());
-    let own: Vec<&Row> = one.iter().copied().filter(|r| has_size(r)).collect();
-    let covers = |r: &Row| {
-        let secret = r.secrets.first();
-        r.effects.iter().filter_map(|e| e.size).any(|s| secret.is_some_and(|t| (s[1]..=s[2]).contains(&t.size)))
+    let interval = |r: &Row| -> Option<([f64; 3], f64)> {
+        let secret = r.secrets.first()?;
+        let size = r.effects.iter().filter(|e| e.is(secret)).find_map(|e| e.size)?;
+        Some((size, secret.size))
     };
+    let has_size = |r: &Row| r.secrets.iter().all(|s| !s.is_altered) && interval(r).is_some();
+    let own: Vec<&Row> = one.iter().copied().filter(|r| has_size(r)).collect();
+    let covers = |r: &Row| interval(r).is_some_and(|(s, truth)| (s[1]..=s[2]).contains(&truth));
     share(("size_coverage", "true size in its 95 % interval (own form)"), &own, covers, Goal::AtLeast(0.9))
 }
 

@@ -32,7 +32,10 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
         return match without {
             None => Ok(None),
             Some(key) => {
-                Err(keys.error(format!("{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too")))
+                Err(keys.error(format!(
+                    "{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too; what a CSV or Parquet file holds is taken as it \
+                     stands, convert it there"
+                )))
             }
         };
     };

@@ -183,7 +183,7 @@ impl RecordingSet {
                 found: recording.columns().join(", "),
             });
         }
-        let notes = self.undeclared_note(&recording).into_iter().collect();
+        let notes = self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(declared)).collect();
         Ok(LoadedRun { recording, notes })
     }
 
@@ -204,6 +204,14 @@ impl RecordingSet {
         (!others.is_empty())
             .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
     }
+}
+
+/// That a unit or a zero of a bag's channel is not applied to a table's column.
+fn taken_as_it_stands(declared: &[ChannelSpec]) -> Option<String> {
+    let converted = |spec: &&ChannelSpec| spec.bag.as_ref().is_some_and(|b| b.unit.is_some() || b.zero.is_some());
+    let columns: Vec<&str> = declared.iter().filter(converted).map(|spec| spec.column.as_str()).collect();
+    (!columns.is_empty())
+        .then(|| format!("unit and zero are for bags: {} taken as in the file, convert there", columns.join(", ")))
 }
 
 /// A recording with columns that it was recorded without: all their samples are missing.

@@ -34,6 +34,12 @@ pub(super) fn next_words(d: &Diagnosis) -> String {
     if d.verdict == Verdict::Ambiguous {
         return format!("{best} and {rival} explain these recordings about equally well. To decide: {promise}.");
     }
+    if d.verdict == Verdict::UnknownPhysics {
+        return format!(
+            "Of what is known these recordings prefer {best} to {rival}, but it leaves a part unexplained, which no programme settles: \
+             look at where the residuals stand out, and at what the warnings say."
+        );
+    }
     format!(
         "Nothing must be recorded: these recordings decide for {best} against the nearest rival, {rival}. To confirm it on \
          a new run by itself, {} (5 are a clear answer).",

@@ -7,8 +7,8 @@ use toml::Table;
 use crate::recording::did_you_mean;
 use crate::stock;
 
-use super::overrides::{Override, child, entry_name};
-use super::{Program, SceneError, SceneFile, check};
+use super::overrides::{Override, calibration_key, calibration_names, child, entry_name};
+use super::{CalibrateSpec, Program, SceneError, SceneFile, check};
 
 /// A scene whose keys, numbers and names (within the file) are right.
 #[derive(Clone, Debug)]
@@ -80,7 +80,29 @@ impl Scene {
     /// Validates a scene file; `path` is where its relative paths start.
     pub fn from_file(file: SceneFile, path: &Path) -> Result<Self, SceneError> {
         let programs = check::check(&file, path)?;
-        Ok(Self { path: path.to_owned(), file, programs })
+        let scene = Self { path: path.to_owned(), file, programs };
+        scene.check_calibrated()?;
+        Ok(scene)
+    }
+
+    /// Every key that is to be calibrated holds a number, or may hold one.
+    fn check_calibrated(&self) -> Result<(), SceneError> {
+        let is_wrong = |spec: &&CalibrateSpec| self.number(&spec.key).is_none() && !self.may_hold_number(&spec.key);
+        let Some(wrong) = self.file.calibrate.iter().find(is_wrong) else { return Ok(()) };
+        let keys = self.keys();
+        let known: Vec<&str> = keys.iter().map(|(key, _)| key.as_str()).chain(calibration_names()).collect();
+        Err(SceneError::Value {
+            file: self.path.clone(),
+            table: format!("[[calibrate]] \"{}\"", wrong.key),
+            message: format!("the scene has no number under this key{}", did_you_mean(&wrong.key, &known)),
+            remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
+        })
+    }
+
+    /// Whether a key that does not stand in the scene could: optional ones are not listed.
+    fn may_hold_number(&self, key: &str) -> bool {
+        let Ok(mut table) = Table::try_from(&self.file) else { return false };
+        Override::number(key, 1.0).apply(&mut table).is_ok() && table.try_into::<SceneFile>().is_ok()
     }
 
     /// Every number, word and list of the scene by the key that `--set` takes, defaults included.
@@ -100,6 +122,22 @@ impl Scene {
             here = child(here, segment)?;
         }
         (!here.is_table()).then(|| here.to_string())
+    }
+
+    /// The number that stands at a key, or at that of a calibration name.
+    ///
+    /// ```
+    /// use smam::scene::Scene;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::load("tendon_sheath", &[])?;
+    /// assert!(scene.number("mechanism.joint.0.stiffness_n_m_rad").is_some());
+    /// assert_eq!(scene.number("name"), None);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn number(&self, key: &str) -> Option<f64> {
+        self.value(calibration_key(key))?.parse().ok()
     }
 
     /// Folder that relative paths of the scene start from.

@@ -25,6 +25,11 @@ pub fn calibration_key(name: &str) -> &str {
     CALIBRATION_NAMES.iter().find(|(short, _)| *short == name).map_or(name, |(_, key)| key)
 }
 
+/// The names that stand for calibrated keys.
+pub(super) fn calibration_names<'a>() -> impl Iterator<Item = &'a str> {
+    CALIBRATION_NAMES.iter().map(|(name, _)| *name)
+}
+
 /// One changed key.
 ///
 /// ```

@@ -190,8 +190,14 @@ fn parse_shape(kind: &str, keys: &mut Keys) -> Result<Shape, String> {
         "ramp_hold" => Shape::RampHold {
             to: keys.number(&keys.with_unit("to"))?,
             rise_s: keys.positive("rise_s")?,
-            hold_s: keys.optional("hold_s")?.unwrap_or(0.0),
-            fall_s: keys.optional("fall_s")?,
+            hold_s: match keys.optional("hold_s")? {
+                Some(s) if s < 0.0 => return Err(format!("`hold_s = {s}` must be >= 0")),
+                held => held.unwrap_or(0.0),
+            },
+            fall_s: match keys.optional("fall_s")? {
+                Some(s) if s <= 0.0 => return Err(format!("`fall_s = {s}` must be > 0")),
+                falls => falls,
+            },
         },
         "points" => points(keys.list("time_s")?, keys.list(&keys.with_unit("value"))?)?,
         other => {
@@ -241,6 +247,14 @@ mod tests {
 
     fn program(text: &str) -> Result<Program, String> {
         Program::parse(&text.parse().expect("test TOML"), "m")
+    }
+
+    #[test]
+    fn a_ramp_neither_waits_nor_falls_in_negative_time() {
+        let ramp = |rest: &str| program(&format!("kind = 'ramp_hold'\nto_m = 1e-3\nrise_s = 1.0\n{rest}"));
+        assert!(ramp("fall_s = 1.0").is_ok());
+        assert!(ramp("fall_s = -1.0").expect_err("no time").contains("fall_s"));
+        assert!(ramp("hold_s = -3.0").expect_err("no time").contains("hold_s"));
     }
 
     #[test]

@@ -73,6 +73,7 @@ impl Drive<f64> {
                     quadratic_pa_s2_m6: D::constant(chain.quadratic_pa_s2_m6),
                     inertance_pa_s2_m3: D::constant(chain.inertance_pa_s2_m3),
                     cavitation_pressure_pa: chain.cavitation_pressure_pa,
+                    end_share_m3_pa: chain.end_share_m3_pa,
                 },
                 syringe_area_m2: *syringe_area_m2,
                 plunger: *plunger,

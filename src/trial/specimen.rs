@@ -10,7 +10,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::effects::Effect;
 use crate::files::write_whole;
 use crate::recording::{Channel, Recording};
-use crate::scene::{Override, Scene, calibration_key};
+use crate::scene::{Override, Scene};
 use crate::system::{InputSource, Schedule, Simulation, record};
 
 use super::TrialError;
@@ -71,11 +71,9 @@ fn sd(column: &str) -> Option<f64> {
 
 /// A rig's own numbers, near those of the scene.
 fn calibration(scene: &Scene, random: &mut ChaCha8Rng) -> Vec<Override> {
-    let keys = scene.keys();
     let draw = |spec: &crate::scene::CalibrateSpec| {
-        let key = calibration_key(&spec.key);
-        let stock: f64 = keys.iter().find(|(k, _)| k == key).and_then(|(_, v)| v.parse().ok())?;
-        Some(Override::number(key, stock * (1.0 + random.random_range(-CALIBRATION_SPREAD..CALIBRATION_SPREAD))))
+        let stock = scene.number(&spec.key)?;
+        Some(Override::number(&spec.key, stock * (1.0 + random.random_range(-CALIBRATION_SPREAD..CALIBRATION_SPREAD))))
     };
     scene.file.calibrate.iter().filter_map(draw).collect()
 }

@@ -56,12 +56,14 @@ fn resolve_named(twin: &Twin, key: &str) -> Option<TwinParameter> {
     match words.as_slice() {
         ["cable", name, "stiffness_n_m"] => {
             let by_name = twin.cable_names.iter().position(|n| n == name);
-            Some(TwinParameter::CableStiffness(by_name.or(name.parse().ok())?))
+            let by_number = name.parse().ok().filter(|i| *i < twin.cable_names.len());
+            Some(TwinParameter::CableStiffness(by_name.or(by_number)?))
         }
         ["mechanism", "joint", number, "stiffness_n_m_rad" | "stiffness_n_m"] => {
             let number: usize = number.parse().ok()?;
             let springs = twin.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
-            Some(TwinParameter::JointStiffness(springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect()))
+            let springs: Vec<_> = springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect();
+            (!springs.is_empty()).then_some(TwinParameter::JointStiffness(springs))
         }
         _ => None,
     }
@@ -98,11 +100,8 @@ impl TwinParameter {
             (Self::FrictionM1, _, Some(friction), _) => friction.m1_n_pa = value,
             (Self::Presliding, _, Some(friction), _) => friction.presliding_length_m = value,
             (Self::Damping, ..) => muscle.damping_n_s_m = value,
-            (Self::UpstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => chain.compliance_m3_pa[0] = value,
-            (Self::DownstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => {
-                let last = chain.segments();
-                chain.compliance_m3_pa[last] = value;
-            }
+            (Self::UpstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => chain.set_upstream(value),
+            (Self::DownstreamCompliance, _, _, Drive::Hydraulic { chain, .. }) => chain.set_downstream(value),
             _ => {}
         }
     }
