@@ -4,23 +4,32 @@ use std::path::Path;
 
 use smam::conceal::{Decoy, Drawn, Hiding, Rig, draw, record_asked, write_case};
 use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
-use smam::effects::EffectTable;
+use smam::effects::{Effect, EffectTable};
 use smam::recording::{Channel, Recording, read_csv};
 use smam::trial::make_specimen;
 use tempfile::TempDir;
 
 /// Recordings of the stock bench with an effect concealed, or with none.
 fn specimen(effect: Option<(&str, &str, &str, f64)>) -> TempDir {
+    let effect = effect.map(|(name, element, key, value)| effect_of(name, element, None, (key, value)));
+    made("muscle_bench", effect.as_ref(), 7)
+}
+
+/// Recordings of a stock scene with an effect concealed, or with none.
+fn made(scene: &str, effect: Option<&Effect<f64>>, seed: u64) -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let table = effect.map(|(name, element, key, value)| EffectTable {
+    make_specimen(scene, effect, 1.0, seed, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    folder
+}
+
+fn effect_of(name: &str, element: &str, channel: Option<&str>, (key, value): (&str, f64)) -> Effect<f64> {
+    let table = EffectTable {
         name: name.to_owned(),
         element: element.to_owned(),
-        channel: None,
+        channel: channel.map(str::to_owned),
         parameters: [(key.to_owned(), value)].into_iter().collect(),
-    });
-    let effect = table.map(|t| t.effect().expect("an effect of the catalogue"));
-    make_specimen("muscle_bench", effect.as_ref(), 1.0, 7, folder.path()).unwrap_or_else(|e| panic!("{e}"));
-    folder
+    };
+    table.effect().expect("an effect of the catalogue")
 }
 
 fn answer(folder: &Path) -> Diagnosis {
@@ -274,12 +283,15 @@ fn an_open_answer_asks_for_the_sensor_that_would_decide() {
 /// Half the stiffness with half the gain is slower by as much as the sensor is: the calibration takes the lag in.
 #[test]
 fn a_lag_that_the_calibration_took_in_is_found_again() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let lag = effect("sensor_lag", "displacement_mm", "time_constant_s", 0.07);
-    make_specimen("pressure_muscle", Some(&lag), 1.0, 1, folder.path()).unwrap_or_else(|e| panic!("{e}"));
-    let d = answer(folder.path());
+    let lag = effect_of("sensor_lag", "sensor", Some("displacement_mm"), ("time_constant_s", 0.07));
+    let d = answer(made("pressure_muscle", Some(&lag), 1).path());
     let first = d.effects.first().unwrap_or_else(|| panic!("{}", d.summary));
-    assert_eq!((first.name.as_str(), first.element.as_str()), ("sensor_lag", "sensor (displacement_mm)"), "{}", d.summary);
+    assert_eq!(
+        (first.name.as_str(), first.element.as_str()),
+        ("sensor_lag", "sensor (displacement_mm)"),
+        "{}",
+        d.summary
+    );
     let found = &first.parameters["time_constant_s"];
     assert!(found.ci95[0] < 0.07 && 0.07 < found.ci95[1], "{found:?}");
 }

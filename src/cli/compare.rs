@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, load_runs, replay};
+use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, lead_in, load_runs, replay};
 use smam::recording::{ChannelFit, Recording, RecordingSet, Run, RunUse, compare as compare_channels};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
@@ -40,7 +40,7 @@ pub struct CompareArguments {
 pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
     let mut overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
     let set = RecordingSet::load(&arguments.dir)?;
-    let scene_name = scene_path(arguments, &set);
+    let scene_name = arguments.scene.clone().unwrap_or_else(|| set.scene_path());
     let scene = Scene::load(&scene_name, &overrides)?;
     let declared = load_runs(&set, &set.runs, &mut |n| eprintln!("note: {n}"))?;
     let shown = match &arguments.run {
@@ -50,6 +50,10 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
     let may_fit: Vec<RecordedRun> = declared.into_iter().filter(|r| r.run.run_use != Some(RunUse::Holdout)).collect();
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dir));
     check_channels(&set, &scene)?;
+    for run in &shown {
+        let way = lead_in(&scene, run).map_err(|e| e.in_file(&run.run.file))?;
+        way.iter().for_each(|way| eprintln!("note: {}: {}", run.run.file, way.note()));
+    }
     make_folder(&out)?;
     let report = fit_rig_parameters(&set, &scene_name, &overrides, &may_fit)?;
     say_fit(&report);
@@ -75,15 +79,6 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
 fn replay_all(scene: &str, overrides: &[Override], runs: &[RecordedRun]) -> Result<Vec<Recording>, CliError> {
     let replayed: Result<_, _> = runs.par_iter().map(|run| replay(scene, overrides, run, 1)).collect();
     Ok(replayed?)
-}
-
-/// A stock name, or a path relative to the recordings.
-fn scene_path(arguments: &CompareArguments, set: &RecordingSet) -> String {
-    if let Some(scene) = &arguments.scene {
-        return scene.clone();
-    }
-    let beside = set.dir.join(&set.scene);
-    if beside.is_file() { beside.display().to_string() } else { set.scene.clone() }
 }
 
 /// A declared run of that name, with its known conditions, or any other file.

@@ -121,7 +121,10 @@ fn print_diagnosis(d: &Diagnosis) {
         let on = e.channel.as_ref().map_or(String::new(), |c| format!(" ({c})"));
         say!("  {:.3}  {} in {}{on}: {}", e.probability, e.name, e.element, e.law);
         for (key, p) in &e.parameters {
-            say!("           {key} = {:.4e}  [{:.4e}, {:.4e}]", p.value, p.ci95[0], p.ci95[1]);
+            match p.ci95 {
+                [low, high] if low == high => say!("           {key} = {:.4e}  (not fitted)", p.value),
+                [low, high] => say!("           {key} = {:.4e}  [{low:.4e}, {high:.4e}]", p.value),
+            }
         }
     }
     say!(

@@ -4,14 +4,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::effects::Effect;
-use crate::identify::{RecordedRun, check_channels, condition_overrides, load_runs};
-use crate::recording::{Recording, RecordingSet, Role, RunUse};
+use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs};
+use crate::recording::{Recording, RecordingSet, Role, RunUse, strays};
 use crate::scene::{CalibrateSpec, Override, Scene};
 use crate::system::{Twin, TwinRun};
 
 use super::DiagnoseError;
 use super::case::{Case, CaseChannel, CaseParameter, CaseRun};
-use super::instants::{at_times, lead_in, with_points_of};
+use super::instants::{at_times, with_points_of};
 use super::thin::thin;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
@@ -27,7 +27,7 @@ impl Case {
         let Some(first) = sets.first() else { return Err(DiagnoseError::Nothing) };
         refuse_repeated(&sets)?;
         refuse_mixed(&sets)?;
-        let scene_name = scene.map_or_else(|| scene_path(first), str::to_owned);
+        let scene_name = scene.map_or_else(|| first.scene_path(), str::to_owned);
         let base = Scene::load(&scene_name, overrides)?;
         check_channels(first, &base)?;
         let twin = Twin::new(&base)?;
@@ -73,6 +73,7 @@ impl Case {
     }
 
     fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
+        let run = &self.without_strays(run)?;
         let recording = &self.thinned(run)?;
         let mut lines = Vec::new();
         for input in &self.scene.file.input {
@@ -86,7 +87,7 @@ impl Case {
         });
         let measured = measured.collect();
         let mut drive = TwinRun { times_s, inputs, plan: None };
-        let lead_in = if self.scene.file.hydraulics.is_some() { lead_in(&mut drive) } else { 0 };
+        let lead_in = self.lead_in(&mut drive);
         self.runs.push(CaseRun {
             file: run.run.file.clone(),
             measured,
@@ -98,6 +99,33 @@ impl Case {
             lead_in,
         });
         Ok(())
+    }
+
+    /// Lets a run that does not begin at rest come to where it begins. Returns how many instants.
+    fn lead_in(&self, drive: &mut TwinRun) -> usize {
+        let first: Vec<f64> = drive.inputs.iter().filter_map(|x| x.first()).copied().collect();
+        let Some(way) = LeadIn::before(&self.scene, drive.times_s[0], &first) else { return 0 };
+        for input in &mut drive.inputs {
+            let on_the_way: Vec<f64> = way.values(input[0]).collect();
+            input.splice(0..0, on_the_way);
+        }
+        drive.times_s.splice(0..0, way.times_s().iter().copied());
+        way.times_s().len()
+    }
+
+    /// Leaves out what an output shows far outside everything else: it would be taken for noise. An input is not changed.
+    fn without_strays(&mut self, run: &RecordedRun) -> Result<RecordedRun, DiagnoseError> {
+        let mut channels = run.recording.channels().to_vec();
+        for channel in channels.iter_mut().filter(|c| self.channels.iter().any(|o| o.column == c.column)) {
+            let found = strays(&channel.values);
+            found.iter().for_each(|&i| channel.values[i] = f64::NAN);
+            if !found.is_empty() {
+                let (count, column, file) = (found.len(), &channel.column, &run.run.file);
+                self.notes
+                    .push(format!("{file}: {count} samples of {column} that lie far outside all others are left out"));
+            }
+        }
+        Ok(RecordedRun { run: run.run.clone(), recording: Recording::new(run.recording.time_s().to_vec(), channels)? })
     }
 
     /// A recording faster than the muscles need is averaged down. What was stated is the noise of single samples: that of
@@ -219,12 +247,6 @@ fn known_effects(scene: &Scene) -> Vec<Effect<f64>> {
 
 fn columns(set: &RecordingSet) -> Vec<&str> {
     set.channels.iter().map(|c| c.column.as_str()).collect()
-}
-
-/// The scene as the recordings name it: a path is relative to them.
-fn scene_path(set: &RecordingSet) -> String {
-    let beside = set.dir.join(&set.scene);
-    if set.scene.ends_with(".toml") && beside.exists() { beside.display().to_string() } else { set.scene.clone() }
 }
 
 fn channels(set: &RecordingSet, scene: &Scene, twin: &Twin) -> Vec<CaseChannel> {

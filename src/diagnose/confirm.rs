@@ -153,8 +153,16 @@ pub(super) fn take_back_contradicted(
     if stands { (fewer, Confirmed::Yes) } else { (found, Confirmed::InPart) }
 }
 
-/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof.
-pub fn check_on_full_scene(
+/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof; where it
+/// cannot be played, that is said, and the fast model's stand.
+pub fn check_on_full_scene(sealed: &Problem, found: &Found, proof: &mut Proof, seed: u64, warnings: &mut Vec<String>) {
+    if let Err(e) = compare_with_full_scene(sealed, found, proof, seed, warnings) {
+        proof.full_scene.agrees = false;
+        warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
+    }
+}
+
+fn compare_with_full_scene(
     sealed: &Problem,
     found: &Found,
     proof: &mut Proof,
@@ -174,8 +182,10 @@ pub fn check_on_full_scene(
         *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
         let differ: Vec<String> =
             agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
+        let named = if found.best.model.effects.is_empty() { "that nothing is missing" } else { "what is named" };
         warnings.push(format!(
-            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene",
+            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene, {named} rests on \
+             the fast model",
             differ.join(", ")
         ));
     }

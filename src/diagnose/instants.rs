@@ -1,7 +1,6 @@
-//! The instants of a run that nobody recorded: samples of an input that a logger lost, and the way from rest to where it begins.
+//! The instants of a run that nobody recorded: samples of an input that a logger lost.
 
 use crate::recording::PiecewiseLinear;
-use crate::system::TwinRun;
 
 /// Instants nearer to each other than this are one, s: rounding of times that were computed.
 const ONE_INSTANT_S: f64 = 1e-5;
@@ -26,31 +25,6 @@ pub(super) fn at_times(times_s: &[f64], recorded_s: &[f64], values: &[f64]) -> V
     let mut samples = recorded_s.iter().zip(values).peekable();
     let at = |t: &f64| samples.next_if(|(recorded, _)| *recorded == t).map_or(f64::NAN, |(_, value)| *value);
     times_s.iter().map(at).collect()
-}
-
-/// Speed of the way from rest to the first recorded plunger position, m/s, and the rest after it, s.
-const LEAD_IN_M_S: f64 = 2.0e-3;
-const LEAD_IN_REST_S: f64 = 1.0;
-
-/// Lets a run that begins with a plunger away from zero come there from the scene's start. Returns how many instants.
-pub(super) fn lead_in(drive: &mut TwinRun) -> usize {
-    let farthest = drive.inputs.iter().filter_map(|x| x.first()).fold(0.0f64, |m, x| m.max(x.abs()));
-    if farthest < 5.0e-5 {
-        return 0;
-    }
-    let start = drive.times_s[0];
-    let moving = farthest / LEAD_IN_M_S;
-    let total = moving + LEAD_IN_REST_S;
-    let count = (total / 0.02).ceil() as usize;
-    let at = |i: usize| total * i as f64 / count as f64;
-    let times: Vec<f64> = (0..count).map(|i| start - total + at(i)).collect();
-    for input in &mut drive.inputs {
-        let to = input[0];
-        let way: Vec<f64> = (0..count).map(|i| to * (at(i) / moving).min(1.0)).collect();
-        input.splice(0..0, way);
-    }
-    drive.times_s.splice(0..0, times);
-    count
 }
 
 #[cfg(test)]

@@ -224,7 +224,7 @@ fn explain(
     }
     say("full scene".to_owned());
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
-    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings)?;
+    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
 }
 
@@ -257,7 +257,6 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         _ => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
     };
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
-    let rivals = found.rivals.iter().flatten().map(|f| (f.model.title(), f.cost)).collect();
     let mut diagnosis = Diagnosis {
         format: 1,
         scene: case.scene_name.clone(),
@@ -273,6 +272,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         warnings,
     };
     diagnosis.summary = summary::summary(&diagnosis);
+    let rivals = verdict::lost(&found);
     Ok(Outcome {
         diagnosis,
         baseline: Some(found.baseline),

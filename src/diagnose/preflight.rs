@@ -3,7 +3,7 @@
 use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
-use crate::recording::noise_sd;
+use crate::recording::{noise_sd, strays};
 
 /// Fewer samples than this say nothing.
 const LEAST_SAMPLES: usize = 200;
@@ -46,6 +46,13 @@ fn inputs(case: &Case, found: &mut Preflight) {
     }
     for (i, input) in case.scene.file.input.iter().enumerate() {
         let stroke = case.runs.iter().map(|r| recorded(r, i)).fold(0.0f64, |m, (l, h)| m.max(h - l));
+        let stray = |r: &CaseRun| !strays(&r.drive.inputs[i][r.lead_in..]).is_empty();
+        if let Some(run) = case.runs.iter().find(|r| stray(r)) {
+            found.unusable.push(format!(
+                "{}: samples of {} lie far outside all others; leave cells empty where nothing was measured",
+                run.file, input.channel
+            ));
+        }
         let is_plunger = input.channel.contains("plunger");
         if is_plunger && stroke > 0.2 {
             found.unusable.push(format!(

@@ -111,6 +111,30 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
     Open { rivals, unit: unit(found, left) }
 }
 
+/// Every other model that was fitted in place of the best, with its chi²: one row for each set of effects, its cheapest, cheapest
+/// first. One that reads as the answer does has another law, and says whose number it has.
+pub fn lost(found: &Found) -> Vec<(String, f64)> {
+    let words = |fit: &Fit| {
+        let mut effects: Vec<String> = fit.model.effects.iter().map(Placed::title).collect();
+        effects.sort();
+        effects
+    };
+    let answer = words(&found.best);
+    let mut fits: Vec<&Fit> = found.rivals.iter().flatten().collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut rows: Vec<(String, f64)> = Vec::new();
+    for fit in fits {
+        let effects = words(fit);
+        let own_key = fit.model.effects.last().map_or("", |e| e.spec().parameters[0].key);
+        let title = effects.join(" + ");
+        let title = if effects == answer { format!("{title} (with {own_key})") } else { title };
+        if rows.iter().all(|(known, _)| *known != title) {
+            rows.push((title, fit.cost));
+        }
+    }
+    rows
+}
+
 /// A further branch of an effect that is named already: its numbers get the next free number as suffix.
 fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
     for (key, number) in numbers {

@@ -1,8 +1,12 @@
 //! Simulating what was recorded.
 
-use crate::recording::{Channel, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column};
+use crate::recording::{
+    Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column,
+};
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
+
+use super::LeadIn;
 
 /// Why recordings cannot be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -63,7 +67,37 @@ pub fn condition_overrides(scene: &Scene, run: &Run) -> Result<Vec<Override>, Id
     Ok(overrides)
 }
 
-/// Simulates a run at its sample times with its recorded inputs and known conditions.
+/// A minute of samples further apart than a second takes an hour: clocks that were read in another unit.
+const SLOW_S: f64 = 1.0;
+const LONG_S: f64 = 3600.0;
+
+/// Refuses a run that lasts for hours with seconds between its samples: it would be simulated for as long.
+fn refuse_slow(run: &RecordedRun) -> Result<(), IdentifyError> {
+    let found = crate::recording::survey(&run.recording);
+    match found.median_interval_s.filter(|dt| *dt > SLOW_S && found.duration_s > LONG_S) {
+        None => Ok(()),
+        Some(dt) => Err(IdentifyError::Mismatch {
+            file: run.run.file.clone(),
+            message: format!(
+                "one sample in {dt} s, over {:.1} hours: is the time in seconds, not in milliseconds?",
+                found.duration_s / 3600.0
+            ),
+            remedy: "write time_s in seconds; if it truly is that slow, cut it into runs of less than an hour"
+                .to_owned(),
+        }),
+    }
+}
+
+/// The way to where a run begins, if it does not begin at rest.
+pub fn lead_in(scene: &Scene, run: &RecordedRun) -> Result<Option<LeadIn>, RecordingError> {
+    let start_s = run.recording.time_s().first().copied().unwrap_or(0.0);
+    let first = |line: PiecewiseLinear| line.value(start_s);
+    let columns = scene.file.input.iter().map(|i| run.recording.piecewise_si(&i.channel).map(first));
+    Ok(LeadIn::before(scene, start_s, &columns.collect::<Result<Vec<f64>, _>>()?))
+}
+
+/// Simulates a run at its sample times with its recorded inputs and known conditions; one that does not begin at rest is led to
+/// where it begins ([`LeadIn`]).
 ///
 /// `every` > 1 takes only each so-many-th sample (for fits); the times of the result are those taken.
 ///
@@ -96,15 +130,25 @@ pub fn replay(
         true => plain,
         false => Scene::load(scene, &[overrides, &conditions].concat())?,
     };
+    refuse_slow(run)?;
+    let lead_in = lead_in(&scene, run).map_err(|e| e.in_file(&run.run.file))?;
     let mut simulation = Simulation::new(scene)?;
     let inputs: Vec<String> = simulation.scene().file.input.iter().map(|i| i.channel.clone()).collect();
     for input in &inputs {
         let line = run.recording.piecewise_si(input).map_err(|e| e.in_file(&run.run.file))?;
-        simulation.set_input(input, InputSource::Recorded(line));
+        let led = lead_in.as_ref().and_then(|way| way.lead(&line));
+        simulation.set_input(input, InputSource::Recorded(led.unwrap_or(line)));
     }
-    let times = run.recording.time_s().iter().copied().step_by(every.max(1)).collect();
-    let recorded = record(&mut simulation, &Schedule::at(times))?;
+    let way_s = lead_in.as_ref().map_or(&[][..], LeadIn::times_s);
+    let times = way_s.iter().chain(run.recording.time_s().iter().step_by(every.max(1))).copied().collect();
+    let played = record(&mut simulation, &Schedule::at(times))?;
+    let recorded = without_beginning(&played, way_s.len())?;
     Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording, every.max(1))?)
+}
+
+fn without_beginning(played: &Recording, samples: usize) -> Result<Recording, RecordingError> {
+    let rest = |c: &Channel| Channel::new(c.column.clone(), c.values[samples..].to_vec());
+    Recording::new(played.time_s()[samples..].to_vec(), played.channels().iter().map(rest).collect())
 }
 
 /// Shifts the outputs that count from the start of a recording to the recording's first sample.
@@ -125,6 +169,24 @@ fn begin_where_recorded(
     Recording::new(simulated.time_s().to_vec(), shifted.collect())
 }
 
+/// How to declare an input, which may be there in another unit.
+fn wanted_input(set: &RecordingSet, wanted: &str) -> String {
+    let in_other = set.of_role(Role::Input).find_map(|c| in_another_unit(&c.column, &[wanted]));
+    in_other.unwrap_or_else(|| "declare it as a [[channel]] with role = \"input\"".to_owned())
+}
+
+/// What to do with a column that the scene has in another unit.
+fn in_another_unit(column: &str, known: &[&str]) -> Option<String> {
+    let is = parse_column(column).ok()?;
+    let (other, wanted) =
+        known.iter().filter_map(|k| Some((k, parse_column(k).ok()?))).find(|(_, k)| k.si_column() == is.si_column())?;
+    Some(format!(
+        "multiply it by {} and call it {other}: the scene has it in {}",
+        is.unit.factor / wanted.unit.factor,
+        wanted.unit.symbol
+    ))
+}
+
 /// Checks that every declared output is a channel of the scene and every input of the scene was recorded.
 pub fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyError> {
     let outputs: Vec<&str> = scene.file.output.iter().map(|o| o.channel.as_str()).collect();
@@ -136,13 +198,14 @@ pub fn check_channels(set: &RecordingSet, scene: &Scene) -> Result<(), IdentifyE
     if let Some(odd) = set.of_role(Role::Output).find(|c| !outputs.contains(&c.column.as_str())) {
         return Err(refuse(
             format!("the output `{}` is no channel of the scene {}", odd.column, scene.file.name),
-            format!("the scene's outputs are {}", outputs.join(", ")),
+            in_another_unit(&odd.column, &outputs)
+                .unwrap_or_else(|| format!("the scene's outputs are {}", outputs.join(", "))),
         ));
     }
     match scene.file.input.iter().find(|i| !set.of_role(Role::Input).any(|c| c.column == i.channel)) {
         Some(missing) => Err(refuse(
             format!("the scene {} needs the input `{}`, which is not declared", scene.file.name, missing.channel),
-            "declare it as a [[channel]] with role = \"input\"".to_owned(),
+            wanted_input(set, &missing.channel),
         )),
         None => Ok(()),
     }

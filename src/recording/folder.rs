@@ -142,6 +142,12 @@ impl RecordingSet {
         })
     }
 
+    /// Where its scene is: a path is relative to the recordings, anything else a stock name.
+    pub fn scene_path(&self) -> String {
+        let beside = self.dir.join(&self.scene);
+        if beside.is_file() { beside.display().to_string() } else { self.scene.clone() }
+    }
+
     /// The declared channels of one role.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &ChannelSpec> {
         self.channels.iter().filter(move |spec| spec.role == role)

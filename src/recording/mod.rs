@@ -37,6 +37,7 @@ mod parquet_read;
 mod piecewise;
 mod schema;
 mod source;
+mod strays;
 mod survey;
 mod unit;
 mod writer;
@@ -55,7 +56,8 @@ pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;
-pub use survey::{Gap, Missing, Survey, gap_limit_s, median, median_interval_s, survey};
+pub use strays::strays;
+pub use survey::{Gap, Missing, Strays, Survey, gap_limit_s, median, median_interval_s, survey};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
 pub use writer::RecordingWriter;
 

@@ -1,6 +1,7 @@
 //! What is irregular in a recording. Nothing here changes a sample.
 
 use super::Recording;
+use super::strays::strays;
 use std::fmt;
 
 /// An interval longer than this many median intervals is a gap.
@@ -31,6 +32,17 @@ pub struct Missing {
     pub count: usize,
 }
 
+/// Samples of one channel that lie far outside all others ([`strays`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strays {
+    /// The column.
+    pub column: String,
+    /// How many.
+    pub count: usize,
+    /// Value of the first of them, and when it was taken, s.
+    pub first: (f64, f64),
+}
+
 /// Findings about one recording; `Display` prints one line per finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
@@ -46,6 +58,8 @@ pub struct Survey {
     pub gaps: Vec<Gap>,
     /// Channels with missing samples.
     pub missing: Vec<Missing>,
+    /// Channels with samples far outside all others.
+    pub strays: Vec<Strays>,
 }
 
 impl Survey {
@@ -69,7 +83,17 @@ impl Survey {
         }
         notes.extend(self.gap_note());
         notes.extend(self.missing.iter().map(|m| {
-            format!("column \"{}\": {} of {} samples missing, left out", m.column, m.count, self.sample_count)
+            format!(
+                "column \"{}\": {} of {} samples missing: left out of an output, bridged in an input",
+                m.column, m.count, self.sample_count
+            )
+        }));
+        notes.extend(self.strays.iter().map(|Strays { column, count, first: (value, at_s) }| {
+            format!(
+                "column \"{column}\": {count} of {} samples lie far outside all others ({value} at {at_s} s): if that is the logger's mark for no \
+                 value, leave those cells empty",
+                self.sample_count
+            )
         }));
         notes
     }
@@ -135,6 +159,7 @@ pub fn survey(recording: &Recording) -> Survey {
             .map(|w| Gap { from_s: w[0], to_s: w[1] })
             .collect(),
         missing: missing(recording),
+        strays: all_strays(recording),
     }
 }
 
@@ -179,6 +204,16 @@ fn missing(recording: &Recording) -> Vec<Missing> {
         .collect()
 }
 
+fn all_strays(recording: &Recording) -> Vec<Strays> {
+    let of = |channel: &super::Channel| {
+        let found = strays(&channel.values);
+        let first = *found.first()?;
+        let first = (channel.values[first], recording.time_s()[first]);
+        Some(Strays { column: channel.column.clone(), count: found.len(), first })
+    };
+    recording.channels().iter().filter_map(of).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,7 +238,7 @@ mod tests {
             "8 samples over 10.5 s, median interval 1000 ms\n\
              uneven sampling: 16.7 % of the intervals are more than 20 % off the median\n\
              gaps (1): 3 to 7 s\n\
-             column \"force_n\": 1 of 8 samples missing, left out"
+             column \"force_n\": 1 of 8 samples missing: left out of an output, bridged in an input"
         );
     }
 

@@ -1,0 +1,61 @@
+//! Samples that lie far outside all others: a logger's mark for "not measured", a loose contact.
+
+/// How far outside the bulk of a channel a sample lies to be a stray, in widths of the bulk.
+const FAR: f64 = 10.0;
+/// Share of the samples on each side that need not belong to the bulk.
+const OUTSIDE_BULK: f64 = 0.05;
+/// Strays in a row that differ from each other, at most: more are a motion. A mark may be repeated as often as it likes.
+const IN_A_ROW: usize = 3;
+
+/// Indices of the samples that lie ten widths of a channel's bulk outside it, up to three in a row or all alike.
+///
+/// ```
+/// use smam::recording::strays;
+///
+/// let mut force_n: Vec<f64> = (0..100).map(|i| f64::from(i % 7)).collect();
+/// force_n[40..50].fill(-999.0);
+/// assert_eq!(strays(&force_n), (40..50).collect::<Vec<_>>());
+/// ```
+pub fn strays(values: &[f64]) -> Vec<usize> {
+    let known: Vec<(usize, f64)> = values.iter().copied().enumerate().filter(|(_, v)| v.is_finite()).collect();
+    let Some((low, high)) = bulk(&known) else { return Vec::new() };
+    let is_far = |v: f64| v < low - FAR * (high - low) || v > high + FAR * (high - low);
+    let is_stray =
+        |stretch: &&[(usize, f64)]| stretch.len() <= IN_A_ROW || stretch.iter().all(|(_, v)| *v == stretch[0].1);
+    let stretches = known.chunk_by(|a, b| is_far(a.1) == is_far(b.1)).filter(|stretch| is_far(stretch[0].1));
+    stretches.filter(is_stray).flatten().map(|(index, _)| *index).collect()
+}
+
+/// Between which values all but a twentieth on each side lie. `None` of a channel that stays at one value for so long: whatever it
+/// does else would be far outside.
+fn bulk(known: &[(usize, f64)]) -> Option<(f64, f64)> {
+    let mut sorted: Vec<f64> = known.iter().map(|(_, v)| *v).collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
+    at(OUTSIDE_BULK).zip(at(1.0 - OUTSIDE_BULK)).filter(|(low, high)| low < high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quick_motion_out_of_rest_is_no_stray() {
+        let mut jaw_deg: Vec<f64> = (0..1000).map(|i| 0.01 * f64::from(i % 5)).collect();
+        for (i, angle) in jaw_deg[500..530].iter_mut().enumerate() {
+            *angle = 2.0 * (i as f64 - 15.0);
+        }
+        assert_eq!(strays(&jaw_deg), []);
+        assert_eq!(strays(&[0.0; 50]), []);
+        assert_eq!(strays(&[]), []);
+    }
+
+    #[test]
+    fn single_spikes_and_missing_samples() {
+        let mut values: Vec<f64> = (0..200).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        values[3] = f64::NAN;
+        values[50] = 1e4;
+        values[90] = -1e4;
+        assert_eq!(strays(&values), [50, 90]);
+    }
+}
