@@ -57,6 +57,14 @@ fn a_header_that_does_not_end_is_refused() {
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }
 
+/// Found by fuzzing: eighteen bytes that claim two thousand million booleans, which the library counts through.
+#[test]
+fn a_list_of_booleans_that_takes_no_room_is_refused() {
+    let claims = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/recordings/claims_booleans.parquet");
+    let said = read_recording(Path::new(claims)).expect_err("no recording").to_string();
+    assert!(said.contains("list of booleans") && said.contains("\n  remedy: write the file again"), "{said}");
+}
+
 /// The same recording drives the same run, whichever way it is written.
 #[test]
 fn parquet_and_csv_drive_the_same_run() {

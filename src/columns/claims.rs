@@ -10,6 +10,8 @@ use bytes::Bytes;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::reader::{ChunkReader, Length};
 
+use super::thrift::walk;
+
 /// The densest that Snappy gets is a copy of 64 bytes in three: 21 times.
 const DENSEST: u64 = 32;
 /// Room for what a page has besides.
@@ -53,6 +55,7 @@ impl ChunkReader for Checked {
     fn get_read(&self, start: u64) -> Result<Self::T> {
         if start.saturating_add(END_BYTES) != self.len() {
             check(claim(self.0.get_read(start)?)).map_err(ParquetError::General)?;
+            walk(&mut self.0.get_read(start)?).map_err(|e| damaged("a page's header", e))?;
         }
         Ok(UpToTheEnd(self.0.get_read(start)?))
     }
@@ -61,8 +64,17 @@ impl ChunkReader for Checked {
         if start.saturating_add(length as u64) > self.len() {
             return Err(ParquetError::EOF(format!("{length} bytes from {start} on are not there")));
         }
-        self.0.get_bytes(start, length)
+        let bytes = self.0.get_bytes(start, length)?;
+        // What describes the whole file stands right before its end.
+        if start + length as u64 + END_BYTES == self.len() {
+            walk(&mut bytes.as_ref()).map_err(|e| damaged("its description", e))?;
+        }
+        Ok(bytes)
     }
+}
+
+fn damaged(what: &str, how: &str) -> ParquetError {
+    ParquetError::General(format!("{what} is damaged: {how}"))
 }
 
 /// What a page's header says.

@@ -24,6 +24,7 @@
 
 mod claims;
 mod read;
+mod thrift;
 mod write;
 
 pub use read::decode;

@@ -114,15 +114,19 @@ impl Problem<'_> {
 
     /// Residuals at `x` in units of the noise, in the order of [`Problem::rows`].
     pub fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
-        let residuals = self.residuals(model, x)?;
+        Some(self.in_noise(&self.residuals(model, x)?))
+    }
+
+    /// Residuals by run, channel and time in units of the noise, where something was measured, in the order of [`Problem::rows`].
+    pub fn in_noise(&self, residuals: &[Vec<Vec<f64>>]) -> DVector<f64> {
         let mut all = Vec::with_capacity(self.samples());
-        for (run, residuals) in self.runs.iter().zip(&residuals) {
+        for (run, residuals) in self.runs.iter().zip(residuals) {
             for ((measured, residual), noise) in run.measured.iter().zip(residuals).zip(self.noise) {
                 let there = measured.iter().zip(residual).filter(|(m, _)| m.is_finite());
                 all.extend(there.map(|(_, r)| r / noise.scale()));
             }
         }
-        Some(DVector::from_vec(all))
+        DVector::from_vec(all)
     }
 
     fn weighted_rows(

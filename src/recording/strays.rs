@@ -45,9 +45,9 @@ mod tests {
         for (i, angle) in jaw_deg[500..530].iter_mut().enumerate() {
             *angle = 2.0 * (i as f64 - 15.0);
         }
-        assert_eq!(strays(&jaw_deg), []);
-        assert_eq!(strays(&[0.0; 50]), []);
-        assert_eq!(strays(&[]), []);
+        assert!(strays(&jaw_deg).is_empty());
+        assert!(strays(&[0.0; 50]).is_empty());
+        assert!(strays(&[]).is_empty());
     }
 
     #[test]
