@@ -36,6 +36,7 @@ mod descent;
 mod discrepancy;
 mod error;
 mod experiment;
+mod figures;
 mod files;
 mod fit;
 mod folds;
@@ -255,6 +256,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
                 .to_owned(),
         );
     }
+    warnings.extend(figures::on_bounds(&case, &complete));
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = match verdict {
@@ -268,10 +270,10 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         recordings: case.folders.clone(),
         verdict,
         summary: String::new(),
-        detection: detection(&case, &noise, &found, excess),
+        detection: figures::detection(&case, &noise, &found, excess),
         location,
         effects,
-        calibration: calibration(&case, &complete),
+        calibration: figures::calibration(&case, &complete),
         fit: proof,
         next_experiment: experiment.next,
         warnings,
@@ -340,34 +342,4 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         just_visible: Vec::new(),
         next_inputs: None,
     }
-}
-
-fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Detection {
-    let by_channel = |f: fn(&Noise) -> f64| -> BTreeMap<String, f64> {
-        case.channels.iter().zip(noise).map(|(c, n)| (c.column.clone(), f(n))).collect()
-    };
-    let mut smallest = BTreeMap::new();
-    for s in &found.screened {
-        let size: &mut f64 = smallest.entry(s.variant.placed.title()).or_insert(f64::INFINITY);
-        *size = size.min(s.least_size);
-    }
-    smallest.retain(|_, size| size.is_finite());
-    let z = excess.baseline / excess.error;
-    let gain = found.baseline.cost - found.best.cost;
-    Detection {
-        excess_chi2_per_sample: excess.baseline,
-        excess_chi2_per_sample_corrected: excess.best,
-        p_value: (-0.5 * z.max(0.0).powi(2)).exp().min((-0.5 * gain.max(0.0)).exp()),
-        noise_sd: by_channel(|n| n.sd),
-        noise_inflation: by_channel(|n| n.inflation()),
-        smallest_detectable: smallest,
-    }
-}
-
-fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> {
-    let estimate = |i: usize| {
-        let (value, half) = (fit.x[i], fit.half_width(i));
-        Estimate { value, ci95: [value - half, value + half] }
-    };
-    case.parameters.iter().enumerate().map(|(i, p)| (p.key.clone(), estimate(i))).collect()
 }

@@ -1,6 +1,7 @@
 //! Channels of a running scene: what each output column reads.
 
 use crate::effects::{Effect, SensorHistory};
+use crate::mechanism::{Coordinate, CoordinateKind};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
@@ -157,12 +158,34 @@ pub(super) fn axis(scene: &Scene) -> Option<Axis> {
 }
 
 fn joints(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, SystemError> {
-    let coordinates = simulation.mechanism.iter().flat_map(|m| m.coordinates());
-    let names: Vec<&str> = coordinates.map(|c| c.name.as_str()).collect();
+    let coordinates: Vec<&Coordinate> = simulation.mechanism.iter().flat_map(|m| m.coordinates()).collect();
+    let names: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
     let found: Option<Vec<usize>> = output.of.iter().map(|name| names.iter().position(|n| n == name)).collect();
     match found {
-        Some(found) if !found.is_empty() => Ok(Reader::Joints(found, 0.0)),
+        Some(found) if !found.is_empty() => {
+            let odd = found.iter().map(|&i| coordinates[i]).find(|c| !fits(&output.channel, c.kind));
+            odd.map_or(Ok(Reader::Joints(found, 0.0)), |joint| Err(wrong_unit(&simulation.scene, output, joint)))
+        }
         _ => Err(no_such(&simulation.scene, output, &format!("these joints (free joints: {})", names.join(", ")))),
+    }
+}
+
+/// Whether a column's unit is one of what a joint of this kind moves in.
+fn fits(column: &str, kind: CoordinateKind) -> bool {
+    let wanted = if kind == CoordinateKind::Angle { "rad" } else { "m" };
+    parse_column(column).is_ok_and(|name| name.unit.si_suffix == wanted)
+}
+
+fn wrong_unit(scene: &Scene, output: &OutputSpec, joint: &Coordinate) -> SystemError {
+    let (kind, units) = match joint.kind {
+        CoordinateKind::Angle => ("turns", "_deg or _rad"),
+        CoordinateKind::Length => ("slides", "_mm or _m"),
+    };
+    SystemError::Name {
+        file: scene.path.clone(),
+        table: format!("[[output]] \"{}\"", output.channel),
+        message: format!("the joint \"{}\" {kind}: the channel's unit does not fit", joint.name),
+        remedy: format!("end the channel's name in {units}"),
     }
 }
 

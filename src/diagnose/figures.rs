@@ -1,0 +1,55 @@
+//! What the answer says of detection and calibration.
+
+use std::collections::BTreeMap;
+
+use super::answer::{Detection, Estimate};
+use super::case::Case;
+use super::fit::Fit;
+use super::noise::Noise;
+use super::search::Found;
+use super::verdict::Excess;
+
+/// How much is more than noise, and what could have been seen.
+pub(super) fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Detection {
+    let by_channel = |f: fn(&Noise) -> f64| -> BTreeMap<String, f64> {
+        case.channels.iter().zip(noise).map(|(c, n)| (c.column.clone(), f(n))).collect()
+    };
+    let mut smallest = BTreeMap::new();
+    for s in &found.screened {
+        let size: &mut f64 = smallest.entry(s.variant.placed.title()).or_insert(f64::INFINITY);
+        *size = size.min(s.least_size);
+    }
+    smallest.retain(|_, size| size.is_finite());
+    let z = excess.baseline / excess.error;
+    let gain = found.baseline.cost - found.best.cost;
+    Detection {
+        excess_chi2_per_sample: excess.baseline,
+        excess_chi2_per_sample_corrected: excess.best,
+        p_value: (-0.5 * z.max(0.0).powi(2)).exp().min((-0.5 * gain.max(0.0)).exp()),
+        noise_sd: by_channel(|n| n.sd),
+        noise_inflation: by_channel(|n| n.inflation()),
+        smallest_detectable: smallest,
+    }
+}
+
+/// The calibrated numbers with their intervals.
+pub(super) fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> {
+    let estimate = |i: usize| {
+        let (value, half) = (fit.x[i], fit.half_width(i));
+        Estimate { value, ci95: [value - half, value + half] }
+    };
+    case.parameters.iter().enumerate().map(|(i, p)| (p.key.clone(), estimate(i))).collect()
+}
+
+/// What to say of calibrated numbers that ended on an end of their range, which is not a zero.
+pub(super) fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
+    let numbers = fit.on_bound.iter().map(|&i| (&case.parameters[i], fit.x[i])).filter(|(_, value)| *value != 0.0);
+    let words = numbers.map(|(p, value)| {
+        format!(
+            "{} ended on an end of its range, {value:.3e} of {:.3e} .. {:.3e}: its interval says nothing; give [[calibrate]] a \
+             wider range, or look for what else makes the scene want it",
+            p.key, p.min, p.max
+        )
+    });
+    words.collect()
+}
