@@ -6,8 +6,10 @@ use super::fit::{Fit, Problem};
 use super::model::{Model, Sides};
 use super::normal::{Normal, Number, Rows, prior_cost};
 
-/// Stop when an iteration promises less than this many units of chi².
+/// Stop when an iteration promises less than this many units of chi²: enough to choose by, and for the numbers of the answer, which
+/// otherwise lie up to a standard error from where the data would have them.
 const GAIN: f64 = 0.5;
+const LAST_GAIN: f64 = 0.01;
 /// Steps on mended slopes, and how often slopes are taken anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
@@ -17,17 +19,26 @@ const LEAST_DAMPING: f64 = 1e-10;
 impl Problem<'_> {
     /// Fits a model from `start`. `None` when it cannot be simulated there.
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
+        self.fit_until(GAIN, model, start)
+    }
+
+    /// The same, until next to nothing is to be gained.
+    pub fn fit_to_the_end(&self, model: &Model, start: &[f64]) -> Option<Fit> {
+        self.fit_until(LAST_GAIN, model, start)
+    }
+
+    fn fit_until(&self, gain: f64, model: &Model, start: &[f64]) -> Option<Fit> {
         let numbers = self.numbers(model);
         let x = within(start, &numbers);
         let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
-        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING, gain };
         descent.run();
         for _ in 0..REFRESHES {
             let cost = descent.normal().cost;
             descent.rows = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?;
             descent.damping = LEAST_DAMPING;
             descent.run();
-            if cost - descent.normal().cost < GAIN * descent.unit() {
+            if cost - descent.normal().cost < gain * descent.unit() {
                 break;
             }
         }
@@ -40,7 +51,8 @@ impl Problem<'_> {
         let numbers = self.numbers(model);
         let x = within(start, &numbers);
         let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
-        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING };
+        let mut descent =
+            Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING, gain: GAIN };
         descent.run();
         Some(descent.finish())
     }
@@ -58,6 +70,8 @@ struct Descent<'a> {
     x: Vec<f64>,
     rows: Rows,
     damping: f64,
+    /// Units of chi² that are worth another iteration.
+    gain: f64,
 }
 
 impl Descent<'_> {
@@ -73,7 +87,7 @@ impl Descent<'_> {
     /// Steps until the slopes promise no more.
     fn run(&mut self) {
         for _ in 0..ITERATIONS {
-            let least = GAIN * self.unit();
+            let least = self.gain * self.unit();
             if self.improve(least).is_none_or(|gain| gain < least) {
                 break;
             }

@@ -43,6 +43,7 @@ mod folds;
 mod full;
 mod hypothesis;
 mod instants;
+mod intervals;
 mod locate;
 mod model;
 mod noise;
@@ -237,7 +238,9 @@ fn explain(
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, shift, confirmed, proof, noise, after, excess, mut warnings } = explained;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
-    let mut complete = whole.fit(&found.best.model, &found.best.x).unwrap_or_else(|| found.best.clone());
+    let complete = whole.fit_to_the_end(&found.best.model, &found.best.x);
+    let mut complete = complete.unwrap_or_else(|| found.best.clone());
+    intervals::widen(&whole, &mut complete);
     shift.iter().for_each(|shift| discrepancy::apply(&whole, &mut complete, shift));
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
