@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 use smam::files::write_whole;
+use smam::identify::LeadIn;
 use smam::recording::{Recording, read_recording, survey};
 use smam::scene::{Override, Scene, ViewSpec};
 use smam::system::{
@@ -165,6 +166,12 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     let recording = read_recording(path)?;
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     let others = drive(simulation, &recording, path)?;
+    if begins_away(simulation.scene(), &recording) {
+        eprintln!(
+            "note: {}: begins with a plunger away from zero: the run begins at rest there, as if it were zero (`smam compare` leads it there)",
+            path.display()
+        );
+    }
     if !others.is_empty() {
         eprintln!("note: {}: no input of the scene, left alone: {}", path.display(), others.join(", "));
     }
@@ -178,6 +185,13 @@ const MOST_SAMPLES: f64 = 1e8;
 
 fn is_same_file(a: &Path, b: &Path) -> bool {
     a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
+/// Whether a plunger's first value is not the scene's zero.
+fn begins_away(scene: &Scene, recording: &Recording) -> bool {
+    let start_s = recording.time_s().first().copied().unwrap_or(0.0);
+    let first = scene.file.input.iter().filter_map(|i| recording.piecewise_si(&i.channel).ok());
+    LeadIn::before(scene, start_s, &first.map(|line| line.value(start_s)).collect::<Vec<_>>()).is_some()
 }
 
 /// Drives every input of the scene from the recording; returns the columns that are no input.
