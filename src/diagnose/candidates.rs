@@ -56,8 +56,8 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         ElementKind::Sensor => {
             return case.channels.iter().map(|c| on(ElementKind::Sensor, 0, 1, Some(&c.column))).collect();
         }
-        ElementKind::Mechanism | ElementKind::Syringe if file.axis.is_some() => 1,
         ElementKind::Mechanism => 1,
+        ElementKind::Syringe if file.axis.is_some() => 1,
         ElementKind::Cable => file.cable.len(),
         _ => file.muscle.len(),
     };

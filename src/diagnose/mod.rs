@@ -58,6 +58,7 @@ mod settle;
 mod side_by_side;
 mod steady;
 mod summary;
+mod swaps;
 mod thin;
 mod verdict;
 mod weigh;

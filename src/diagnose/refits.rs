@@ -15,12 +15,20 @@ const NEAR: f64 = 0.1;
 /// Candidates that promise less than this share of the best are not refitted.
 const WORTH: f64 = 0.1;
 /// At most so many that the calibration may hide.
-const SWALLOWED: usize = 2;
+const MOST_SWALLOWED: usize = 2;
 /// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
 pub(super) const BRANCH_TIE: f64 = 0.02;
 
+/// Which effects are tried that the calibration has taken in. From the scene's calibration their fits are the dearest of all.
+#[derive(Clone, Copy)]
+pub(super) enum Swallowed<'a> {
+    Any,
+    /// Those of these.
+    Among(&'a [Placed]),
+}
+
 /// The candidates worth a full refit: the most promising of every effect, and some that the calibration may hide.
-pub(super) fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
+pub(super) fn pick(screened: &[Screened], least: f64, swallowed: Swallowed) -> Vec<Screened> {
     let mut picked: Vec<Screened> = Vec::new();
     let top = screened.first().map_or(0.0, |s| s.gain);
     for s in screened {
@@ -33,16 +41,20 @@ pub(super) fn pick(screened: &[Screened], least: f64) -> Vec<Screened> {
             break;
         }
     }
-    picked.extend(swallowed(screened));
+    picked.extend(taken_in(screened, swallowed));
     picked
 }
 
 /// Effects that the calibration has taken in, the most visible first. Their signatures promise nothing: at another calibration
 /// they may explain more than all that do.
-fn swallowed(screened: &[Screened]) -> Vec<Screened> {
-    let mut taken_in: Vec<&Screened> = screened.iter().filter(|s| s.is_swallowed).collect();
+fn taken_in(screened: &[Screened], which: Swallowed) -> Vec<Screened> {
+    let is_tried = |s: &&Screened| match which {
+        Swallowed::Any => s.is_swallowed,
+        Swallowed::Among(known) => s.is_swallowed && known.contains(&s.variant.placed),
+    };
+    let mut taken_in: Vec<&Screened> = screened.iter().filter(is_tried).collect();
     taken_in.sort_by(|a, b| a.typical_over_least().total_cmp(&b.typical_over_least()).reverse());
-    taken_in.into_iter().take(SWALLOWED).cloned().collect()
+    taken_in.into_iter().take(MOST_SWALLOWED).cloned().collect()
 }
 
 /// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
@@ -82,7 +94,8 @@ fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option
         // Where the calibration stands the effect is not wanted: it begins where the scene has it.
         let calibrated = problem.case.parameters.iter().map(|p| p.start);
         start.iter_mut().zip(calibrated).for_each(|(x, scene)| *x = scene);
-        return problem.fit(&model, &start);
+        let slopes = problem.rows(&model, &start, 0..start.len(), Sides::One)?.slopes;
+        return problem.fit_roughly(&model, &start, slopes);
     }
     let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
     let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);

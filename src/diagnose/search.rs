@@ -1,10 +1,11 @@
-//! Which effects explain the recordings: screening by signature, joint refits, additions, swaps, deletions.
+//! Which effects explain the recordings: ways up from the calibration, effect by effect.
 
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
-use super::model::{Model, Placed};
-use super::refits::{BRANCH_TIE, adds_branch, candidates, first_that_foretells, foretells, pick, refit};
+use super::model::Placed;
+use super::refits::{Swallowed, adds_branch, candidates, first_that_foretells, foretells, pick, refit};
 use super::screening::{Screened, Screening, screen};
+use super::swaps::{Settled, Stage, Swaps, is_same};
 
 /// At most this many effects in one answer.
 const MOST_EFFECTS: usize = 4;
@@ -33,11 +34,21 @@ pub struct Found {
     pub best: Fit,
     /// For each effect of the best: the other effects tried in its place, refitted jointly; cheapest first.
     pub rivals: Vec<Vec<Fit>>,
+    /// Chi² that the rivals' compares with: the best's beside which they were fitted, before it was given hypothetical terms.
+    pub rivals_against: f64,
     /// What the baseline's residual promised of every effect.
     pub screened: Vec<Screened>,
 }
 
-/// Searches from `start`: the baseline, or what a former search has found.
+impl Found {
+    /// Effects that were worth fitting.
+    pub(super) fn known(&self) -> Vec<Placed> {
+        let rivals = self.rivals.iter().flatten().filter_map(|f| f.model.effects.last());
+        self.best.model.effects.iter().chain(rivals).cloned().collect()
+    }
+}
+
+/// Searches from `start`: the baseline, or what a former search has found. `known`: effects that one knew.
 ///
 /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
 /// beginnings are tried as well.
@@ -46,23 +57,24 @@ pub(super) fn search(
     baseline: Fit,
     start: Fit,
     variants: &[Variant],
+    known: Vec<Placed>,
     say: &dyn Fn(String),
 ) -> Found {
+    let mut swaps = Swaps::new(problem, variants, known);
     let screening = screen(problem, &baseline, variants);
     let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
     let is_new = start.model.effects.is_empty();
-    let (start, rivals) = match is_new {
-        true => (start, Vec::new()),
-        false => settle(problem, start, variants, least_gain(problem.samples()), say),
-    };
     let way = match is_new {
-        true => Way { best: start, rivals, first: Vec::new(), screening },
-        false => Way::from(problem, start, rivals, variants),
+        true => Way { best: start, rivals: Vec::new(), first: Vec::new(), screening },
+        false => {
+            let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
+            Way::from(&swaps, settled)
+        }
     };
     let mut seen = Seen::default();
-    let mut found = climb(problem, &baseline, way, variants, &mut seen, say);
+    let mut found = climb(&mut swaps, &baseline, way, &mut seen, say);
     if is_new && found.best.model.effects.len() > 1 && leaves_much(problem, &baseline, &found.best) {
-        for (other, rivals) in other_beginnings(problem, &baseline, &found.first, variants) {
+        for other in other_beginnings(&baseline, &found.first, &seen) {
             if !leaves_much(problem, &baseline, &found.best) {
                 break;
             }
@@ -70,14 +82,14 @@ pub(super) fn search(
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way = Way::from(problem, other, rivals, variants);
-            let way = climb(problem, &baseline, way, variants, &mut seen, say);
+            let way = Way::from(&swaps, Settled { best: other, rivals: Vec::new() });
+            let way = climb(&mut swaps, &baseline, way, &mut seen, say);
             if way.best.cost < found.best.cost - least_gain(problem.samples()) {
                 (found.best, found.rivals) = (way.best, way.rivals);
             }
         }
     }
-    Found { baseline, best: found.best, rivals: found.rivals, screened }
+    Found { baseline, rivals_against: found.best.cost, best: found.best, rivals: found.rivals, screened }
 }
 
 /// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
@@ -86,23 +98,16 @@ const BEGINNING_WORTH: f64 = 0.3;
 /// Share of the misfit that is much.
 const MUCH: f64 = 0.05;
 
-/// The next best fits with one effect, each effect once: as they are, and settled, with the rivals of that.
-fn other_beginnings(
-    problem: &Problem,
-    baseline: &Fit,
-    first: &[Fit],
-    variants: &[Variant],
-) -> Vec<(Fit, Vec<Vec<Fit>>)> {
+/// The best fits with one effect that no way has come by, each effect once.
+fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
     let worth = baseline.cost - BEGINNING_WORTH * (baseline.cost - first.first().map_or(0.0, |f| f.cost));
-    let mut seen: Vec<String> = first.first().map(|f| f.model.title()).into_iter().collect();
-    let mut others = Vec::new();
-    for fit in first.iter().filter(|f| f.cost < worth) {
-        if others.len() < 2 * BEGINNINGS && !seen.contains(&fit.model.title()) {
-            seen.push(fit.model.title());
-            others.push((fit.clone(), Vec::new()));
-            others.push(settle(problem, fit.clone(), variants, least_gain(problem.samples()), &|_| {}));
+    let mut others: Vec<Fit> = Vec::new();
+    for fit in first.iter().filter(|f| f.cost < worth && !seen.contains(f)) {
+        if others.iter().all(|other| other.model.title() != fit.model.title()) {
+            others.push(fit.clone());
         }
     }
+    others.truncate(BEGINNINGS);
     others
 }
 
@@ -122,83 +127,76 @@ struct Way {
 }
 
 impl Way {
-    fn from(problem: &Problem, start: Fit, rivals: Vec<Vec<Fit>>, variants: &[Variant]) -> Self {
-        let mut way = Self { best: start, rivals, first: Vec::new(), screening: None };
-        way.look_around(problem, variants);
+    fn from(swaps: &Swaps, start: Settled) -> Self {
+        let mut way = Self { best: start.best, rivals: start.rivals, first: Vec::new(), screening: None };
+        way.look_around(swaps);
         way
     }
 
     /// Screens where the way stands, if it may go on.
-    fn look_around(&mut self, problem: &Problem, variants: &[Variant]) {
+    fn look_around(&mut self, swaps: &Swaps) {
         if self.best.model.effects.len() < MOST_EFFECTS {
-            self.screening = screen(problem, &self.best, variants);
+            self.screening = screen(swaps.problem, &self.best, swaps.variants);
         }
     }
 }
 
 /// Where the ways of one search have been: another that comes there goes on as they did.
 #[derive(Default)]
-struct Seen(Vec<(Vec<String>, f64)>);
-
-/// Costs of one model that differ by a smaller share are those of one fit: ways come to it from different sides.
-const SAME_COST: f64 = 2e-4;
+struct Seen(Vec<Fit>);
 
 impl Seen {
-    /// Whether no way has been here before, effects in whatever order; from now on one has.
+    fn contains(&self, fit: &Fit) -> bool {
+        self.0.iter().any(|other| is_same(other, fit))
+    }
+
+    /// Whether no way has been here before; from now on one has.
     fn is_new(&mut self, fit: &Fit) -> bool {
-        let mut effects: Vec<String> = fit.model.effects.iter().map(Placed::title).collect();
-        effects.sort();
-        let is_here =
-            |(other, cost): &(Vec<String>, f64)| *other == effects && (cost - fit.cost).abs() < SAME_COST * fit.cost;
-        let is_new = !self.0.iter().any(is_here);
+        let is_new = !self.contains(fit);
         if is_new {
-            self.0.push((effects, fit.cost));
+            self.0.push(fit.clone());
         }
         is_new
     }
 }
 
 /// Adds effect by effect, and settles after each, until nothing helps or another way has been there.
-fn climb(
-    problem: &Problem,
-    baseline: &Fit,
-    mut way: Way,
-    variants: &[Variant],
-    seen: &mut Seen,
-    say: &dyn Fn(String),
-) -> Way {
+fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, say: &dyn Fn(String)) -> Way {
+    let problem = swaps.problem;
     while way.best.model.effects.len() < MOST_EFFECTS {
         let best = &way.best;
         let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
         let Some(screening) = way.screening.take() else { break };
-        let refits = refit(problem, &screening, &pick(&screening.screened, least));
+        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
         if best.model.effects.is_empty() {
             way.first.clone_from(&refits);
         }
         let worthy = candidates(&refits, best, baseline.cost)
             .into_iter()
             .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
-        let (next, rivals) = match first_that_foretells(problem, best, worthy, say).cloned() {
+        swaps.keep_in_mind(best, &refits, least);
+        let next = match first_that_foretells(problem, best, worthy, say).cloned() {
             Some(winner) => {
                 say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
                 if winner.model.effects.len() > 1 {
-                    settle(problem, winner, variants, least, say)
+                    let stage = Stage { before: best, refits: &refits };
+                    swaps.settle(winner, least, Some(stage), say)
                 } else {
                     let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
-                    (winner, vec![rivals])
+                    Settled { best: winner, rivals: vec![rivals] }
                 }
             }
             None => {
-                let Some((next, rivals)) = several_at_once(problem, best, &refits, variants, least) else { break };
-                say(format!("together {}: chi2 {:.0} -> {:.0}", next.model.title(), best.cost, next.cost));
-                (next, rivals)
+                let Some(next) = several_at_once(swaps, best, &refits, least) else { break };
+                say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), best.cost, next.best.cost));
+                next
             }
         };
-        (way.best, way.rivals) = (next, rivals);
+        (way.best, way.rivals) = (next.best, next.rivals);
         if !seen.is_new(&way.best) {
             break;
         }
-        way.look_around(problem, variants);
+        way.look_around(swaps);
     }
     way
 }
@@ -211,37 +209,31 @@ const MUCH_PER_SAMPLE: f64 = 0.3;
 
 /// Two effects or more that explain together what is left over, where none of them does its share by itself: the first that was found
 /// may stand for another, and then each of the others alone changes little. `None` if they do not, or not on runs left out.
-fn several_at_once(
-    problem: &Problem,
-    before: &Fit,
-    refits: &[Fit],
-    variants: &[Variant],
-    least: f64,
-) -> Option<(Fit, Vec<Vec<Fit>>)> {
+fn several_at_once(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64) -> Option<Settled> {
+    let problem = swaps.problem;
     let left = before.cost - problem.noise_cost();
     if left < MUCH_PER_SAMPLE * problem.samples() as f64 {
         return None;
     }
     let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();
     loop {
-        let (settled, rivals) = settle(problem, best, variants, least, &|_| {});
-        best = settled;
-        if before.cost - best.cost > TOGETHER * left {
-            return foretells(problem, before, &best).then_some((best, rivals));
+        let settled = swaps.settle(best, least, None, &|_| {});
+        if before.cost - settled.best.cost > TOGETHER * left {
+            return foretells(problem, before, &settled.best).then_some(settled);
         }
-        if best.model.effects.len() >= MOST_EFFECTS {
+        if settled.best.model.effects.len() >= MOST_EFFECTS {
             return None;
         }
-        let screening = screen(problem, &best, variants)?;
-        let refits = refit(problem, &screening, &pick(&screening.screened, least));
-        best = refits.into_iter().next().filter(|f| best.cost - f.cost > least)?;
+        let screening = screen(problem, &settled.best, swaps.variants)?;
+        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
+        best = refits.into_iter().next().filter(|f| settled.best.cost - f.cost > least)?;
     }
 }
 
 /// What was found with another best model, and the rivals of that.
 pub(super) fn settled(problem: &Problem, found: Found, best: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Found {
-    let (best, rivals) = settle(problem, best, variants, least_gain(problem.samples()), say);
-    Found { best, rivals, ..found }
+    let settled = Swaps::new(problem, variants, found.known()).settle(best, least_gain(problem.samples()), None, say);
+    Found { rivals_against: settled.best.cost, best: settled.best, rivals: settled.rivals, ..found }
 }
 
 /// Whether what one more effect explains is more than what another's idealised law may leave over.
@@ -266,55 +258,11 @@ pub(super) fn grow(
     for _ in 0..MOST_TERMS {
         let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
         let screening = screen(problem, &best, variants)?;
-        let refits = refit(problem, &screening, &pick(&screening.screened, least));
+        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
         let winner = refits.first().filter(|f| best.cost - f.cost > least && foretells(problem, &best, f));
         let Some(winner) = winner else { break };
         say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
         best = winner.clone();
     }
     (best.model != from.model).then_some(best)
-}
-
-/// Leaves out effects that others have made needless and puts better ones in their place, until neither helps.
-/// Returns with it, for each effect, the others tried in its place.
-fn settle(
-    problem: &Problem,
-    mut best: Fit,
-    variants: &[Variant],
-    least: f64,
-    say: &dyn Fn(String),
-) -> (Fit, Vec<Vec<Fit>>) {
-    let mut rivals: Vec<Vec<Fit>> = Vec::new();
-    while rivals.len() < best.model.effects.len() {
-        let index = rivals.len();
-        let start = problem.start_without(&best, index);
-        let Some(fewer) = problem.fit(&best.model.without(index), &start) else {
-            rivals.push(Vec::new());
-            continue;
-        };
-        let refits = screen(problem, &fewer, variants).map_or_else(Vec::new, |screening| {
-            let mut others = pick(&screening.screened, least);
-            // What stands there already would only be found again.
-            others.retain(|s| s.variant.placed != best.model.effects[index]);
-            refit(problem, &screening, &others)
-        });
-        let margin = 1.0 + if has_branches(&best.model) { BRANCH_TIE * (fewer.cost - best.cost).max(0.0) } else { 0.0 };
-        let better = match refits.first().filter(|f| f.cost < best.cost - margin) {
-            _ if fewer.cost - best.cost < least => fewer,
-            Some(other) => other.clone(),
-            None => {
-                rivals.push(refits);
-                continue;
-            }
-        };
-        say(format!("rather {}: chi2 {:.0} -> {:.0}", better.model.title(), best.cost, better.cost));
-        best = better;
-        rivals.clear();
-    }
-    (best, rivals)
-}
-
-/// Whether an effect stands there with more than one branch.
-fn has_branches(model: &Model) -> bool {
-    model.effects.iter().enumerate().any(|(i, e)| model.effects[..i].contains(e))
 }

@@ -163,7 +163,7 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
         if all.iter().any(|(p, _, _)| p.says_the_same(own)) {
             continue;
         }
-        all.push((own.clone(), (-(rival.cost - best.cost).max(0.0) / (2.0 * unit)).exp(), rival));
+        all.push((own.clone(), (-(rival.cost - found.rivals_against).max(0.0) / (2.0 * unit)).exp(), rival));
     }
     let sum: f64 = all.iter().map(|(_, w, _)| w).sum();
     all.iter_mut().for_each(|(_, w, _)| *w /= sum);
@@ -203,4 +203,40 @@ fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
         numbers.insert(p.key.to_owned(), estimate);
     }
     numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::effects::{Element, ElementKind, Kind, find};
+
+    fn fit(kinds: &[Kind], cost: f64) -> Fit {
+        let model = kinds.iter().fold(crate::diagnose::Model::baseline(), |model, &kind| {
+            let placed = Placed { kind, element: Element::of(ElementKind::Muscle, 0, 1), channel: None };
+            model.plus(&placed, &find(kind).typical())
+        });
+        let n = model.effect_numbers();
+        let x = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
+        Fit { model, x, cost, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() }
+    }
+
+    #[test]
+    fn terms_of_a_hypothesis_do_not_count_against_the_rivals_of_what_stands_beside_them() {
+        let plain = Found {
+            baseline: fit(&[], 1000.0),
+            best: fit(&[Kind::GravityLoad], 100.0),
+            rivals: vec![vec![fit(&[Kind::CoilPreload], 101.0)]],
+            rivals_against: 100.0,
+            screened: Vec::new(),
+        };
+        let grown = Found { best: fit(&[Kind::GravityLoad, Kind::HypotheticalForce], 40.0), ..plain.clone() };
+        let probabilities = |found: &Found| -> Vec<(String, f64)> {
+            let effects = named(found, &found.best, 0.0).into_iter();
+            effects.filter(|e| !e.hypothetical).map(|e| (e.name, e.probability)).collect()
+        };
+        assert!((probabilities(&plain)[0].1 - 1.0 / (1.0 + (-0.5f64).exp())).abs() < 1e-12);
+        assert_eq!(probabilities(&grown), probabilities(&plain));
+    }
 }

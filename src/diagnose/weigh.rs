@@ -15,7 +15,8 @@ pub fn search_and_weigh(
     say: &dyn Fn(String),
 ) -> (Found, Vec<Noise>) {
     let mut noise = base.noise.clone();
-    let mut found = search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, say);
+    let mut found =
+        search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, Vec::new(), say);
     for _ in 0..2 {
         if found.best.model.effects.is_empty() {
             break;
@@ -26,13 +27,15 @@ pub fn search_and_weigh(
             case.runs = former;
             break;
         };
+        let with_new_steps = open_runs(case, &noise).cost_at(&found.best.model, &found.best.x);
         noise = renewed.noise;
         let problem = open_runs(case, &noise);
-        let least = search::least_gain(problem.samples());
-        if renewed.weights_hold && (renewed.start.cost - found.best.cost).abs() < SAME_COST * least {
+        let least = SAME_COST * search::least_gain(problem.samples());
+        let steps_hold = with_new_steps.is_some_and(|cost| (cost - found.best.cost).abs() < least);
+        if renewed.weights_hold && steps_hold {
             break;
         }
-        found = search::search(&problem, renewed.baseline, renewed.start, variants, say);
+        found = search::search(&problem, renewed.baseline, renewed.start, variants, found.known(), say);
     }
     (found, noise)
 }

@@ -34,6 +34,22 @@ pub(super) fn apply(spec: &JointSpec, joint: &mut JointModel) -> Result<(), Mech
     joint.moves = locked.is_none();
     joint.lower_stop = lower_stop;
     joint.upper_stop = upper_stop;
+    check_room(joint)
+}
+
+/// Stops must leave room between them, and a joint that moves begins there: where not, a sign or a unit is wrong.
+fn check_room(joint: &JointModel) -> Result<(), MechanismError> {
+    let lower = joint.lower_stop.map_or(f64::NEG_INFINITY, |s| s.position);
+    let upper = joint.upper_stop.map_or(f64::INFINITY, |s| s.position);
+    if lower >= upper {
+        let problem = format!("its lower stop at {lower} is not below its upper stop at {upper}");
+        return Err(error(&joint.name, problem, "exchange them; angles are in rad, lengths in m"));
+    }
+    let is_given = joint.position_given && joint.moves;
+    if is_given && !(lower..=upper).contains(&joint.position) {
+        let problem = format!("begins at {}, outside its stops ({lower} to {upper})", joint.position);
+        return Err(error(&joint.name, problem, "begin between them; angles are in rad, lengths in m"));
+    }
     Ok(())
 }
 

@@ -139,6 +139,15 @@ impl<'a> Header<'a> {
             );
             return Err(self.text.line_error(self.text.line(row.position()), problem));
         }
+        let is_first = columns[0].is_empty();
+        if is_first && row.iter().all(is_word) {
+            let words = shown(&row.iter().collect::<Vec<_>>().join(", "));
+            let problem = format!(
+                "words where the first numbers should be: {words}\n  remedy: remove the line; the end of a column's name says its \
+                 unit, as in plunger_mm"
+            );
+            return Err(self.text.line_error(self.text.line(row.position()), problem));
+        }
         for (index, cell) in row.iter().enumerate() {
             let value = number(cell).map_err(|problem| self.cell_error(row, index, problem))?;
             if index == self.time_index {
@@ -209,12 +218,27 @@ fn number(cell: &str) -> Result<f64, String> {
     }
     match cell.parse::<f64>() {
         Ok(value) if !value.is_infinite() => Ok(value),
-        _ => Err(format!(
-            "{} is not a finite number\n  remedy: write a number with a point as decimal mark, or leave the \
-             cell empty where the sample is missing",
-            shown(cell)
-        )),
+        _ => Err(format!("{} is not a finite number\n  remedy: {}", shown(cell), remedy(cell))),
     }
+}
+
+/// What to write in place of a cell that is no number.
+fn remedy(cell: &str) -> String {
+    let with_point = cell.replace(',', ".");
+    let is_clock =
+        cell.starts_with(|c: char| c.is_ascii_digit()) && (cell.contains(':') || cell.matches('-').count() == 2);
+    if cell.contains(',') && with_point.parse::<f64>().is_ok_and(f64::is_finite) {
+        format!("write decimals with a point: {with_point}")
+    } else if is_clock {
+        "give the time in seconds as a number, counted from the first row or from any other moment".to_owned()
+    } else {
+        "write a number with a point as decimal mark, or leave the cell empty where the sample is missing".to_owned()
+    }
+}
+
+/// Neither a number nor missing: a unit, say.
+fn is_word(cell: &str) -> bool {
+    cell.starts_with(|c: char| c.is_alphabetic() || "[(%°".contains(c)) && cell.parse::<f64>().is_err()
 }
 
 /// A cell as an error shows it: its beginning (an open quote takes in the rest of the file), with what cannot be seen escaped.

@@ -76,6 +76,20 @@ fn row_errors() {
 }
 
 #[test]
+fn what_spreadsheets_and_loggers_write_has_a_remedy_of_its_own() {
+    assert_eq!(
+        refusal("time_s,a_n\ns,N\n0,1\n"),
+        "a.csv: line 2: words where the first numbers should be: \"s, N\"\n  remedy: remove the line; the end of a column's \
+         name says its unit, as in plunger_mm"
+    );
+    assert!(refusal("time_s,a_n\n0,\"0,5\"\n").contains("remedy: write decimals with a point: 0.5"));
+    for clock in ["2026-03-01T10:00:00Z", "2026-03-01", "10:00:01.250"] {
+        assert!(refusal(&format!("time_s,a_n\n{clock},1\n")).contains("remedy: give the time in seconds as a number"));
+    }
+    assert!(read("time_s,a_n,b_n\n0,NaN,nan\n").is_ok());
+}
+
+#[test]
 fn lines_count_blank_ones_and_text_must_be_utf8() {
     assert!(refusal("time_s,a_n\n0,1\n\n1,x\n").starts_with("a.csv: line 4, "));
     assert!(refusal("\u{feff}time_s,a_n\r\n0,1\r\n1,x\r\n").starts_with("a.csv: line 3, "));
