@@ -10,7 +10,7 @@ use clap::Args;
 use rayon::prelude::*;
 use smam::effects::CATALOGUE;
 use smam::recording::did_you_mean;
-use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case};
+use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in};
 
 use super::CliError;
 use super::files::{take_folder, write};
@@ -43,6 +43,9 @@ pub struct TrialArguments {
     /// Where rows (trial.jsonl, kept from an earlier run) and table (trial.md) go
     #[arg(long, value_name = "DIR", default_value = "out/trial")]
     out: PathBuf,
+    /// Keep the recordings of each case too, in a folder of its name under DIR
+    #[arg(long)]
+    keep: bool,
 }
 
 /// Runs the command; cases that a former run has finished are not tried again.
@@ -69,7 +72,11 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     let file = Mutex::new(open(&path)?);
     let failed = |source: std::io::Error| CliError::Write { file: path.clone(), source };
     missing.par_iter().try_for_each(|case| -> Result<(), CliError> {
-        let row = try_case(case)?;
+        let row = if arguments.keep {
+            try_case_in(case, &arguments.out.join(case.name.replace(' ', "_")))?
+        } else {
+            try_case(case)?
+        };
         eprintln!("{:<70} {:?} {:?} {:.0} s", row.name, row.judgement, row.answer, row.seconds);
         let line = serde_json::to_string(&row).map_err(|e| CliError::Failed(e.to_string()))?;
         let mut file = file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -39,8 +39,10 @@ pub struct Row {
     pub verdict: Verdict,
     /// What was named, with probabilities.
     pub answer: Vec<(String, f64)>,
-    /// The size found for the effect, and whether the true one lies in its interval.
+    /// The size found for the effect with its 95 % interval, and whether the true one lies in it.
     pub found: Option<f64>,
+    #[serde(default)]
+    pub ci95: Option<[f64; 2]>,
     pub covered: Option<bool>,
     pub gap_closed: f64,
     pub seconds: f64,
@@ -66,6 +68,7 @@ pub fn judge(case: &TrialCase, outcome: &Outcome, seconds: f64) -> Row {
         verdict: d.verdict,
         answer: d.effects.iter().map(|e| (words(e), e.probability)).collect(),
         found: estimate.map(|e| e.value),
+        ci95: estimate.map(|e| e.ci95),
         covered: estimate.map(|e| e.ci95[0] <= value && value <= e.ci95[1]),
         gap_closed: d.fit.gap_closed,
         seconds,

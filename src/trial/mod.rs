@@ -22,7 +22,7 @@ mod programme;
 mod specimen;
 mod table;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use judge::{Judgement, Row};
 pub use plan::{Size, TrialCase, plan};
@@ -49,7 +49,7 @@ pub enum TrialError {
     Write { file: PathBuf, source: std::io::Error },
 }
 
-/// Makes the recordings of a case in a folder of its own, diagnoses them, and compares.
+/// Makes the recordings of a case in a folder that is gone afterwards, diagnoses them, and compares.
 ///
 /// # Errors
 /// A scene that cannot be run, a folder that cannot be written.
@@ -57,9 +57,18 @@ pub fn try_case(case: &TrialCase) -> Result<Row, TrialError> {
     // By this name it is known after a kill.
     let folder = tempfile::Builder::new().prefix("smam-trial-").tempdir();
     let folder = folder.map_err(|source| TrialError::Write { file: std::env::temp_dir(), source })?;
-    make_specimen(&case.scene, case.effect.as_ref(), 1.0, case.seed, folder.path())?;
+    try_case_in(case, folder.path())
+}
+
+/// The same with the recordings left in `folder`, made where it is missing: `smam diagnose` gives the same answer on them.
+///
+/// # Errors
+/// As for [`try_case`].
+pub fn try_case_in(case: &TrialCase, folder: &Path) -> Result<Row, TrialError> {
+    std::fs::create_dir_all(folder).map_err(|source| TrialError::Write { file: folder.to_owned(), source })?;
+    make_specimen(&case.scene, case.effect.as_ref(), 1.0, case.seed, folder)?;
     let begun = std::time::Instant::now();
-    let loaded = Case::load(&[folder.path()], None, &[])?;
+    let loaded = Case::load(&[folder], None, &[])?;
     let outcome = diagnose(loaded, Options { seed: case.seed }, &|_| {})?;
     Ok(judge::judge(case, &outcome, begun.elapsed().as_secs_f64()))
 }
