@@ -177,3 +177,35 @@ fn one_setting_that_diverges_takes_no_other_with_it() {
         assert!(together[i].is_some() && together[i] == twin.simulate(&run, &settings[i]), "setting {i}");
     }
 }
+
+/// Where the cables hold a joint, a third of a millinewton hardly moves it; it is let go where so little decides on which of the
+/// cables it hangs.
+#[test]
+fn a_joint_is_unheld_where_the_smallest_force_moves_it() {
+    let scene = Scene::load("antagonistic_pulley", &[]).expect("stock");
+    let twin = Twin::new(&scene).expect("it has a fast model");
+    let times_s = Schedule::even(20.0, 0.01).times();
+    let plunger = |sign: f64| times_s.iter().map(|t| sign * 1.1e-3 * (0.2 * std::f64::consts::PI * t).sin()).collect();
+    let run = TwinRun { inputs: vec![plunger(-1.0), plunger(1.0)], times_s: times_s.clone(), plan: None };
+    let table = EffectTable {
+        name: "gravity_load".to_owned(),
+        element: "mechanism".to_owned(),
+        channel: None,
+        parameters: [("weight_n".to_owned(), 3e-4)].into(),
+    };
+    let bare = TwinSetting::default();
+    let loaded = TwinSetting { parameters: Vec::new(), effects: vec![table.effect().expect("right")] };
+    let column = |name: &str| twin.columns().position(|c| c == name).expect("an output");
+    let (angle, tensions) = (column("angle_deg"), [column("tension_1_n"), column("tension_2_n")]);
+    let [is, was] = [&loaded, &bare].map(|setting| twin.simulate(&run, setting).expect("finite"));
+    let unheld = twin.unheld(&run, &bare).expect("finite");
+    let (free, held): (Vec<usize>, Vec<usize>) = (0..times_s.len()).partition(|&k| unheld[angle][k]);
+    let moved_deg =
+        |samples: &[usize]| samples.iter().map(|&k| (is[angle][k] - was[angle][k]).abs()).fold(0.0, f64::max);
+    let with_a_taut_cable = free.iter().filter(|&&k| tensions.iter().any(|&c| was[c][k] > 0.0)).count();
+    println!("{} of {} samples are unheld, {with_a_taut_cable} with a taut cable", free.len(), times_s.len());
+    println!("the weight moves the joint by {:.4} deg where held, {:.4} elsewhere", moved_deg(&held), moved_deg(&free));
+    assert!(moved_deg(&held) < 0.03 && moved_deg(&free) > 0.2);
+    assert!(with_a_taut_cable > 0 && free.len() < times_s.len() / 4);
+    assert!(tensions.iter().all(|&c| unheld[c].iter().all(|u| !u)), "a cable's tension is no joint's");
+}

@@ -37,6 +37,8 @@ pub struct CaseRun {
     pub lead_in: usize,
     /// Of each channel, its values at the recorded times; missing ones are NaN.
     pub measured: Vec<Vec<f64>>,
+    /// Of each channel, how many values were left out because next to nothing held the joint that they show.
+    pub unheld: Vec<usize>,
     pub is_sealed: bool,
     /// Of the sealed end of a run: what was measured before it. A free zero is decided there.
     pub open_part: Option<Vec<Vec<f64>>>,
@@ -129,23 +131,26 @@ impl Case {
         self.runs.par_iter_mut().map(plan).collect()
     }
 
-    /// Leaves out what a joint shows while nothing holds it, at a setting. `None` when the fast model diverges.
+    /// Leaves out what a joint shows while next to nothing holds it, at a setting. `None` when the fast model diverges.
     pub fn leave_out_unheld(&mut self, setting: &TwinSetting<f64>) -> Option<()> {
         let unheld: Vec<_> =
             self.runs.par_iter().map(|r| r.twin.unheld(&r.drive, setting)).collect::<Option<Vec<_>>>()?;
         for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
-            for (channel, measured) in self.channels.iter().zip(&mut run.measured) {
-                let left_out = leave_out(measured, &unheld[channel.output][run.lead_in..]);
-                if left_out > 0 {
-                    let (column, file) = (&channel.column, &run.file);
-                    self.notes.push(format!(
-                        "{file}: {left_out} samples of {column} are left out: no cable is taut there, and the joint \
-                         lies where its last swing left it"
-                    ));
-                }
+            run.unheld.resize(self.channels.len(), 0);
+            for (c, channel) in self.channels.iter().enumerate() {
+                run.unheld[c] += leave_out(&mut run.measured[c], &unheld[channel.output][run.lead_in..]);
             }
         }
         Some(())
+    }
+
+    /// What was done with the recordings, for whoever reads the answer.
+    pub fn notes(&self) -> Vec<String> {
+        let counted = |r: &CaseRun| -> Vec<String> {
+            let left_out = self.channels.iter().zip(&r.unheld).filter(|(_, count)| **count > 0);
+            left_out.map(|(c, count)| unheld_note(&r.file, &c.column, *count)).collect()
+        };
+        self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
     }
 
     /// Runs to fit and select with, or those held back.
@@ -157,6 +162,13 @@ impl Case {
         };
         self.runs.iter().filter(wanted).map(Cow::Borrowed).collect()
     }
+}
+
+fn unheld_note(file: &str, column: &str, count: usize) -> String {
+    format!(
+        "{file}: {count} samples of {column} are left out: the cables hardly hold the joint there, and the smallest force decides \
+         where it lies"
+    )
 }
 
 /// Which runs.

@@ -92,6 +92,7 @@ impl Case {
             file: run.run.file.clone(),
             measured,
             is_sealed: run.run.run_use == Some(RunUse::Holdout),
+            unheld: Vec::new(),
             open_part: None,
             twin: Arc::new(Twin::new(&scene)?),
             scene: Arc::new(scene),

@@ -10,6 +10,8 @@ use super::normal::{Normal, Number, Rows, prior_cost};
 /// otherwise lie up to a standard error from where the data would have them.
 const GAIN: f64 = 0.5;
 const LAST_GAIN: f64 = 0.01;
+/// Chi² by which a fit from elsewhere is another: less is where descents stop.
+const LOWER: f64 = 5.0;
 /// Steps on mended slopes, and how often slopes are taken anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
@@ -22,7 +24,15 @@ impl Problem<'_> {
         self.fit_until(GAIN, model, start)
     }
 
-    /// The same, until next to nothing is to be gained.
+    /// The same from the scene's calibration, effects as `start` has them; none unless it ends lower than `cost`. A calibration that
+    /// had to make up for what the model lacked may stand in a valley of its own.
+    pub fn fit_afresh(&self, model: &Model, start: &[f64], cost: f64) -> Option<Fit> {
+        let mut afresh = start.to_vec();
+        afresh.iter_mut().zip(&self.case.parameters).for_each(|(x, p)| *x = p.start);
+        self.fit(model, &afresh).filter(|fit| fit.cost < cost - LOWER)
+    }
+
+    /// The same as [`Problem::fit`], until next to nothing is to be gained.
     pub fn fit_to_the_end(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         self.fit_until(LAST_GAIN, model, start)
     }

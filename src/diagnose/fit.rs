@@ -33,7 +33,7 @@ impl Fit {
 }
 
 /// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
-const CALIBRATION_STEP: f64 = 1e-3;
+const CALIBRATION_STEP: f64 = 1e-1;
 const EFFECT_STEP: f64 = 2e-2;
 
 /// Steps to both sides are alike; away from a bound that is near.

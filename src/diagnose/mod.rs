@@ -211,7 +211,7 @@ fn explain(
     let variants = candidates::variants(case);
     let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say);
     let case = &*case;
-    let mut warnings = [warnings, base.warnings, case.notes.clone()].concat();
+    let mut warnings = [warnings, base.warnings, case.notes()].concat();
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
     say("sealed runs".to_owned());

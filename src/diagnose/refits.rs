@@ -71,6 +71,21 @@ pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Scre
     fits
 }
 
+/// The same refits, cheapest first, those near the best also fitted from the scene's calibration: only where the best one gains by
+/// it, since mostly none does.
+pub(super) fn afresh(problem: &Problem, refits: Vec<Fit>) -> Vec<Fit> {
+    let again = |f: &Fit| problem.fit_afresh(&f.model, &f.x, f.cost);
+    let Some(best) = refits.first().and_then(again) else { return refits };
+    let others: Vec<Option<Fit>> = refits[1..].par_iter().take(FINISHED - 1).map(again).collect();
+    let mut fits = refits;
+    fits[0] = best;
+    for (fit, other) in fits[1..].iter_mut().zip(others) {
+        *fit = other.unwrap_or_else(|| fit.clone());
+    }
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
 /// The cheapest fit of each effect, cheapest first.
 fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));

@@ -3,7 +3,7 @@
 use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::model::Placed;
-use super::refits::{Swallowed, adds_branch, candidates, first_that_foretells, foretells, pick, refit};
+use super::refits::{Swallowed, adds_branch, afresh, candidates, first_that_foretells, foretells, pick, refit};
 use super::screening::{Screened, Screening, screen};
 use super::swaps::{Settled, Stage, Swaps, is_same};
 
@@ -168,6 +168,7 @@ fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, say: 
         let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
         let Some(screening) = way.screening.take() else { break };
         let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
+        let refits = afresh(problem, refits);
         if best.model.effects.is_empty() {
             way.first.clone_from(&refits);
         }

@@ -32,7 +32,8 @@ pub fn search_and_weigh(
         let problem = open_runs(case, &noise);
         let least = SAME_COST * search::least_gain(problem.samples());
         let steps_hold = with_new_steps.is_some_and(|cost| (cost - found.best.cost).abs() < least);
-        if renewed.weights_hold && steps_hold {
+        let is_lowest = renewed.start.cost > found.best.cost - least;
+        if renewed.weights_hold && steps_hold && is_lowest {
             break;
         }
         found = search::search(&problem, renewed.baseline, renewed.start, variants, found.known(), say);
@@ -63,7 +64,9 @@ fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
     case.leave_out_unheld(&setting)?;
     let problem = open_runs(case, &noise);
     let start = problem.fit(&found.best.model, &found.best.x)?;
+    let start = problem.fit_afresh(&start.model, &start.x, start.cost).unwrap_or(start);
     let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
+    let baseline = problem.fit_afresh(&baseline.model, &baseline.x, baseline.cost).unwrap_or(baseline);
     Some(Renewed { noise, weights_hold, start, baseline })
 }
 

@@ -1,39 +1,50 @@
-//! When a joint is held by nothing: no cable on it is taut, and it has no spring.
+//! When a joint is held by next to nothing: it has no spring, and the cables on it do not pull against each other.
 
 use super::output::TwinOutput;
 use super::{Twin, TwinRun, TwinSetting};
 use crate::system::PlantState;
 use crate::system::plant::{InputSpan, Plant};
 
+/// A pull from one side alone holds a joint that does not give way to less: this share of the greatest tension of the run. Below it
+/// the joint hangs after whichever cable happens to touch it.
+const FIRM: f64 = 0.01;
+
 impl Twin {
-    /// By output, the samples of a run at which what it shows depends on a joint that nothing holds.
+    /// By output, the samples of a run at which what it shows depends on a joint that next to nothing holds.
     ///
-    /// Such a joint lies where its last swing left it: the smallest difference decides, and no model can foretell it.
-    /// `None` when the simulation diverges.
+    /// Such a joint lies where its last swing left it, or follows one cable through the other's slack: the smallest difference decides
+    /// which, and no model can foretell it. `None` when the simulation diverges.
     pub fn unheld(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> Option<Vec<Vec<bool>>> {
-        let mut unheld = vec![vec![false; run.times_s.len()]; self.outputs.len()];
         if self.axis.is_some() {
-            return Some(unheld);
+            return Some(vec![vec![false; run.times_s.len()]; self.outputs.len()]);
         }
-        self.watch(run, setting, |k, plant, state, spans| {
-            let free = free_coordinates(plant, state, spans);
-            for (output, unheld) in self.outputs.iter().zip(&mut unheld) {
-                unheld[k] = reads_any(output, &free);
-            }
+        let mut holds: Vec<Vec<f64>> = Vec::with_capacity(run.times_s.len());
+        let mut greatest_n = 0.0_f64;
+        self.watch(run, setting, |_, plant, state, spans| {
+            let tensions_n = tensions(plant, state, spans);
+            greatest_n = tensions_n.iter().copied().fold(greatest_n, f64::max);
+            holds.push((0..plant.dim()).map(|i| hold(plant, &tensions_n, i)).collect());
         })?;
-        Some(unheld)
+        let is_loose = |hold_n: f64| hold_n <= FIRM * greatest_n;
+        let at = |output: &TwinOutput, holds: &Vec<f64>| output.joints().iter().any(|(i, _)| is_loose(holds[*i]));
+        Some(self.outputs.iter().map(|output| holds.iter().map(|holds| at(output, holds)).collect()).collect())
     }
 }
 
-fn free_coordinates(plant: &Plant<f64>, state: &PlantState<f64>, spans: &[InputSpan]) -> Vec<bool> {
-    let taut: Vec<bool> = (0..plant.cables.len()).map(|c| plant.cable(c, state, spans, 0.0).2 > 0.0).collect();
-    let is_free = |i: usize| {
-        let mut cables = plant.cables.iter().zip(&taut).filter(|(c, _)| c.jacobian[i] != 0.0).peekable();
-        plant.coordinates.stiffness[i] == 0.0 && cables.peek().is_some() && cables.all(|(_, taut)| !taut)
-    };
-    (0..plant.dim()).map(is_free).collect()
+fn tensions(plant: &Plant<f64>, state: &PlantState<f64>, spans: &[InputSpan]) -> Vec<f64> {
+    (0..plant.cables.len()).map(|c| plant.cable(c, state, spans, 0.0).2).collect()
 }
 
-fn reads_any(output: &TwinOutput, free: &[bool]) -> bool {
-    output.joints().iter().any(|(i, _)| free[*i])
+/// The tension that keeps a joint where it is, N: without end where it has a spring, no cable, or taut ones on both sides.
+fn hold(plant: &Plant<f64>, tensions_n: &[f64], joint: usize) -> f64 {
+    let strongest = |sign: f64| {
+        let pulls = plant.cables.iter().zip(tensions_n).filter(|(c, _)| sign * c.jacobian[joint] > 0.0);
+        pulls.map(|(_, tension_n)| tension_n.max(0.0)).reduce(f64::max)
+    };
+    let (one, other) = (strongest(1.0), strongest(-1.0));
+    let is_between = one.is_some_and(|n| n > 0.0) && other.is_some_and(|n| n > 0.0);
+    if plant.coordinates.stiffness[joint] != 0.0 || is_between {
+        return f64::INFINITY;
+    }
+    one.into_iter().chain(other).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
