@@ -65,6 +65,17 @@ fn a_list_of_booleans_that_takes_no_room_is_refused() {
     assert!(said.contains("list of booleans") && said.contains("\n  remedy: write the file again"), "{said}");
 }
 
+/// Found by fuzzing: a version that says to be a boolean, so that what the library reads next is another such list.
+#[test]
+fn a_known_field_of_another_kind_is_refused() {
+    let hidden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/recordings/claims_hidden_booleans.parquet");
+    let said = read_recording(Path::new(hidden)).expect_err("no recording").to_string();
+    assert!(
+        said.contains("another kind than Parquet says") && said.contains("\n  remedy: write the file again"),
+        "{said}"
+    );
+}
+
 /// The same recording drives the same run, whichever way it is written.
 #[test]
 fn parquet_and_csv_drive_the_same_run() {

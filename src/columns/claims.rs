@@ -10,6 +10,7 @@ use bytes::Bytes;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::reader::{ChunkReader, Length};
 
+use super::parquet_shapes::{FILE, PAGE};
 use super::thrift::walk;
 
 /// The densest that Snappy gets is a copy of 64 bytes in three: 21 times.
@@ -25,6 +26,8 @@ const STRUCTURE: u8 = 0x0c;
 const DICTIONARY: u64 = 2;
 /// Length of a file's end, which is read as pages' headers are.
 const END_BYTES: u64 = 8;
+/// The very end of a file whose description is encrypted: another structure, which the library refuses unread.
+const ENCRYPTED: &[u8] = b"PARE";
 
 /// A file that refuses to hand out a page which claims too much.
 pub(super) struct Checked(pub File);
@@ -55,7 +58,7 @@ impl ChunkReader for Checked {
     fn get_read(&self, start: u64) -> Result<Self::T> {
         if start.saturating_add(END_BYTES) != self.len() {
             check(claim(self.0.get_read(start)?)).map_err(ParquetError::General)?;
-            walk(&mut self.0.get_read(start)?).map_err(|e| damaged("a page's header", e))?;
+            walk(&mut self.0.get_read(start)?, &PAGE).map_err(|e| damaged("a page's header", e))?;
         }
         Ok(UpToTheEnd(self.0.get_read(start)?))
     }
@@ -66,10 +69,17 @@ impl ChunkReader for Checked {
         }
         let bytes = self.0.get_bytes(start, length)?;
         // What describes the whole file stands right before its end.
-        if start + length as u64 + END_BYTES == self.len() {
-            walk(&mut bytes.as_ref()).map_err(|e| damaged("its description", e))?;
+        if start + length as u64 + END_BYTES == self.len() && !self.is_encrypted()? {
+            walk(&mut bytes.as_ref(), &FILE).map_err(|e| damaged("its description", e))?;
         }
         Ok(bytes)
+    }
+}
+
+impl Checked {
+    fn is_encrypted(&self) -> Result<bool> {
+        let start = self.len().saturating_sub(ENCRYPTED.len() as u64);
+        Ok(self.0.get_bytes(start, ENCRYPTED.len())? == ENCRYPTED)
     }
 }
 

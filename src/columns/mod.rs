@@ -23,6 +23,7 @@
 //! ```
 
 mod claims;
+mod parquet_shapes;
 mod read;
 mod thrift;
 mod write;
@@ -92,6 +93,8 @@ mod tests {
         let Column::Numbers(numbers) = &back[1].1 else { panic!("{back:?}") };
         assert!(numbers[0] == 1.0 / 3.0 && numbers[1].is_nan());
         assert!(written(b"PAR1 and then nothing").is_err());
+        let encrypted = written(b"PAR1\x1c\x1c\0\0\0\x05\0\0\0PARE").expect_err("encrypted");
+        assert!(encrypted.contains("encrypted"), "{encrypted}");
     }
 
     /// A million equal numbers take a few hundred bytes: so could any number of them, until the memory is full.

@@ -33,8 +33,11 @@ impl Fit {
 }
 
 /// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
-const CALIBRATION_STEP: f64 = 1e-1;
+const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
+/// The same for calibrated numbers where cables go slack. Where a joint comes to rest after that depends on how it bounced: over a
+/// thousandth of a range that makes derivatives a hundred times too large and intervals too narrow, over a tenth it averages out.
+const STEP_ACROSS_SLACK: f64 = 1e-1;
 
 /// Steps to both sides are alike; away from a bound that is near.
 pub(super) fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
@@ -43,9 +46,8 @@ pub(super) fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: 
 
 /// The step over which a number at `x` is differentiated.
 pub(super) fn probe(n: &Number, x: f64, number: usize, sides: Sides) -> Probe {
-    let share = if n.prior_weight > 0.0 { CALIBRATION_STEP } else { EFFECT_STEP };
     // A number grown far beyond its scale is probed in proportion.
-    let size = (share * n.scale).max(1e-3 * x.abs());
+    let size = (n.step * n.scale).max(1e-3 * x.abs());
     let has_room = x - size >= n.min && x + size <= n.max;
     let step = if x + size > n.max { -size } else { size };
     Probe { number, step, sides: if has_room { sides } else { Sides::One } }
@@ -60,19 +62,22 @@ pub(super) struct Problem<'a> {
 
 impl Problem<'_> {
     pub fn numbers(&self, model: &Model) -> Vec<Number> {
+        let goes_slack = self.case.runs.iter().any(|r| r.unheld.iter().any(|count| *count > 0));
+        let step = if goes_slack { STEP_ACROSS_SLACK } else { CALIBRATION_STEP };
         let mut numbers: Vec<Number> = self
             .case
             .parameters
             .iter()
             .map(|p| {
                 let half = (p.max - p.min) / 2.0;
-                Number { min: p.min, max: p.max, scale: half, prior: p.start, prior_weight: 1.0 / (2.0 * half) }
+                Number { min: p.min, max: p.max, scale: half, step, prior: p.start, prior_weight: 1.0 / (2.0 * half) }
             })
             .collect();
         for (effect, index) in model.places() {
             let p = &model.effects[effect].spec().parameters[index];
             let scale = p.typical.abs().max(1e-3 * p.range.max.abs().min(1.0));
-            numbers.push(Number { min: p.range.min, max: p.range.max, scale, prior: 0.0, prior_weight: 0.0 });
+            let (min, max) = (p.range.min, p.range.max);
+            numbers.push(Number { min, max, scale, step: EFFECT_STEP, prior: 0.0, prior_weight: 0.0 });
         }
         numbers
     }

@@ -8,6 +8,8 @@ pub(super) struct Number {
     pub min: f64,
     pub max: f64,
     pub scale: f64,
+    /// By how many scales it is moved for a derivative.
+    pub step: f64,
     /// Where the prior sits, and one over its standard deviation; 0: there is none.
     pub prior: f64,
     pub prior_weight: f64,
@@ -131,7 +133,7 @@ pub(super) fn prior_cost(numbers: &[Number], x: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    const FREE: Number = Number { min: -9.0, max: 9.0, scale: 1.0, prior: 0.0, prior_weight: 0.0 };
+    const FREE: Number = Number { min: -9.0, max: 9.0, scale: 1.0, step: 1e-3, prior: 0.0, prior_weight: 0.0 };
 
     fn line(at: &[f64]) -> Rows {
         Rows {
