@@ -23,6 +23,7 @@ use super::judge::{Judgement, Row};
 /// #   excess_chi2_per_sample: 0.0,
 /// #   answer: Vec::new(),
 /// #   found: None,
+/// #   ci95: None,
 /// #   covered: None,
 /// #   gap_closed: 0.0,
 /// #   seconds: 9.0,
