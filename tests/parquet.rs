@@ -25,6 +25,17 @@ fn a_run_that_pandas_wrote_is_a_run_of_recordings_toml() {
     assert!(run.notes[0].contains("count_ratio"), "{:?}", run.notes);
 }
 
+/// Polars compresses with zstd unless told otherwise.
+#[test]
+fn a_codec_that_is_not_read_is_named_as_writers_name_it() {
+    for codec in ["zstd", "gzip"] {
+        let packed = format!("{}/tests/recordings/polars_{codec}.parquet", env!("CARGO_MANIFEST_DIR"));
+        let said = read_recording(Path::new(&packed)).expect_err("packed").to_string();
+        assert!(said.starts_with(&format!("{packed}: compressed with {codec}, which is not read here")), "{said}");
+        assert!(said.contains("\n  remedy: write it with compression=\"snappy\""), "{said}");
+    }
+}
+
 /// Found by fuzzing: the pandas file with some bytes changed, on which the library that reads Parquet panics.
 #[test]
 fn a_file_damaged_inside_is_refused() {
