@@ -155,20 +155,10 @@ pub(super) fn take_back_contradicted(
 
 /// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof; where it
 /// cannot be played, that is said, and the fast model's stand.
-pub fn check_on_full_scene(
-    sealed: &Problem,
-    found: &Found,
-    proof: &mut Proof,
-    seed: u64,
-    warnings: &mut Vec<String>,
-) -> Vec<FullRun> {
-    match compare_with_full_scene(sealed, found, proof, seed, warnings) {
-        Ok(played) => played,
-        Err(e) => {
-            proof.full_scene.agrees = false;
-            warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
-            Vec::new()
-        }
+pub fn check_on_full_scene(sealed: &Problem, found: &Found, proof: &mut Proof, seed: u64, warnings: &mut Vec<String>) {
+    if let Err(e) = compare_with_full_scene(sealed, found, proof, seed, warnings) {
+        proof.full_scene.agrees = false;
+        warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
     }
 }
 
@@ -178,7 +168,7 @@ fn compare_with_full_scene(
     proof: &mut Proof,
     seed: u64,
     warnings: &mut Vec<String>,
-) -> Result<Vec<FullRun>, DiagnoseError> {
+) -> Result<(), DiagnoseError> {
     let case = sealed.case;
     let corrected = play_full(case, &found.best, sealed.noise)?;
     let agreement = agreement(case, &corrected);
@@ -200,7 +190,7 @@ fn compare_with_full_scene(
         ));
     }
     proof.full_scene = agreement;
-    Ok(corrected)
+    Ok(())
 }
 
 /// Wrong effects that are put through the same door, at most.

@@ -15,6 +15,11 @@ const LOWER: f64 = 5.0;
 /// Steps on mended slopes, and how often slopes are taken anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
+const TRIES: usize = 8;
+/// The same where playing is dear: a gain of 0.05 is two tenths of a standard error.
+const PLAYED_GAIN: f64 = 0.05;
+const PLAYED_ITERATIONS: usize = 4;
+const PLAYED_TRIES: usize = 1;
 /// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
 const LEAST_DAMPING: f64 = 1e-10;
 
@@ -41,7 +46,9 @@ impl Problem<'_> {
         let numbers = self.numbers(model);
         let x = within(start, &numbers);
         let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
-        let mut descent = Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING, gain };
+        let residual = |x: &[f64]| self.weighted_residual(model, x);
+        let mut descent = Descent::new(self, model, &numbers, x, rows, &residual);
+        descent.gain = gain;
         descent.run();
         for _ in 0..REFRESHES {
             let cost = descent.normal().cost;
@@ -61,16 +68,31 @@ impl Problem<'_> {
         let numbers = self.numbers(model);
         let x = within(start, &numbers);
         let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
-        let mut descent =
-            Descent { problem: self, model, numbers: &numbers, x, rows, damping: LEAST_DAMPING, gain: GAIN };
+        let residual = |x: &[f64]| self.weighted_residual(model, x);
+        let mut descent = Descent::new(self, model, &numbers, x, rows, &residual);
         descent.run();
         Some(descent.finish())
+    }
+
+    /// Goes on with something else than the fast model playing: `residual` in units of the noise, at `start` as in `rows`, whose slopes
+    /// are taken as near enough. A few steps: each may cost seconds.
+    pub fn fit_played(&self, model: &Model, start: &[f64], rows: Rows, residual: &Play) -> Fit {
+        let numbers = self.numbers(model);
+        let mut descent = Descent::new(self, model, &numbers, start.to_vec(), rows, residual);
+        descent.gain = PLAYED_GAIN;
+        descent.iterations = PLAYED_ITERATIONS;
+        descent.tries = PLAYED_TRIES;
+        descent.run();
+        descent.finish()
     }
 }
 
 fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
     x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
 }
+
+/// Residuals at some numbers, in units of the noise; none where the model diverges.
+pub(super) type Play<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + 'a;
 
 /// A fit on its way.
 struct Descent<'a> {
@@ -79,12 +101,28 @@ struct Descent<'a> {
     numbers: &'a [Number],
     x: Vec<f64>,
     rows: Rows,
+    residual: &'a Play<'a>,
     damping: f64,
     /// Units of chi² that are worth another iteration.
     gain: f64,
+    iterations: usize,
+    /// Steps, each shorter than the last, that are tried in one direction.
+    tries: usize,
 }
 
-impl Descent<'_> {
+impl<'a> Descent<'a> {
+    fn new(
+        problem: &'a Problem<'a>,
+        model: &'a Model,
+        numbers: &'a [Number],
+        x: Vec<f64>,
+        rows: Rows,
+        residual: &'a Play<'a>,
+    ) -> Self {
+        let (damping, gain, iterations, tries) = (LEAST_DAMPING, GAIN, ITERATIONS, TRIES);
+        Self { problem, model, numbers, x, rows, residual, damping, gain, iterations, tries }
+    }
+
     fn normal(&self) -> Normal {
         Normal::of(&self.rows, self.numbers, &self.x)
     }
@@ -96,7 +134,7 @@ impl Descent<'_> {
 
     /// Steps until the slopes promise no more.
     fn run(&mut self) {
-        for _ in 0..ITERATIONS {
+        for _ in 0..self.iterations {
             let least = self.gain * self.unit();
             if self.improve(least).is_none_or(|gain| gain < least) {
                 break;
@@ -107,7 +145,7 @@ impl Descent<'_> {
     /// One step downwards; what it gained, none when less than a third of `least` can be had.
     fn improve(&mut self, least: f64) -> Option<f64> {
         let here = self.normal();
-        for _ in 0..8 {
+        for _ in 0..self.tries {
             let step = here.bounded_step(self.numbers, &self.x, self.damping)?;
             if here.promised_gain(&step) < least / 3.0 {
                 return None;
@@ -117,7 +155,7 @@ impl Descent<'_> {
             let next = within(&moved, self.numbers);
             let made = self.x.iter().zip(&next).zip(self.numbers).map(|((from, to), n)| (to - from) / n.scale);
             let made = DVector::from_iterator(next.len(), made);
-            let residual = self.problem.weighted_residual(self.model, &next);
+            let residual = (self.residual)(&next);
             let there = residual.map(|r| (r.norm_squared() + prior_cost(self.numbers, &next), r));
             if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
                 self.rows.move_on(&made, residual);

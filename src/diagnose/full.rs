@@ -45,12 +45,7 @@ pub fn agreement(case: &Case, runs: &[FullRun]) -> FullScene {
 }
 
 fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRun, DiagnoseError> {
-    let mut simulation = full_simulation(case, fit, run)?;
-    let shown = record(&mut simulation, &Schedule::at(run.drive.times_s.clone()))?;
-    let mut values = Vec::new();
-    for channel in &case.channels {
-        values.push(shown.channel(&channel.column)?.values[run.lead_in..].to_vec());
-    }
+    let values = play_on_full(case, fit, run)?;
     let fast = simulate(case, run, &fit.model, &fit.x)
         .ok_or_else(|| DiagnoseError::Simulation("the fast model diverges".to_owned()))?;
     let difference = |c: usize| {
@@ -60,6 +55,16 @@ fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRu
     };
     let difference_over_noise = (0..values.len()).map(difference).collect();
     Ok(FullRun { is_sealed: run.is_sealed, values, difference_over_noise })
+}
+
+/// What the full scene shows in a run, with the numbers of a fit: by channel, then time.
+///
+/// # Errors
+/// A scene that the engine cannot play with these numbers.
+pub fn play_on_full(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Vec<Vec<f64>>, DiagnoseError> {
+    let mut simulation = full_simulation(case, fit, run)?;
+    let shown = record(&mut simulation, &Schedule::at(run.drive.times_s.clone()))?;
+    case.channels.iter().map(|c| Ok(shown.channel(&c.column)?.values[run.lead_in..].to_vec())).collect()
 }
 
 /// The full scene of a run with the numbers of a fit, driven by what was recorded.

@@ -33,7 +33,6 @@ mod case_load;
 mod confirm;
 mod corrected;
 mod descent;
-mod discrepancy;
 mod error;
 mod experiment;
 mod figures;
@@ -48,6 +47,7 @@ mod locate;
 mod model;
 mod noise;
 mod normal;
+mod on_full;
 mod preflight;
 pub mod programme;
 mod prove;
@@ -184,8 +184,6 @@ type Residuals = Vec<Vec<Vec<f64>>>;
 /// What stands after the search and its proofs.
 struct Explained {
     found: Found,
-    /// By how much its numbers would move if the full scene were fitted.
-    shift: Option<Vec<f64>>,
     confirmed: Confirmed,
     proof: Proof,
     noise: Vec<Noise>,
@@ -230,19 +228,18 @@ fn explain(
     }
     say("full scene".to_owned());
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
-    let full = confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
-    let shift = discrepancy::shift(&whole, &found.best, &full);
-    Ok(Explained { found, shift, confirmed, proof, noise, after, excess, warnings })
+    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
+    Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
 }
 
 /// Names what was found and where, and proposes what to record next.
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
-    let Explained { found, shift, confirmed, proof, noise, after, excess, mut warnings } = explained;
+    let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     let complete = whole.fit_to_the_end(&found.best.model, &found.best.x);
     let mut complete = complete.unwrap_or_else(|| found.best.clone());
     intervals::widen(&whole, &mut complete);
-    shift.iter().for_each(|shift| discrepancy::apply(&whole, &mut complete, shift));
+    let complete = on_full::settle(&whole, complete);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);

@@ -1,0 +1,77 @@
+//! The numbers of the answer as the full scene would have them.
+
+use std::borrow::Cow;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::case::CaseRun;
+use super::fit::{Fit, Problem};
+use super::full::play_on_full;
+use super::model::Sides;
+
+/// Goes on from a fit of the fast model with the full scene in its place: the residuals are the full scene's, the derivatives the fast
+/// model's. A step is taken only where the full scene itself comes nearer to the recordings. What every number moved by is added to
+/// its interval, since the derivatives are another model's.
+///
+/// The fit stays as it is where the full scene cannot be played.
+pub(super) fn settle(whole: &Problem, fit: Fit) -> Fit {
+    let residual = |x: &[f64]| -> Option<DVector<f64>> {
+        let there = Fit { x: x.to_vec(), ..fit.clone() };
+        let left = |run: &Cow<'_, CaseRun>| Some(whole.subtract(run, &play_on_full(whole.case, &there, run).ok()?));
+        Some(whole.in_noise(&whole.runs.par_iter().map(left).collect::<Option<Vec<_>>>()?))
+    };
+    let Some(mut rows) = whole.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return fit };
+    let Some(on_full) = residual(&fit.x) else { return fit };
+    rows.residual = on_full;
+    let Fit { x, on_bound, .. } = whole.fit_played(&fit.model, &fit.x, rows, &residual);
+    let mut covariance = fit.covariance;
+    for (i, (to, from)) in x.iter().zip(&fit.x).enumerate() {
+        covariance[(i, i)] += ((to - from) / 1.96).powi(2);
+    }
+    Fit { x, on_bound, covariance, ..fit }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::noise::Noise;
+    use crate::diagnose::{Case, Model, Sealed};
+    use crate::scene::{Override, Scene};
+    use crate::system::{Schedule, Simulation, record};
+
+    /// 20 s of the full scene's stock programme with one number changed and without noise.
+    fn recorded(key: &str, value: f64) -> Case {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scene = Scene::load("antagonistic_pulley", &[Override::number(key, value)]).expect("stock");
+        let mut simulation = Simulation::new(scene).expect("stock");
+        let recording = record(&mut simulation, &Schedule::even(20.0, 0.02)).expect("a run");
+        recording.write_csv(&folder.path().join("run.csv")).expect("written");
+        let set = "format = 1\nscene = \"antagonistic_pulley\"\nrun = [{ file = \"run.csv\" }]\nchannel = [\n\
+                   { column = \"plunger_1_mm\", role = \"input\" }, { column = \"plunger_2_mm\", role = \"input\" },\n\
+                   { column = \"angle_deg\", role = \"output\" }]\n";
+        std::fs::write(folder.path().join("recordings.toml"), set).expect("written");
+        Case::load(&[folder.path()], None, &[]).expect("a case")
+    }
+
+    /// From a fast model's fit that is wrong by two per cent to the number with which the full scene was played; and no further.
+    #[test]
+    fn numbers_are_those_that_the_full_scene_was_played_with() {
+        let case = recorded("friction_m0_n", 0.11);
+        let noise = [Noise::white(0.01)];
+        let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let baseline = Model::baseline();
+        let friction = case.parameters.iter().position(|p| p.key == "friction_m0_n").expect("calibrated");
+        let mut wrong = whole.fit_to_the_end(&baseline, &whole.start(&baseline, None)).expect("played");
+        wrong.x = whole.start(&baseline, None);
+        wrong.x[friction] = 0.1122;
+        let settled = settle(&whole, wrong.clone());
+        let off = (settled.x[friction] - 0.11).abs();
+        assert!(off < 2e-4, "{} of 0.11", settled.x[friction]);
+        let moved = settled.x[friction] - wrong.x[friction];
+        let grown = settled.covariance[(friction, friction)] - wrong.covariance[(friction, friction)];
+        assert!((grown / (moved / 1.96).powi(2) - 1.0).abs() < 1e-6, "{grown}");
+        let once_more = settle(&whole, settled.clone());
+        assert!((once_more.x[friction] - settled.x[friction]).abs() < 2e-5, "{}", once_more.x[friction]);
+    }
+}
