@@ -44,6 +44,8 @@ mod hypothesis;
 mod instants;
 mod intervals;
 mod locate;
+#[cfg(test)]
+mod made;
 mod model;
 mod noise;
 mod normal;
@@ -61,6 +63,7 @@ mod summary;
 mod swaps;
 mod thin;
 mod verdict;
+mod visible;
 mod weigh;
 mod without;
 
@@ -213,7 +216,8 @@ fn explain(
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
     say("sealed runs".to_owned());
-    let found = confirm::prune(&open, &sealed, found, &variants, say);
+    let mut found = confirm::prune(&open, &sealed, found, &variants, say);
+    visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
     let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, &variants, &mut warnings);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;

@@ -36,28 +36,14 @@ pub(super) fn settle(whole: &Problem, fit: Fit) -> Fit {
 mod tests {
     use super::*;
     use crate::diagnose::noise::Noise;
-    use crate::diagnose::{Case, Model, Sealed};
-    use crate::scene::{Override, Scene};
-    use crate::system::{Schedule, Simulation, record};
-
-    /// 20 s of the full scene's stock programme with one number changed and without noise.
-    fn recorded(key: &str, value: f64) -> Case {
-        let folder = tempfile::tempdir().expect("a folder");
-        let scene = Scene::load("antagonistic_pulley", &[Override::number(key, value)]).expect("stock");
-        let mut simulation = Simulation::new(scene).expect("stock");
-        let recording = record(&mut simulation, &Schedule::even(20.0, 0.02)).expect("a run");
-        recording.write_csv(&folder.path().join("run.csv")).expect("written");
-        let set = "format = 1\nscene = \"antagonistic_pulley\"\nrun = [{ file = \"run.csv\" }]\nchannel = [\n\
-                   { column = \"plunger_1_mm\", role = \"input\" }, { column = \"plunger_2_mm\", role = \"input\" },\n\
-                   { column = \"angle_deg\", role = \"output\" }]\n";
-        std::fs::write(folder.path().join("recordings.toml"), set).expect("written");
-        Case::load(&[folder.path()], None, &[]).expect("a case")
-    }
+    use crate::diagnose::{Model, Sealed, made};
+    use crate::scene::Override;
 
     /// From a fast model's fit that is wrong by two per cent to the number with which the full scene was played; and no further.
     #[test]
     fn numbers_are_those_that_the_full_scene_was_played_with() {
-        let case = recorded("friction_m0_n", 0.11);
+        let set = [Override::number("friction_m0_n", 0.11)];
+        let case = made::recorded("antagonistic_pulley", &set, &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);
         let noise = [Noise::white(0.01)];
         let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
         let baseline = Model::baseline();

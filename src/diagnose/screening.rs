@@ -35,16 +35,29 @@ impl Screened {
     /// The effect at the size that could just be seen; none where no size could.
     pub fn just_visible(&self) -> Option<Effect<f64>> {
         let mut values = self.variant.values.clone();
-        let p = &self.variant.placed.spec().parameters[0];
-        values[0] = if p.range.max > 0.0 { self.least_size } else { -self.least_size };
-        (self.least_size < p.range.max.abs().max(p.range.min.abs())).then(|| self.variant.placed.with(&values))
+        values[0] = self.signed_least();
+        self.is_possible().then(|| self.variant.placed.with(&values))
     }
-}
 
-impl Screened {
+    /// Whether the law's range holds the size that could just be seen.
+    pub(super) fn is_possible(&self) -> bool {
+        let range = self.variant.placed.spec().parameters[0].range;
+        self.least_size < range.max.abs().max(range.min.abs())
+    }
+
+    /// The size that could just be seen, of the sign that the law's range has.
+    pub(super) fn signed_least(&self) -> f64 {
+        let range = self.variant.placed.spec().parameters[0].range;
+        if range.max > 0.0 { self.least_size } else { -self.least_size }
+    }
+
+    pub(super) fn typical(&self) -> f64 {
+        self.variant.placed.spec().parameters[0].typical.abs()
+    }
+
     /// How much more than just visible the effect is at its typical size.
     pub fn typical_over_least(&self) -> f64 {
-        self.variant.placed.spec().parameters[0].typical.abs() / self.least_size
+        self.typical() / self.least_size
     }
 
     /// Cosine of the angle between two signatures: 1 where no recording of this kind tells the effects apart.
@@ -89,7 +102,7 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
-    let signatures = signatures(problem, fit, &fresh);
+    let signatures = signatures(problem, fit, &fresh.iter().map(|v| (*v, None)).collect::<Vec<_>>());
     let found = fresh.into_par_iter().zip(signatures).filter_map(|(variant, raw)| Some((variant, raw?)));
     let mut screened: Vec<Screened> = found
         .map(|(variant, raw)| {
@@ -121,9 +134,13 @@ struct Trial<'a> {
 }
 
 /// Derivatives of the simulated channels to the size of each variant at zero, in units of the typical size: one simulation
-/// for each and one that all share, since an effect of no size is none.
-fn signatures(problem: &Problem, fit: &Fit, variants: &[&Variant]) -> Vec<Option<DVector<f64>>> {
-    let trials: Vec<Trial> = variants.iter().map(|variant| Trial::of(problem, fit, variant)).collect();
+/// for each and one that all share, since an effect of no size is none. Over a small size, or over that which stands beside the variant.
+pub(super) fn signatures(
+    problem: &Problem,
+    fit: &Fit,
+    variants: &[(&Variant, Option<f64>)],
+) -> Vec<Option<DVector<f64>>> {
+    let trials: Vec<Trial> = variants.iter().map(|(variant, size)| Trial::of(problem, fit, variant, *size)).collect();
     let parts: Vec<Vec<Option<DVector<f64>>>> =
         problem.runs.par_iter().map(|run| in_run(problem, fit, run, &trials)).collect();
     let whole = |i: usize| {
@@ -158,7 +175,7 @@ fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<
 }
 
 impl<'a> Trial<'a> {
-    fn of(problem: &Problem, fit: &Fit, variant: &'a Variant) -> Self {
+    fn of(problem: &Problem, fit: &Fit, variant: &'a Variant, size: Option<f64>) -> Self {
         let mut model = fit.model.clone();
         let mut values = variant.values.clone();
         values[0] = 0.0;
@@ -167,10 +184,11 @@ impl<'a> Trial<'a> {
         model.fitted.push(vec![0]);
         let numbers = problem.numbers(&model);
         let number = numbers[fit.x.len()];
-        Self { variant, number, probe: probe(&number, 0.0, fit.x.len(), Sides::One) }
+        let small = probe(&number, 0.0, fit.x.len(), Sides::One);
+        Self { variant, number, probe: Probe { step: size.unwrap_or(small.step), ..small } }
     }
 }
 
-fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
+pub(super) fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
     v - basis * basis.tr_mul(v)
 }

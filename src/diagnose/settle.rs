@@ -117,10 +117,8 @@ mod tests {
 
     use super::*;
     use crate::diagnose::noise::Noise;
-    use crate::diagnose::{Case, Model, Placed, Sealed};
+    use crate::diagnose::{Model, Placed, Sealed, made};
     use crate::effects::{Element, ElementKind, Kind};
-    use crate::scene::Scene;
-    use crate::system::{Schedule, Simulation, record};
 
     #[test]
     fn the_shortest_that_is_sure_comes_first() {
@@ -132,23 +130,10 @@ mod tests {
         assert_eq!(chosen(&[]), None);
     }
 
-    /// A bench with its stock programme, recorded for 20 s.
-    fn bench() -> Case {
-        let folder = tempfile::tempdir().expect("a folder");
-        let scene = Scene::load("muscle_bench", &[]).expect("stock");
-        let mut simulation = Simulation::new(scene).expect("stock");
-        let recording = record(&mut simulation, &Schedule::even(20.0, 0.02)).expect("a run");
-        recording.write_csv(&folder.path().join("run.csv")).expect("written");
-        let set = "format = 1\nscene = \"muscle_bench\"\nrun = [{ file = \"run.csv\" }]\nchannel = [\n\
-                   { column = \"plunger_mm\", role = \"input\" }, { column = \"elongation_mm\", role = \"output\" }]\n";
-        std::fs::write(folder.path().join("recordings.toml"), set).expect("written");
-        Case::load(&[folder.path()], None, &[]).expect("a case")
-    }
-
     /// A rival that is the answer in other words is named and left out; one that is not is told apart.
     #[test]
     fn what_says_the_same_is_left_out() {
-        let case = bench();
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.02)];
         let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
         let fit = |kind, element, values: &[f64]| {
