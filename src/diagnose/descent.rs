@@ -19,7 +19,8 @@ const TRIES: usize = 8;
 /// The same where playing is dear: a gain of 0.05 is two tenths of a standard error.
 const PLAYED_GAIN: f64 = 0.05;
 const PLAYED_ITERATIONS: usize = 4;
-const PLAYED_TRIES: usize = 1;
+const PLAYED_TRIES: usize = 3;
+const PLAYED_REFRESHES: usize = 4;
 /// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
 const LEAST_DAMPING: f64 = 1e-10;
 
@@ -74,16 +75,28 @@ impl Problem<'_> {
         Some(descent.finish())
     }
 
-    /// Goes on with something else than the fast model playing: `residual` in units of the noise, at `start` as in `rows`, whose slopes
-    /// are taken as near enough. A few steps: each may cost seconds.
-    pub fn fit_played(&self, model: &Model, start: &[f64], rows: Rows, residual: &Play) -> Fit {
+    /// Goes on from `start` with something else than the fast model playing: `played` gives the residuals in units of the noise, the fast
+    /// model the slopes. Every play may cost seconds, so there are few. With it the step that the slopes still ask for and that
+    /// does not come nearer, in the numbers' units; `None` where nothing can be played.
+    pub fn fit_played(&self, model: &Model, start: &[f64], played: &Play) -> Option<(Fit, Vec<f64>)> {
         let numbers = self.numbers(model);
-        let mut descent = Descent::new(self, model, &numbers, start.to_vec(), rows, residual);
+        let rows = Rows { residual: played(start)?, ..self.rows(model, start, 0..start.len(), Sides::Both)? };
+        let mut descent = Descent::new(self, model, &numbers, start.to_vec(), rows, played);
         descent.gain = PLAYED_GAIN;
         descent.iterations = PLAYED_ITERATIONS;
         descent.tries = PLAYED_TRIES;
-        descent.run();
-        descent.finish()
+        for _ in 0..PLAYED_REFRESHES {
+            let cost = descent.normal().cost;
+            descent.run();
+            if cost - descent.normal().cost < PLAYED_GAIN * descent.unit() {
+                break;
+            }
+            descent.rows.slopes = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?.slopes;
+            descent.damping = LEAST_DAMPING;
+        }
+        let refused = descent.normal().bounded_step(&numbers, &descent.x, 0.0)?;
+        let refused = refused.iter().zip(&numbers).map(|(step, n)| step * n.scale).collect();
+        Some((descent.finish(), refused))
     }
 }
 
