@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 /// Recordings of the stock bench with an effect concealed, or with none.
 fn specimen(effect: Option<(&str, &str, &str, f64)>) -> TempDir {
-    let effect = effect.map(|(name, element, key, value)| effect_of(name, element, None, (key, value)));
+    let effect = effect.map(|(name, element, key, value)| effect_of(name, element, None, &[(key, value)]));
     made("muscle_bench", effect.as_ref(), 7)
 }
 
@@ -22,12 +22,12 @@ fn made(scene: &str, effect: Option<&Effect<f64>>, seed: u64) -> TempDir {
     folder
 }
 
-fn effect_of(name: &str, element: &str, channel: Option<&str>, (key, value): (&str, f64)) -> Effect<f64> {
+fn effect_of(name: &str, element: &str, channel: Option<&str>, numbers: &[(&str, f64)]) -> Effect<f64> {
     let table = EffectTable {
         name: name.to_owned(),
         element: element.to_owned(),
         channel: channel.map(str::to_owned),
-        parameters: [(key.to_owned(), value)].into_iter().collect(),
+        parameters: numbers.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect(),
     };
     table.effect().expect("an effect of the catalogue")
 }
@@ -283,10 +283,26 @@ fn an_open_answer_asks_for_the_sensor_that_would_decide() {
 /// Half the stiffness with half the gain is slower by as much as the sensor is: the calibration takes the lag in.
 #[test]
 fn a_lag_that_the_calibration_took_in_is_found_again() {
-    let lag = effect_of("sensor_lag", "sensor", Some("displacement_mm"), ("time_constant_s", 0.07));
+    let lag = effect_of("sensor_lag", "sensor", Some("displacement_mm"), &[("time_constant_s", 0.07)]);
     let d = answer(made("pressure_muscle", Some(&lag), 1).path());
     let first = d.effects.first().unwrap_or_else(|| panic!("{}", d.summary));
     assert_eq!(first.name, "sensor_lag", "{}", d.summary);
     let found = &first.parameters["time_constant_s"];
     assert!(found.ci95[0] < 0.07 && 0.07 < found.ci95[1], "{found:?}");
+}
+
+/// Creep along the logarithm of time, which exponentials imitate one by one; and a single one, which stays what it is.
+#[test]
+fn relaxation_over_decades_is_told_from_a_single_one() {
+    for decades in [5.0, 0.0] {
+        let numbers = [("stiffness_n_m", 60.0), ("relaxation_time_s", 0.4), ("decades", decades)];
+        let creep = effect_of("viscoelasticity", "muscle", None, &numbers);
+        let d = answer(made("pressure_muscle", Some(&creep), 1).path());
+        let [found] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+        assert_eq!((found.name.as_str(), found.parameters["decades"].value), ("viscoelasticity", decades));
+        for (key, value) in &numbers[..2] {
+            let [low, high] = found.parameters[*key].ci95;
+            assert!(low < *value && *value < high, "{key}: {low} to {high} for {value}");
+        }
+    }
 }

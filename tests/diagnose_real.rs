@@ -65,9 +65,11 @@ fn val_creep_of_a_long_hold_is_foretold() {
     case.seal_from(first.midpoint(release));
     let d = answer(case);
     named(&d, "viscoelasticity", "muscle");
-    // 0.39 mm measured: a relaxation slower than the first half of the hold cannot be seen in it.
+    assert_eq!(d.verdict, Verdict::MissingPhysics);
+    assert!(named(&d, "viscoelasticity", "muscle").parameters["decades"].value > 0.0, "{:?}", d.effects);
+    // 0.085 mm measured; three relaxations would leave 0.39.
     let rmse_mm = d.fit.channels["displacement_mm"].rmse_corrected;
-    assert!(rmse_mm < 0.45, "{rmse_mm} mm over the second half");
+    assert!(rmse_mm < 0.15, "{rmse_mm} mm over the second half");
 }
 
 /// Three sheaths are fitted, the fourth - bent further than any of them - is foretold with the same coefficient.

@@ -27,6 +27,7 @@
 mod answer;
 mod apart;
 mod baseline;
+mod broad;
 mod candidates;
 mod case;
 mod case_load;
@@ -215,6 +216,7 @@ fn explain(
     let mut warnings = [warnings, base.warnings, case.notes()].concat();
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
+    let found = broad::broaden(&open, found, &variants, say);
     say("sealed runs".to_owned());
     let mut found = confirm::prune(&open, &sealed, found, &variants, say);
     visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);

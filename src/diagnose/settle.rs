@@ -143,7 +143,7 @@ mod tests {
             Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(numbers, numbers), on_bound: Vec::new() }
         };
         let leak = fit(Kind::Leak, Element::of(ElementKind::Line, 0, 1), &[1e-17]);
-        let creep = fit(Kind::Viscoelasticity, Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0]);
+        let creep = fit(Kind::Viscoelasticity, Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0, 0.0]);
         let answer = |rivals: Vec<&Fit>| settle(&whole, &leak, &Open { rivals, unit: 1.0 }).expect("known units");
         let none = answer(vec![&leak]);
         assert!(none.inputs.is_none() && none.next.file.is_none());

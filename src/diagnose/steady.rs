@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::answer::{Estimate, NamedEffect};
+use super::broad::is_broad;
 use super::case::Case;
 use super::fit::{Fit, Problem};
 use super::model::Sides;
@@ -24,11 +25,13 @@ pub struct RunSizes {
 }
 
 /// Sizes of the first number of every effect, by run: one step of least squares from a common fit, calibration held;
-/// their intervals grow with what the run is left with.
+/// their intervals grow with what the run is left with. None of a broad relaxation: its stiffness is that at the first instant,
+/// which a run that holds still says next to nothing of.
 pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let first = case.parameters.len();
     let mut sizes: Vec<RunSizes> = Vec::new();
-    for (place, (effect, index)) in fit.model.places().into_iter().enumerate().filter(|(_, (_, index))| *index == 0) {
+    let sizes_of = |&(_, (effect, index)): &(usize, (usize, usize))| index == 0 && !is_broad(&fit.model, effect);
+    for (place, (effect, index)) in fit.model.places().into_iter().enumerate().filter(sizes_of) {
         let key = fit.model.effects[effect].spec().parameters[index].key;
         let runs = case.runs.iter().filter_map(|run| {
             let problem = Problem { case, runs: vec![Cow::Borrowed(run)], noise };

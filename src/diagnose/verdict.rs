@@ -183,7 +183,8 @@ fn unit(found: &Found, left: f64) -> f64 {
     (UNIT_OF_EXPLAINED * explained).min(UNIT_OF_LEFT * left).max(1.0)
 }
 
-/// Numbers of one effect of a fit, with intervals for those that were fitted.
+/// Numbers of one effect of a fit, with intervals for those that were fitted. An interval ends where its law does: a width of
+/// less than nothing is no news.
 fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
     let calibration = fit.x.len() - fit.model.effect_numbers();
     let spec = fit.model.effects[effect].spec();
@@ -193,7 +194,7 @@ fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
         let estimate = match place {
             Some(k) => {
                 let (value, half) = (fit.x[calibration + k], fit.half_width(calibration + k));
-                Estimate { value, ci95: [value - half, value + half] }
+                Estimate { value, ci95: [(value - half).max(p.range.min), (value + half).min(p.range.max)] }
             }
             None => {
                 let value = fit.model.values[effect][i];
@@ -220,6 +221,16 @@ mod tests {
         let n = model.effect_numbers();
         let x = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
         Fit { model, x, cost, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() }
+    }
+
+    #[test]
+    fn an_interval_ends_where_its_law_does() {
+        let mut loose = fit(&[Kind::PlasticSet], 1.0);
+        let spec = find(Kind::PlasticSet).parameters[0];
+        loose.covariance[(0, 0)] = loose.x[0].powi(2);
+        let Estimate { value, ci95: [low, high] } = parameters(&loose, 0)[spec.key];
+        assert_eq!((value, low), (spec.typical, 0.0));
+        assert!(value < high && high <= spec.range.max, "{high}");
     }
 
     #[test]

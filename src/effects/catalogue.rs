@@ -95,11 +95,12 @@ pub const CATALOGUE: &[EffectSpec] = &[
         name: "viscoelasticity",
         title: "the silicone relaxes: a Maxwell branch beside the muscle",
         element: ElementKind::Muscle,
-        law: "F = E (e - e_i), tau de_i/dt = e - e_i",
-        source: "generalised Maxwell solid",
+        law: "F = E (e - e_i), tau de_i/dt = e - e_i; over n > 0 decades: creep as the logarithm of time",
+        source: "generalised Maxwell solid; over decades a constant logarithmic retardation spectrum (Ferry 1980)",
         parameters: &[
             fitted("stiffness_n_m", "E", 0.0, 1e4, 6.0),
             fitted("relaxation_time_s", "tau", 0.05, 500.0, 4.0),
+            fixed("decades", "n", 0.0, 8.0, 0.0),
         ],
     },
     EffectSpec {

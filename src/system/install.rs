@@ -2,7 +2,7 @@
 
 use crate::effects::{
     Backlash, CoilPreload, Effect, ElementKind, HypotheticalFlow, HypotheticalForce, Kind, MaxwellBranch, Mullins,
-    PlasticSet, TendonFriction, TrappedAir, Wall,
+    PlasticSet, TendonFriction, TrappedAir, Wall, logarithmic_creep,
 };
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
@@ -84,7 +84,14 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
             }
         }
         Kind::Viscoelasticity => {
-            extras.branches.push(MaxwellBranch { stiffness_n_m: v[0], relaxation_time_s: v[1] });
+            let together = MaxwellBranch { stiffness_n_m: v[0], relaxation_time_s: v[1] };
+            if v[2].is_above(0.0) {
+                let zero = D::constant(0.0);
+                let relaxed_n_m = muscle.elastic.at(zero, zero).stiffness_n_m;
+                extras.branches.extend(logarithmic_creep(together, v[2].value(), relaxed_n_m));
+            } else {
+                extras.branches.push(together);
+            }
         }
         Kind::MullinsSoftening => extras.mullins = Some(Mullins { softening_ratio: v[0], energy_scale_j: v[1] }),
         Kind::CoilPreload => extras.preload = Some(CoilPreload { preload_n: v[0] }),

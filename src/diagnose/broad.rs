@@ -1,0 +1,67 @@
+//! Relaxations one by one, or one that goes on over decades of time.
+//!
+//! A polymer creeps along the logarithm of time. Exponentials fit what was recorded of that, one for each decade of it, and then end:
+//! they do not foretell the decade to come. With fewer numbers a broad relaxation does.
+
+use super::candidates::Variant;
+use super::fit::{Fit, Problem};
+use super::model::{Model, Placed};
+use super::refits::foretells_runs;
+use super::search::{self, Found};
+use crate::effects::Kind;
+
+/// Decades of a broad relaxation: from the shortest time on beyond any recording's length, so that where they end does not matter.
+const DECADES: f64 = 5.0;
+/// Where the shortest time begins, as shares of the shortest that was found.
+const SHORTER: [f64; 2] = [1.0, 0.1];
+
+/// What was found, with the relaxations of a muscle as a broad one wherever that foretells runs better that it was not fitted to: with
+/// fewer numbers, or at a lower chi².
+pub(super) fn broaden(problem: &Problem, mut found: Found, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    for placed in relaxing(&found.best) {
+        let was = &found.best;
+        let Some(broad) = as_broad(problem, was, &placed) else { continue };
+        let is_simpler = broad.x.len() < was.x.len();
+        let is_nearer = broad.cost < was.cost - search::least_gain(problem.samples());
+        if (is_simpler || is_nearer) && foretells_runs(problem, was, &broad) {
+            say(format!("{} over decades: chi2 {:.0} -> {:.0}", placed.title(), was.cost, broad.cost));
+            found = search::settled(problem, found, broad, variants, say);
+        }
+    }
+    found
+}
+
+/// Whether an effect is a relaxation over decades.
+pub(super) fn is_broad(model: &Model, effect: usize) -> bool {
+    model.effects[effect].kind == Kind::Viscoelasticity && model.values[effect][2] > 0.0
+}
+
+/// Each muscle that relaxes, once.
+fn relaxing(fit: &Fit) -> Vec<Placed> {
+    let mut relaxing: Vec<Placed> = Vec::new();
+    for placed in fit.model.effects.iter().filter(|e| e.kind == Kind::Viscoelasticity) {
+        if !relaxing.contains(placed) {
+            relaxing.push(placed.clone());
+        }
+    }
+    relaxing
+}
+
+/// The fit with one broad relaxation in place of all that a muscle has, the best of its beginnings.
+fn as_broad(problem: &Problem, fit: &Fit, placed: &Placed) -> Option<Fit> {
+    let calibrated = problem.case.parameters.len();
+    let mut rest = fit.clone();
+    let (mut stiffness_n_m, mut shortest_s) = (0.0, f64::INFINITY);
+    while let Some(index) = rest.model.effects.iter().position(|e| e == placed) {
+        let values = &rest.model.effects_at(&rest.x[calibrated..])[index].values;
+        (stiffness_n_m, shortest_s) = (stiffness_n_m + values[0], values[1].min(shortest_s));
+        rest.x = problem.start_without(&rest, index);
+        rest.model = rest.model.without(index);
+    }
+    let begun = |share: f64| {
+        let values = [stiffness_n_m, share * shortest_s, DECADES];
+        let start = [&rest.x[..], &values[..2]].concat();
+        problem.fit(&rest.model.plus(placed, &values), &start)
+    };
+    SHORTER.into_iter().filter_map(begun).min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
