@@ -8,6 +8,7 @@ use super::fit::{Fit, Problem};
 use super::model::{Model, Placed};
 use super::refits::foretells_runs;
 use super::search::{self, Found};
+use super::without::Step;
 use crate::effects::Kind;
 
 /// Decades of a broad relaxation: from the shortest time on beyond any recording's length, so that where they end does not matter.
@@ -15,20 +16,26 @@ const DECADES: f64 = 5.0;
 /// Where the shortest time begins, as shares of the shortest that was found.
 const SHORTER: [f64; 2] = [1.0, 0.1];
 
-/// What was found, with the relaxations of a muscle as a broad one wherever that foretells runs better that it was not fitted to: with
-/// fewer numbers, or at a lower chi².
+/// Replaces all relaxations of a muscle by one broad one, where that foretells runs better that it was not fitted to, and either has
+/// fewer numbers or leaves less. Where no runs are foretold it must leave less.
 pub(super) fn broaden(problem: &Problem, mut found: Found, variants: &[Variant], say: &dyn Fn(String)) -> Found {
     for placed in relaxing(&found.best) {
         let was = &found.best;
         let Some(broad) = as_broad(problem, was, &placed) else { continue };
-        let is_simpler = broad.x.len() < was.x.len();
-        let is_nearer = broad.cost < was.cost - search::least_gain(problem.samples());
-        if (is_simpler || is_nearer) && foretells_runs(problem, was, &broad) {
+        if is_better(problem, was, &broad) {
             say(format!("{} over decades: chi2 {:.0} -> {:.0}", placed.title(), was.cost, broad.cost));
             found = search::settled(problem, found, broad, variants, say);
         }
     }
     found
+}
+
+fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {
+    let is_nearer = broad.cost < was.cost - search::least_gain(problem.samples());
+    if problem.case.is_without(Step::CrossValidation) {
+        return is_nearer;
+    }
+    (is_nearer || broad.x.len() < was.x.len()) && foretells_runs(problem, was, broad)
 }
 
 /// Whether an effect is a relaxation over decades.
@@ -47,7 +54,8 @@ fn relaxing(fit: &Fit) -> Vec<Placed> {
     relaxing
 }
 
-/// The fit with one broad relaxation in place of all that a muscle has, the best of its beginnings.
+/// The fit with one broad relaxation in place of all that a muscle has, the best of its beginnings; `None` where it has none, as
+/// another muscle's broad one may have taken its place.
 fn as_broad(problem: &Problem, fit: &Fit, placed: &Placed) -> Option<Fit> {
     let calibrated = problem.case.parameters.len();
     let mut rest = fit.clone();
@@ -57,6 +65,9 @@ fn as_broad(problem: &Problem, fit: &Fit, placed: &Placed) -> Option<Fit> {
         (stiffness_n_m, shortest_s) = (stiffness_n_m + values[0], values[1].min(shortest_s));
         rest.x = problem.start_without(&rest, index);
         rest.model = rest.model.without(index);
+    }
+    if shortest_s.is_infinite() {
+        return None;
     }
     let begun = |share: f64| {
         let values = [stiffness_n_m, share * shortest_s, DECADES];

@@ -4,11 +4,12 @@ use crate::scalar::Scalar;
 
 use super::MaxwellBranch;
 
-/// Relaxations in a decade of time: with two, the line bends by less than a thousandth.
+/// Relaxations in a decade of time: with two, creep is off its straight line by less than a thousandth of a decade's, though its pace
+/// ripples by 0.2 %.
 const PER_DECADE: f64 = 2.0;
 /// Below this share of the relaxed stiffness branches part as they do in the limit of none.
 const LEAST_RATIO: f64 = 1e-6;
-/// Halvings of a bracket of at most a thousand: to the last digit.
+/// Halvings in the logarithm: of brackets that span up to `1 + E/k`, at most a million or so, to the last digit.
 const HALVINGS: usize = 60;
 
 /// Maxwell branches that make a spring creep in proportion to the logarithm of time.
@@ -21,7 +22,7 @@ const HALVINGS: usize = 60;
 ///
 /// The branches are those of the relaxation `k + sum_j E_j exp(-t/theta_j)` that this creep belongs to, exactly: `theta_j` are the
 /// roots of `1 + r/n sum_i 1/(1 - tau_i/theta) = 0`, `r = E/k`, one below each `tau_i`, and `sum_j E_j = E`. `together` has `E`, N/m,
-/// and `tau`, s > 0; `decades` >= 0.
+/// and `tau`, s > 0; `decades` finite and >= 0, `relaxed_n_m` > 0.
 ///
 /// Source: constant logarithmic retardation spectrum (Ferry 1980, chapter 3); conversion of discrete spectra (Park and Schapery 1999).
 ///

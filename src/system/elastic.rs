@@ -4,6 +4,9 @@ use crate::effects::Mullins;
 use crate::muscle::{Coil, Wall, WallCondition};
 use crate::scalar::Scalar;
 
+/// Elongation that tells the two tangents at rest apart: far above rounding, far below any stretch.
+const JUST_STRETCHED_M: f64 = 1e-6;
+
 /// Conservative law of a muscle.
 #[derive(Clone, Debug)]
 pub enum Elastic<D> {
@@ -59,6 +62,14 @@ impl<D: Scalar> Elastic<D> {
         }
     }
 
+    /// Stiffness unstretched and without pressure, N/m.
+    ///
+    /// A wall that its coil holds from one side only has two there: pressed against the coil that of a held one, else that of a free
+    /// one. Taken is the latter, which a stretch meets.
+    pub fn stiffness_at_rest_n_m(&self) -> D {
+        self.at(D::constant(JUST_STRETCHED_M), D::constant(0.0)).stiffness_n_m
+    }
+
     /// The law with the wall softened by its first stretch; `greatest_j` is the greatest energy it had, J.
     ///
     /// A wall off its coil and a muscle known by its stiffness alone are softened as a whole.
@@ -98,4 +109,27 @@ fn grown_area<D: Scalar>(wall: &Wall<D>, growth_1_m: D, e: D) -> (D, D) {
     let area = wall.geometry().coil_area_m2();
     let slope = growth_1_m * (2.0 * area);
     (slope * e + area, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::muscle::{Material, WallGeometry};
+
+    #[test]
+    fn at_rest_a_free_wall_stands_for_one_held_from_one_side() -> Result<(), Box<dyn std::error::Error>> {
+        let tube = WallGeometry { inner_radius_m: 0.255e-3, outer_radius_m: 0.525e-3, rest_length_m: 0.05 };
+        let material = Material::Yeoh { c1_pa: 0.255e6, c2_pa: 0.0155e6, c3_pa: 0.0 };
+        let stiffness = |condition| -> Result<f64, Box<dyn std::error::Error>> {
+            let wall = Wall::new(tube, material)?;
+            let coil = Coil { stiffness_n_m: 0.0, preload_n: 0.0 };
+            Ok(Elastic::Tube { wall, condition, coil, area_growth_1_m: 0.0 }.stiffness_at_rest_n_m())
+        };
+        // A free one is a bar of Young's modulus 6 c1: E A/L0.
+        let section_m2 = std::f64::consts::PI * (0.525e-3_f64.powi(2) - 0.255e-3_f64.powi(2));
+        let bar_n_m = 6.0 * 0.255e6 * section_m2 / 0.05;
+        assert!((stiffness(WallCondition::Unilateral)? / bar_n_m - 1.0).abs() < 1e-3);
+        assert!(stiffness(WallCondition::Held)? > 1.2 * bar_n_m);
+        Ok(())
+    }
 }

@@ -86,8 +86,7 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
         Kind::Viscoelasticity => {
             let together = MaxwellBranch { stiffness_n_m: v[0], relaxation_time_s: v[1] };
             if v[2].is_above(0.0) {
-                let zero = D::constant(0.0);
-                let relaxed_n_m = muscle.elastic.at(zero, zero).stiffness_n_m;
+                let relaxed_n_m = muscle.elastic.stiffness_at_rest_n_m();
                 extras.branches.extend(logarithmic_creep(together, v[2].value(), relaxed_n_m));
             } else {
                 extras.branches.push(together);

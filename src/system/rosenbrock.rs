@@ -13,7 +13,7 @@
 //! at most [`KEEP`] steps; this halves the work.
 //!
 //! The unknowns are eliminated down to the coordinates' accelerations: the line is tridiagonal ([`ChainSolver`]), the
-//! friction states are local, so what remains is a symmetric matrix of the size of the mechanism.
+//! friction states and the dashpots are local, so what remains is a symmetric matrix of the size of the mechanism.
 
 use crate::scalar::Scalar;
 
@@ -65,7 +65,7 @@ impl<D: Scalar> Stepper<D> {
             piston_m_s: vec![D::constant(0.0); muscles.len()],
             piston_ahead_m: vec![D::constant(0.0); muscles.len()],
             seen: Seen::new(plant),
-            tangents: Tangents::new(plant, state.segments(), state.parts().joint_z().len()),
+            tangents: Tangents::new(plant, state.segments(), state.parts().joint_z().len(), state.parts().slow().len()),
             switches: Switches::default(),
             age: KEEP,
             tangent_step_s: 0.0,
@@ -197,6 +197,9 @@ fn solve<D: Scalar, const N: usize>(
     if !tangents.frictions.is_empty() {
         push_dry_frictions(plant, tangents, r.joint_z(), k_w);
     }
+    if !tangents.dashpots.is_empty() {
+        push_dashpots(plant, tangents, g, r.slow(), k_w);
+    }
     tangents.ldl.solve::<N>(k_w);
     for i in 0..n {
         k_y[i] = r_y[i] + k_w[i] * g;
@@ -211,9 +214,9 @@ fn solve<D: Scalar, const N: usize>(
         let (speeds, states) = k.w_and_joint_z();
         stages_of_dry_frictions(plant, tangents, r.joint_z(), speeds, states);
     }
-    // Slow states act back only through the forces, which are evaluated in full: no tangent needed.
-    for (k, &r) in k.slow().iter_mut().zip(r.slow()) {
-        *k = r;
+    if !tangents.dashpots.is_empty() {
+        let (coordinates, states) = k.y_and_slow();
+        stages_of_dashpots(plant, tangents, r.slow(), coordinates, states);
     }
 }
 
@@ -235,6 +238,35 @@ fn stages_of_dry_frictions<D: Scalar>(
 ) {
     for (i, (t, direction)) in tangents.frictions.iter().zip(dry_frictions(plant)).enumerate() {
         stages[i] = t.stage(r[i], dot::<_, 0>(direction, accelerations));
+    }
+}
+
+/// What the dashpots of relaxing muscles give way to.
+#[inline(never)]
+fn push_dashpots<D: Scalar>(plant: &Plant<D>, tangents: &Tangents<D>, g: f64, r: &[D], forces: &mut [D]) {
+    for muscle in plant.muscles.iter().filter(|m| !m.extras.branches.is_empty()) {
+        let dashpots = tangents.dashpots[muscle.slow_at..].iter().zip(&r[muscle.slow_at..]);
+        let pull: D =
+            muscle.extras.branches.iter().zip(dashpots).map(|(b, (t, &r))| b.stiffness_n_m * t.damper * r).sum();
+        add_scaled::<_, 0>(forces, &muscle.jacobian, pull * g);
+    }
+}
+
+/// Plastic sets have no tangent: they act back only through the forces, which are evaluated in full.
+#[inline(never)]
+fn stages_of_dashpots<D: Scalar>(
+    plant: &Plant<D>,
+    tangents: &Tangents<D>,
+    r: &[D],
+    coordinates: &[D],
+    stages: &mut [D],
+) {
+    for muscle in plant.muscles.iter().filter(|m| m.extras.slow_states() > 0) {
+        let elongation = dot::<_, 0>(&muscle.jacobian, coordinates);
+        for i in muscle.slow_at..muscle.slow_at + muscle.extras.slow_states() {
+            let tangent = &tangents.dashpots[i];
+            stages[i] = (r[i] + tangent.gain * elongation) * tangent.damper;
+        }
     }
 }
 

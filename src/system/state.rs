@@ -162,6 +162,13 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
         sized_mut::<N, D>(&mut self.row[n..2 * n])
     }
 
+    /// Coordinates, and slow states of all muscles' effects.
+    pub fn y_and_slow(&mut self) -> (&mut [D], &mut [D]) {
+        let (n, from) = (self.layout.dim::<N>(), self.layout.slow_at);
+        let (before, slow) = self.row.split_at_mut(from);
+        (&mut before[..n], slow)
+    }
+
     /// Rates of the coordinates, and frictions of the mechanism and the cables.
     pub fn w_and_joint_z(&mut self) -> (&mut [D], &mut [D]) {
         let (n, from, to) = (self.layout.dim::<N>(), self.layout.joint_z_at(), self.layout.slow_at);

@@ -31,6 +31,15 @@ pub(super) struct MuscleTangent<D> {
     pub friction: FrictionTangent<D>,
 }
 
+/// Tangent of the dashpot of a relaxing branch: the stage of its state is `(r + gain * elongation) * damper`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DashpotTangent<D> {
+    /// `g/theta`, of a step's part and the relaxation time.
+    pub gain: D,
+    /// `1/(1 + g/theta)`.
+    pub damper: D,
+}
+
 /// All tangents of a plant, and the factorised matrix of the accelerations.
 #[derive(Clone, Debug)]
 pub(super) struct Tangents<D> {
@@ -38,6 +47,8 @@ pub(super) struct Tangents<D> {
     pub muscles: Vec<MuscleTangent<D>>,
     /// Dry frictions of the mechanism, then of the cables.
     pub frictions: Vec<FrictionTangent<D>>,
+    /// Of every slow state.
+    pub dashpots: Vec<DashpotTangent<D>>,
     /// `g K`, row by row: every spring that acts, seen from the coordinates.
     pub springs: Vec<D>,
     matrix: Vec<D>,
@@ -67,15 +78,23 @@ impl<D: Scalar> FrictionTangent<D> {
     }
 }
 
+impl<D: Scalar> DashpotTangent<D> {
+    /// Of a state that is none of a dashpot.
+    fn none() -> Self {
+        Self { gain: D::constant(0.0), damper: D::constant(1.0) }
+    }
+}
+
 impl<D: Scalar> Tangents<D> {
     /// Room for those of a plant whose lines have so many segments.
-    pub fn new(plant: &Plant<D>, segments: usize, frictions: usize) -> Self {
+    pub fn new(plant: &Plant<D>, segments: usize, frictions: usize, slow_states: usize) -> Self {
         let (n, zero) = (plant.dim(), D::constant(0.0));
         let muscle = MuscleTangent { pull_per_rho: zero, area: zero, friction: FrictionTangent::none() };
         Self {
             lines: plant.muscles.iter().map(|_| ChainSolver::new(segments)).collect(),
             muscles: vec![muscle; plant.muscles.len()],
             frictions: vec![FrictionTangent::none(); frictions],
+            dashpots: vec![DashpotTangent::none(); slow_states],
             springs: vec![zero; n * n],
             matrix: vec![zero; n * n],
             ldl: Ldl::new(n),
@@ -160,7 +179,21 @@ impl<D: Scalar> Tangents<D> {
             along += tangent.pull_per_rho * sigma * tangent.area;
         }
         self.muscles[i] = tangent;
-        self.add_spring::<N>(&muscle.jacobian, forces.stiffness_n_m * g, along);
+        let given_way = self.take_dashpots(plant, i, g);
+        self.add_spring::<N>(&muscle.jacobian, (forces.stiffness_n_m - given_way) * g, along);
+    }
+
+    /// Tangents of a muscle's dashpots; the stiffness that its branches lose to them within the step, N/m.
+    fn take_dashpots(&mut self, plant: &Plant<D>, i: usize, g: f64) -> D {
+        let muscle = &plant.muscles[i];
+        let mut given_way = D::constant(0.0);
+        for (k, branch) in muscle.extras.branches.iter().enumerate() {
+            let gain = branch.relaxation_time_s.recip() * g;
+            let damper = (gain + 1.0).recip();
+            self.dashpots[muscle.slow_at + k] = DashpotTangent { gain, damper };
+            given_way += branch.stiffness_n_m * gain * damper;
+        }
+        given_way
     }
 
     fn take_frictions<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, seen: &Seen<D>, g: f64) {
