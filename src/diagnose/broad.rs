@@ -4,10 +4,13 @@
 //! they do not foretell the decade to come. With fewer numbers a broad relaxation does.
 
 use super::candidates::Variant;
+use super::case::Case;
 use super::fit::{Fit, Problem};
 use super::model::{Model, Placed};
+use super::noise::Noise;
 use super::refits::foretells_runs;
 use super::search::{self, Found};
+use super::weigh::open_runs;
 use super::without::Step;
 use crate::effects::Kind;
 
@@ -18,16 +21,40 @@ const SHORTER: [f64; 2] = [1.0, 0.1];
 
 /// Replaces all relaxations of a muscle by one broad one, where that foretells runs better that it was not fitted to, and either has
 /// fewer numbers or leaves less. Where no runs are foretold it must leave less.
-pub(super) fn broaden(problem: &Problem, mut found: Found, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+///
+/// It begins to relax far earlier than the others: both are compared with steps that are short enough for it, which the case keeps
+/// where it is taken.
+pub(super) fn broaden(
+    case: &mut Case,
+    noise: &[Noise],
+    mut found: Found,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Found {
     for placed in relaxing(&found.best) {
-        let was = &found.best;
-        let Some(broad) = as_broad(problem, was, &placed) else { continue };
-        if is_better(problem, was, &broad) {
+        let former = case.runs.clone();
+        let Some([baseline, was, broad]) = with_steps_of_broad(case, noise, &found, &placed) else {
+            case.runs = former;
+            continue;
+        };
+        let problem = open_runs(case, noise);
+        if is_better(&problem, &was, &broad) {
             say(format!("{} over decades: chi2 {:.0} -> {:.0}", placed.title(), was.cost, broad.cost));
-            found = search::settled(problem, found, broad, variants, say);
+            found = search::settled(&problem, Found { baseline, ..found }, broad, variants, say);
+        } else {
+            case.runs = former;
         }
     }
     found
+}
+
+/// Baseline, what was found and that with a broad relaxation, all fitted with the steps that the last needs.
+fn with_steps_of_broad(case: &mut Case, noise: &[Noise], found: &Found, placed: &Placed) -> Option<[Fit; 3]> {
+    let broad = as_broad(&open_runs(case, noise), &found.best, placed)?;
+    case.plan_steps(&broad.model.setting(case, &broad.x), noise)?;
+    let problem = open_runs(case, noise);
+    let again = |fit: &Fit| problem.fit(&fit.model, &fit.x);
+    Some([again(&found.baseline)?, again(&found.best)?, again(&broad)?])
 }
 
 fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {

@@ -212,11 +212,11 @@ fn explain(
     let base = baseline::baseline(case)?;
     let variants = candidates::variants(case);
     let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say);
+    let found = broad::broaden(case, &noise, found, &variants, say);
     let case = &*case;
     let mut warnings = [warnings, base.warnings, case.notes()].concat();
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
-    let found = broad::broaden(&open, found, &variants, say);
     say("sealed runs".to_owned());
     let mut found = confirm::prune(&open, &sealed, found, &variants, say);
     visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);

@@ -70,6 +70,7 @@ fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
     Some(Renewed { noise, weights_hold, start, baseline })
 }
 
-fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
+/// The fit of the runs that are not sealed.
+pub(super) fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
     Problem { case, runs: case.subset(Sealed::Open), noise }
 }
