@@ -110,6 +110,8 @@ pub trait Scalar:
     fn ln(&self) -> Self;
     fn ln_1p(&self) -> Self;
     fn tanh(&self) -> Self;
+    fn sin(&self) -> Self;
+    fn cos(&self) -> Self;
     fn powi(&self, n: i32) -> Self;
     fn powf(&self, n: f64) -> Self;
     /// A power whose exponent is of the same type.
@@ -144,7 +146,7 @@ impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
         T::abs(self)
     }
 
-    hand_on!(recip, sqrt, exp, exp_m1, ln, ln_1p, tanh);
+    hand_on!(recip, sqrt, exp, exp_m1, ln, ln_1p, tanh, sin, cos);
 
     #[inline]
     fn powi(&self, n: i32) -> Self {

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::effects::{CATALOGUE, Effect, EffectSpec, ElementKind, ParameterSpec};
-use smam::recording::did_you_mean;
+use smam::nearest::did_you_mean;
 use smam::report::{AffectedScene, Scale, effect_svg, greek};
 use smam::scene::Scene;
 use smam::stock;

@@ -58,9 +58,9 @@ impl CliError {
     /// 1 for what failed, 2 for what was asked wrongly.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::System(SystemError::Diverged { .. })
-            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. }))
-            | Self::Sweep(SweepError::System(SystemError::Diverged { .. }))
+            Self::System(SystemError::Diverged { .. } | SystemError::Law { .. })
+            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
+            | Self::Sweep(SweepError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
             | Self::Diagnose(DiagnoseError::System(SystemError::Diverged { .. }) | DiagnoseError::Write { .. })
             | Self::Write { .. }
             | Self::Recording(RecordingError::Write { .. })

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::files::write_whole_bytes;
-use smam::recording::did_you_mean;
+use smam::nearest::did_you_mean;
 use smam::scene::Scene;
 use smam::stock;
 

@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use clap::Args;
 use rayon::prelude::*;
 use smam::effects::CATALOGUE;
-use smam::recording::did_you_mean;
+use smam::nearest::did_you_mean;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in};
 
 use super::CliError;

@@ -11,6 +11,8 @@ use crate::scalar::Scalar;
 #[derive(Clone, Debug)]
 pub struct ChainSolver<D> {
     g: f64,
+    /// Flow lost per pressure at the first and the last node, m³/(s Pa).
+    conductance_m3_s_pa: [D; 2],
     nodes: Vec<Node<D>>,
     flows: Vec<Flow<D>>,
 }
@@ -37,9 +39,15 @@ impl<D: Scalar> ChainSolver<D> {
         let zero = D::constant(0.0);
         Self {
             g: 0.0,
+            conductance_m3_s_pa: [zero; 2],
             nodes: vec![Node { pivot: zero, sigma: zero, rho: zero }; segments + 1],
             flows: vec![Flow { pivot: zero, t: zero, s: zero }; segments],
         }
+    }
+
+    /// Flow that the first and the last node lose per pressure, m³/(s Pa): a leak; none unless it is set.
+    pub fn set_conductance(&mut self, first_and_last_m3_s_pa: [D; 2]) {
+        self.conductance_m3_s_pa = first_and_last_m3_s_pa;
     }
 
     /// Factorises for the step parameter `g`; returns `sigma_N`, the response of the last node to the outflow.
@@ -48,7 +56,7 @@ impl<D: Scalar> ChainSolver<D> {
         let n = chain.segments();
         let at = ChainRow::of(row, n);
         let over_inertance = D::constant(g) / chain.inertance_pa_s2_m3;
-        let mut inner = D::constant(0.0);
+        let mut inner = self.conductance_m3_s_pa[0];
         for (j, node) in self.nodes.iter_mut().enumerate() {
             if boils[j] {
                 (node.pivot, node.sigma) = (D::constant(1.0), D::constant(0.0));
@@ -62,7 +70,7 @@ impl<D: Scalar> ChainSolver<D> {
                 let flow = &mut self.flows[j];
                 flow.pivot = (over_inertance * (slope + node.sigma) + 1.0).recip();
                 flow.t = over_inertance * flow.pivot;
-                inner = flow.t;
+                inner = if j + 1 == n { flow.t + self.conductance_m3_s_pa[1] } else { flow.t };
             }
         }
         self.nodes[n].sigma

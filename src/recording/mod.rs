@@ -50,7 +50,6 @@ pub use csv_read::{read_csv, read_csv_from};
 pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
-pub use folder_keys::did_you_mean;
 pub use formats::{FileFormat, read_recording};
 pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;

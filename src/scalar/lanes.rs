@@ -211,7 +211,7 @@ impl<const L: usize> Scalar for Lanes<L> {
         Some(found)
     }
 
-    each!(abs, recip, sqrt, exp, exp_m1, ln, ln_1p, tanh);
+    each!(abs, recip, sqrt, exp, exp_m1, ln, ln_1p, tanh, sin, cos);
 
     #[inline(always)]
     fn powi(&self, n: i32) -> Self {

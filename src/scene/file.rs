@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::file_channels::{CalibrateSpec, ConditionSpec, ExpectSpec, InputSpec, OutputSpec, ViewSpec};
 use super::file_muscles::{HydraulicsSpec, MuscleSpec, MusclesSpec};
 use crate::effects::EffectTable;
+use crate::laws::LawTable;
 use crate::mechanism::{MechanismSpec, RouteSpec};
 
 /// A whole scene file. Lengths in m, forces in N, pressures in Pa (gauge), angles in rad, times in s.
@@ -36,6 +37,9 @@ pub struct SceneFile {
     /// Physics beyond the stock rig, from the catalogue (`smam effects`).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effect: Vec<EffectTable>,
+    /// Physics of your own: expressions that act at ports of the chain (`smam laws`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub law: Vec<LawTable>,
     /// An axis moved at a recorded position that answers with a force; stands alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<AxisSpec>,

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use toml::Table;
 
-use crate::recording::did_you_mean;
+use crate::laws::Law;
+use crate::nearest::did_you_mean;
 use crate::stock;
 
 use super::overrides::{Override, calibration_key, calibration_names, child, entry_name};
-use super::{CalibrateSpec, Program, SceneError, SceneFile, check};
+use super::{CalibrateSpec, Program, SceneError, SceneFile, check, check_laws};
 
 /// A scene whose keys, numbers and names (within the file) are right.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct Scene {
     pub file: SceneFile,
     /// Programme of each input, in the order of `file.input`.
     pub programs: Vec<Program>,
+    /// The laws of `file.law` that are part of the scene, ready for the equations; candidates are not.
+    pub laws: Vec<Law>,
 }
 
 impl Scene {
@@ -80,7 +83,8 @@ impl Scene {
     /// Validates a scene file; `path` is where its relative paths start.
     pub fn from_file(file: SceneFile, path: &Path) -> Result<Self, SceneError> {
         let programs = check::check(&file, path)?;
-        let scene = Self { path: path.to_owned(), file, programs };
+        let laws = check_laws::check(&file, path)?;
+        let scene = Self { path: path.to_owned(), file, programs, laws };
         scene.check_calibrated()?;
         Ok(scene)
     }
@@ -137,7 +141,7 @@ impl Scene {
     /// # }
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        self.value(calibration_key(key))?.parse().ok()
+        self.value(&calibration_key(key))?.parse().ok()
     }
 
     /// Folder that relative paths of the scene start from.

@@ -19,6 +19,7 @@
 
 mod check;
 mod check_effects;
+mod check_laws;
 mod check_muscles;
 mod error;
 mod file;

@@ -1,5 +1,7 @@
 //! Changing a scene by key: `--set`, known conditions of a run, calibrated parameters.
 
+use std::borrow::Cow;
+
 use toml::{Table, Value};
 
 use super::SceneError;
@@ -13,16 +15,31 @@ const CALIBRATION_NAMES: [(&str, &str); 5] = [
     ("presliding_length_m", "muscles.friction.presliding_length_m"),
 ];
 
-/// The scene key that a calibration name stands for; any other key is itself.
+/// The scene key that a short name stands for; any other key is itself.
 ///
 /// ```
 /// use smam::scene::calibration_key;
 ///
 /// assert_eq!(calibration_key("tube_c1_pa"), "muscles.tube.material.c1_pa");
+/// assert_eq!(calibration_key("law.breakaway.a"), "law.breakaway.parameter.a.value");
 /// assert_eq!(calibration_key("muscles.rest_length_m"), "muscles.rest_length_m");
 /// ```
-pub fn calibration_key(name: &str) -> &str {
-    CALIBRATION_NAMES.iter().find(|(short, _)| *short == name).map_or(name, |(_, key)| key)
+pub fn calibration_key(name: &str) -> Cow<'_, str> {
+    match CALIBRATION_NAMES.iter().find(|(short, _)| *short == name) {
+        Some((_, key)) => Cow::Borrowed(key),
+        None => law_parameter(name).map_or(Cow::Borrowed(name), Cow::Owned),
+    }
+}
+
+/// Keys of a law's own table: what else stands behind its name is a parameter.
+const LAW_KEYS: [&str; 8] = ["name", "port", "adds", "scales", "when", "candidate", "parameter", "state"];
+
+/// `law.NAME.PARAMETER` stands for `law.NAME.parameter.PARAMETER.value`.
+fn law_parameter(key: &str) -> Option<String> {
+    let (name, parameter) = key.strip_prefix("law.")?.split_once('.')?;
+    let parameter = parameter.strip_prefix("parameter.").unwrap_or(parameter);
+    let is_short = !parameter.contains('.') && !LAW_KEYS.contains(&parameter);
+    is_short.then(|| format!("law.{name}.parameter.{parameter}.value"))
 }
 
 /// The names that stand for calibrated keys.
@@ -82,7 +99,8 @@ impl Override {
     }
 
     fn put(&self, root: &mut Value) -> Result<(), SceneError> {
-        let path: Vec<&str> = calibration_key(&self.key).split('.').collect();
+        let key = calibration_key(&self.key);
+        let path: Vec<&str> = key.split('.').collect();
         let missing = |depth: usize| SceneError::Override {
             key: self.key.clone(),
             message: format!("there is no `{}` in the scene", path[..=depth].join(".")),

@@ -6,7 +6,7 @@ use super::SweepError;
 use super::measure::{Argument, Call, FIGURES, Ran};
 use super::spec::MeasureSpec;
 use super::vocabulary::Vocabulary;
-use crate::recording::did_you_mean;
+use crate::nearest::did_you_mean;
 use crate::scene::OutputSpec;
 
 /// A measure ready to be taken of runs.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::SweepError;
 use super::spec::{LimitSpec, SamplingSpec, SweepFile, VarySpec};
-use crate::recording::did_you_mean;
+use crate::nearest::did_you_mean;
 use crate::scene::{Override, Scene, calibration_key};
 
 /// The scene's own check of its duration, on that of the sweep.
@@ -85,7 +85,7 @@ pub(super) fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepErro
         let refuse = |message: String, remedy: &str| {
             Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
         };
-        let Some(value) = base.value(calibration_key(key)) else {
+        let Some(value) = base.value(&calibration_key(key)) else {
             let message = format!("the scene has no such key{}", did_you_mean(key, &names));
             return refuse(message, "`smam check SCENE --keys` lists them");
         };

@@ -2,7 +2,7 @@
 
 use super::expression::Wrong;
 use super::measure::{Argument, Call, Figure};
-use crate::recording::did_you_mean;
+use crate::nearest::did_you_mean;
 use crate::scene::{Quantity, Scene};
 
 /// The names of a scene.

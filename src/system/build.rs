@@ -1,7 +1,7 @@
 //! Scene to plant: names to indices, specs to elements.
 
 use crate::hydraulics::Chain;
-use crate::mechanism::{Coordinate, Mechanism, Route};
+use crate::mechanism::{Coordinate, CoordinateKind, Mechanism, Route};
 use crate::muscle::{Coil, Friction, Stop, Wall, WallCondition, WallGeometry};
 use crate::recording::parse_column;
 use crate::scene::{CableSpec, MuscleSpec, MusclesSpec, Scene, TubeSpec, WallSpec};
@@ -9,7 +9,8 @@ use crate::scene::{CableSpec, MuscleSpec, MusclesSpec, Scene, TubeSpec, WallSpec
 use super::SystemError;
 use super::elastic::Elastic;
 use super::extras::{MechanismExtras, MuscleExtras};
-use super::install::{Site, install, settle_memory};
+use super::install::{Site, install, install_laws, settle_memory};
+use super::laws::Wrong;
 use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant};
 use super::state::PlantState;
 
@@ -65,6 +66,7 @@ impl Builder<'_> {
                 muscles: Vec::new(),
                 cables,
                 mechanism: MechanismExtras::default(),
+                laws: None,
             },
             state: self.start(displaced),
             path_0_m: vec![0.0; routes.len()],
@@ -298,7 +300,9 @@ impl Builder<'_> {
     /// Where the mechanism's effects act; every coordinate of a full scene is one hinge.
     fn site(&self, plant: &Plant<f64>) -> Site {
         let wraps = self.scene.file.cable.iter().map(|c| c.sheath_angle_rad).collect();
-        Site::of(plant, self.joints, vec![1; self.dim], wraps)
+        let coordinates = self.mechanism.map_or(&[][..], Mechanism::coordinates);
+        let names = coordinates.iter().map(|c| vec![c.name.clone()]).collect();
+        Site::of(plant, (names, slides(coordinates)), vec![1; self.dim], wraps)
     }
 
     fn install_effects(&self, built: &mut Built) -> Result<(), SystemError> {
@@ -314,6 +318,7 @@ impl Builder<'_> {
         for ((offset, cable), before) in built.start_offset_m.iter_mut().zip(&built.plant.cables).zip(settled) {
             *offset += cable.stretch_0_m - before;
         }
+        install_laws(&mut built.plant, &site, &self.scene.laws).map_err(|wrong| wrong_law(self.scene, wrong))?;
         settle_memory(&mut built.plant, &mut built.state);
         Ok(())
     }
@@ -335,6 +340,16 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Whether each coordinate slides.
+pub(super) fn slides(coordinates: &[Coordinate]) -> Vec<bool> {
+    coordinates.iter().map(|c| c.kind == CoordinateKind::Length).collect()
+}
+
+/// A law that the rig cannot have.
+pub(super) fn wrong_law(scene: &Scene, (name, (message, remedy)): (String, Wrong)) -> SystemError {
+    SystemError::Name { file: scene.path.clone(), table: format!("[[law]] \"{name}\""), message, remedy }
 }
 
 fn stops(coordinate: usize, joint: &Coordinate) -> impl Iterator<Item = CoordinateStop> {

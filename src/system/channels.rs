@@ -1,11 +1,13 @@
 //! Channels of a running scene: what each output column reads.
 
 use crate::effects::{Effect, SensorHistory};
+use crate::laws::Law;
 use crate::mechanism::{Coordinate, CoordinateKind};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
 use super::axis::{Axis, AxisFriction, AxisNumbers};
+use super::laws::LawSensor;
 use super::plant::Drive;
 use super::twin::sensor;
 use super::{Simulation, SystemError};
@@ -35,7 +37,7 @@ enum Reader {
 pub(super) struct Channels {
     /// Of each input: SI units in one of its unit.
     input_factors: Vec<f64>,
-    readers: Vec<(Reader, f64, Vec<SensorHistory<f64>>)>,
+    readers: Vec<(Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>)>,
     pub names: Vec<String>,
 }
 
@@ -52,7 +54,9 @@ impl Channels {
         let mut readers = Vec::new();
         for output in &scene.file.output {
             let sensors = sensors(scene, &output.channel);
-            readers.push((reader(simulation, output)?, parse_column(&output.channel)?.unit.factor, sensors));
+            let factor = parse_column(&output.channel)?.unit.factor;
+            let laws = sensor_laws(&scene.laws, &output.channel).map(|law| LawSensor::new(law, law.values(), factor));
+            readers.push((reader(simulation, output)?, factor, sensors, laws.collect()));
             names.push(output.channel.clone());
         }
         Ok(Self { input_factors, readers, names })
@@ -66,9 +70,10 @@ impl Channels {
         for (input, factor) in simulation.inputs.iter().zip(&self.input_factors) {
             out.push(input.value(simulation.time_s) / factor);
         }
-        for (reader, factor, sensors) in &mut self.readers {
+        for (reader, factor, sensors, laws) in &mut self.readers {
             let value = reader.value_si(simulation) / *factor;
-            out.push(sensors.iter_mut().fold(value, |value, s| s.show(simulation.time_s, value)));
+            let shown = sensors.iter_mut().fold(value, |value, s| s.show(simulation.time_s, value));
+            out.push(laws.iter_mut().fold(shown, |value, law| law.show(simulation.time_s, value)));
         }
     }
 }
@@ -142,6 +147,11 @@ fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
 /// Effects of a scene; it has been checked that each table is one.
 fn effects(scene: &Scene) -> Vec<Effect<f64>> {
     scene.file.effect.iter().filter_map(|t| t.effect().ok()).collect()
+}
+
+/// Laws on what a channel shows.
+pub(super) fn sensor_laws<'a>(laws: &'a [Law], channel: &'a str) -> impl Iterator<Item = &'a Law> {
+    laws.iter().filter(move |law| !law.is_physical() && law.address.of.as_deref() == Some(channel))
 }
 
 fn sensors(scene: &Scene, channel: &str) -> Vec<SensorHistory<f64>> {

@@ -2,7 +2,7 @@
 
 use crate::hydraulics::Chain;
 
-use super::plant::{Drive, InputSpan, MuscleForces, MusclePlant, Plant, dot};
+use super::plant::{Drive, InputSpan, Instant, MuscleForces, MusclePlant, Plant, dot};
 use super::state::PlantState;
 
 /// Which side of the book a flow of energy stands on.
@@ -127,8 +127,9 @@ pub(super) fn effect_flows(
     elapsed_s: f64,
 ) -> EffectFlows {
     let mut flows = EffectFlows::default();
+    let now: Instant<f64> = Instant::of(state, inputs, elapsed_s);
     for (i, muscle) in plant.muscles.iter().enumerate() {
-        let forces = plant.muscle_forces(i, state, inputs, elapsed_s);
+        let forces = plant.stock_forces(i, &now);
         muscle_flows(muscle, &forces, muscle.slow(&state.parts()), state.greatest_j[i], &mut flows);
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {
             flows.add(Flow::Restriction, restriction_w(muscle, chain, state.line(i).flow_m3_s));

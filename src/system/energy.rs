@@ -6,7 +6,9 @@
 
 use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
-use super::plant::{CoordinateStop, Drive, InputSpan, Plant, dot};
+use super::laws::law_powers;
+use super::plant::{CoordinateStop, Drive, InputSpan, Instant, Plant, dot};
+use super::rates::pressure_rates;
 use super::state::PlantState;
 
 /// Powers at one state, W.
@@ -60,8 +62,20 @@ pub struct EnergyBook {
     effects_before: EffectFlows,
     held_0: EffectStores,
     held: EffectStores,
+    /// Of each law of the scene: its name, whether it is meant to take energy, what it has brought so far (J), and its power before
+    /// the step (W).
+    laws: Vec<LawLine>,
     /// Of each muscle, before the step: pressure at its syringe, Pa, and how far its piston is ahead, m.
     pistons_before: Vec<(f64, f64)>,
+}
+
+/// A law's line of the book.
+#[derive(Clone, Debug)]
+struct LawLine {
+    name: String,
+    dissipates: bool,
+    brought_j: f64,
+    before_w: f64,
 }
 
 impl EnergyBook {
@@ -80,6 +94,7 @@ impl EnergyBook {
             effects_before: EffectFlows::default(),
             held_0: held,
             held,
+            laws: law_lines(plant),
             pistons_before: Vec::new(),
         }
     }
@@ -88,6 +103,8 @@ impl EnergyBook {
     pub fn before(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
         self.before = powers(plant, state, inputs, 0.0);
         self.effects_before = effect_flows(plant, state, inputs, 0.0);
+        let laws = law_powers(plant, state, inputs, 0.0);
+        self.laws.iter_mut().zip(laws).for_each(|(line, power)| line.before_w = power);
         self.pistons_before.clear();
         self.pistons_before.extend(pistons(state));
     }
@@ -110,6 +127,8 @@ impl EnergyBook {
         self.sums.input += self.work_in_play(plant, state);
         let effects = effect_flows(plant, state, inputs, h);
         self.effects.integrate(&self.effects_before, &effects, h);
+        let laws = law_powers(plant, state, inputs, h);
+        self.laws.iter_mut().zip(laws).for_each(|(line, power)| line.brought_j += mean(line.before_w, power));
         self.stored = stored(plant, state, inputs, h);
         self.held = effect_stores(plant, state, inputs, h);
     }
@@ -150,7 +169,15 @@ impl EnergyBook {
             + s.joint_damping
             + s.stop_damping;
         let stock = s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost;
-        stock + self.effects.net() - (self.held.total() - self.held_0.total())
+        let laws: f64 = self.laws.iter().map(|line| line.brought_j).sum();
+        stock + self.effects.net() + laws - (self.held.total() - self.held_0.total())
+    }
+
+    /// Laws that stand where energy is lost and have brought some, each with how much, J.
+    pub fn supplying_laws(&self) -> impl Iterator<Item = (&str, f64)> {
+        let least = LEAST_SUPPLY * self.turnover;
+        let supplying = self.laws.iter().filter(move |line| line.dissipates && line.brought_j > least);
+        supplying.map(|line| (line.name.as_str(), line.brought_j))
     }
 
     /// Integral of the absolute plunger power, J.
@@ -163,8 +190,11 @@ impl EnergyBook {
     /// Lines of effects stand only where there is something on them.
     pub fn lines(&self) -> Vec<(String, f64)> {
         let s = &self.sums;
-        let mut lines = vec![("input_work", s.input), ("load_work", s.loads)];
+        let mut lines: Vec<(&str, f64)> = vec![("input_work", s.input), ("load_work", s.loads)];
         lines.extend(self.effects.lines(Side::Brought));
+        let of_laws = self.laws.iter().map(|line| (line.name.clone(), line.brought_j));
+        let brought: Vec<(String, f64)> = named(lines).into_iter().chain(of_laws).collect();
+        let mut lines: Vec<(&str, f64)> = Vec::new();
         lines.extend([
             ("pressure_friction_exchange", s.pressure_friction),
             ("engine_and_contacts", self.engine),
@@ -182,8 +212,26 @@ impl EnergyBook {
         lines.extend(self.effects.lines(Side::Lost));
         lines.extend(self.held.lines(&self.held_0, "lost"));
         lines.push(("unaccounted_integrator", self.unaccounted_j()));
-        lines.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        brought.into_iter().chain(named(lines)).collect()
     }
+}
+
+fn named(lines: Vec<(&str, f64)>) -> Vec<(String, f64)> {
+    lines.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Share of the turnover below which what a law brings is rounding.
+const LEAST_SUPPLY: f64 = 1e-6;
+
+fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
+    let laws = plant.laws.iter().flat_map(|laws| laws.laws());
+    let line = |law: &crate::laws::Law| LawLine {
+        name: format!("law_{}", law.name),
+        dissipates: law.address.port.spec().dissipates,
+        brought_j: 0.0,
+        before_w: 0.0,
+    };
+    laws.map(line).collect()
 }
 
 /// Pressure at each syringe, Pa, and how far its piston is ahead of the plunger, m.
@@ -202,17 +250,20 @@ fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
             p.stop_damping += (stop.side * stop.stiffness * depth - force) * w;
         }
     }
-    for i in 0..plant.cables.len() {
-        let (stretch, rate, tension) = plant.cable(i, state, inputs, elapsed_s);
+    let now: Instant<f64> = Instant::of(state, inputs, elapsed_s);
+    for (i, cable) in plant.cables.iter().enumerate() {
+        // What laws do to a cable stands in their own lines.
+        let (stretch, rate, tension) = cable.pull(&now);
         if stretch > 0.0 {
-            p.cable_damping += (tension - plant.cables[i].stiffness_n_m * stretch) * rate;
+            p.cable_damping += (tension - cable.stiffness_n_m * stretch) * rate;
         }
-        if let Some((input, gain)) = plant.cables[i].drive {
-            p.input += tension * gain * inputs[input].slope;
+        if let Some((input, gain)) = cable.drive {
+            p.input += plant.cable(i, state, inputs, elapsed_s).2 * gain * inputs[input].slope;
         }
     }
+    let rates = plant.laws.as_ref().map(|_| pressure_rates(plant, &now));
     for i in 0..plant.muscles.len() {
-        muscle_powers(plant, i, state, inputs, elapsed_s, &mut p);
+        muscle_powers(plant, i, (state, &now), rates.as_ref().map(|r| r[i]), &mut p);
     }
     p
 }
@@ -220,13 +271,12 @@ fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
 fn muscle_powers(
     plant: &Plant<f64>,
     i: usize,
-    state: &PlantState<f64>,
-    inputs: &[InputSpan],
-    elapsed_s: f64,
+    (state, now): (&PlantState<f64>, &Instant<f64>),
+    rate_under_laws: Option<f64>,
     p: &mut Powers,
 ) {
-    let muscle = &plant.muscles[i];
-    let f = plant.muscle_forces(i, state, inputs, elapsed_s);
+    let (muscle, inputs) = (&plant.muscles[i], now.inputs);
+    let f = plant.stock_forces(i, now);
     p.muscle_damping += f.damping_n * f.speed_m_s;
     if let Some(stop) = &muscle.stop
         && f.elongation_m < 0.0
@@ -240,7 +290,8 @@ fn muscle_powers(
             p.line_viscosity += chain.dissipation_w(state.parts().line(i)) - restriction_w(muscle, chain, s.flow_m3_s);
             let n = chain.segments();
             let net = s.flow_m3_s[n - 1] - f.port.outflow_m3_s;
-            if state.boiling(i)[n] { 0.0 } else { net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa) }
+            let rate = || net / (chain.compliance_m3_pa[n] + f.port.compliance_m3_pa);
+            if state.boiling(i)[n] { 0.0 } else { rate_under_laws.unwrap_or_else(rate) }
         }
         Drive::Pressure { pressure } => {
             p.input += f.pressure_pa * f.port.outflow_m3_s;
@@ -265,9 +316,9 @@ fn stored(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], ela
         let depth = ((stop.position - state.y()[stop.coordinate]) * stop.side).max(0.0);
         energy += 0.5 * stop.stiffness * depth * depth;
     }
-    for i in 0..plant.cables.len() {
-        let (stretch, _, _) = plant.cable(i, state, inputs, elapsed_s);
-        energy += 0.5 * plant.cables[i].stiffness_n_m * stretch.max(0.0).powi(2);
+    let now: Instant<f64> = Instant::of(state, inputs, elapsed_s);
+    for cable in &plant.cables {
+        energy += 0.5 * cable.stiffness_n_m * cable.stretch_and_rate(&now).0.max(0.0).powi(2);
     }
     for (i, muscle) in plant.muscles.iter().enumerate() {
         let e = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;

@@ -21,6 +21,13 @@ pub enum SystemError {
          damping that is off by orders of magnitude"
     )]
     Diverged { time_s: f64, what: String },
+    #[error(
+        "{}: [[law]] {law}: at {time_s:.4} s {what}\n  \
+         remedy: bound the expression (max(x, 0), x/(1 + abs(x))), give its parameters other values, or, where a state runs away, \
+         make its time constant longer or simulation.step_s shorter",
+        file.display()
+    )]
+    Law { file: PathBuf, time_s: f64, law: String, what: String },
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }

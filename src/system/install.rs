@@ -4,10 +4,12 @@ use crate::effects::{
     Backlash, CoilPreload, Effect, ElementKind, HypotheticalFlow, HypotheticalForce, Kind, MaxwellBranch, Mullins,
     PlasticSet, TendonFriction, TrappedAir, Wall, logarithmic_creep,
 };
+use crate::laws::Law;
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
 use super::extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction};
+use super::laws::{PlantLaws, Wrong};
 use super::plant::{Drive, Plant, dot};
 use super::state::PlantState;
 
@@ -22,13 +24,24 @@ pub(super) struct Site {
     pub lever: f64,
     /// Number of the mechanism's coordinates; muscle ends follow.
     pub joints: usize,
+    /// Of each of them the names of the joints that it stands for, and whether they slide.
+    pub names: Vec<Vec<String>>,
+    pub slides: Vec<bool>,
     /// Wrap of each cable that does not move with the joints, rad.
     pub fixed_wrap_rad: Vec<f64>,
 }
 
 impl Site {
     /// Finds the site in a plant.
-    pub fn of<D: Scalar>(plant: &Plant<D>, joints: usize, hinges: Vec<usize>, fixed_wrap_rad: Vec<f64>) -> Self {
+    ///
+    /// `joints`: names of those of each coordinate, and whether they slide.
+    pub fn of<D: Scalar>(
+        plant: &Plant<D>,
+        (names, slides): (Vec<Vec<String>>, Vec<bool>),
+        hinges: Vec<usize>,
+        fixed_wrap_rad: Vec<f64>,
+    ) -> Self {
+        let joints = names.len();
         let levers = match (plant.cables.first(), plant.muscles.first()) {
             (Some(cable), _) => cable.jacobian.clone(),
             (None, Some(muscle)) => muscle.jacobian.clone(),
@@ -36,7 +49,7 @@ impl Site {
         };
         let direction = levers.iter().enumerate().map(|(i, l)| f64::from(u8::from(i < joints && *l != 0.0))).collect();
         let lever = levers.iter().take(joints).find(|l| **l != 0.0).map_or(0.0, |l| l.abs());
-        Self { direction, hinges, lever, joints, fixed_wrap_rad }
+        Self { direction, hinges, lever, joints, names, slides, fixed_wrap_rad }
     }
 
     /// The coordinates of the site, each with its number of hinges.
@@ -159,7 +172,24 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
     }
 }
 
-/// Gives a state the memory that the plant's effects need: branches relaxed, pistons centred.
+/// Puts the laws of a scene into a plant.
+///
+/// # Errors
+/// The law, and what of it the rig does not have.
+pub(super) fn install_laws<D: Scalar>(plant: &mut Plant<D>, site: &Site, laws: &[Law]) -> Result<(), (String, Wrong)> {
+    if laws.iter().all(|law| !law.is_physical()) {
+        return Ok(());
+    }
+    let mut own = plant.laws.take().map_or_else(|| PlantLaws::new(plant, site), |laws| *laws);
+    for law in laws.iter().filter(|law| law.is_physical()) {
+        let values = law.values().into_iter().map(D::constant).collect();
+        own.add(law, values, plant.cables.len()).map_err(|wrong| (law.name.clone(), wrong))?;
+    }
+    plant.laws = Some(Box::new(own));
+    Ok(())
+}
+
+/// Gives a state the memory that the plant's effects and laws need: branches relaxed, pistons centred.
 pub(super) fn settle_memory<D: Scalar>(plant: &mut Plant<D>, state: &mut PlantState<D>) {
     let mut slow = Vec::new();
     let mut energies = Vec::new();
@@ -175,4 +205,5 @@ pub(super) fn settle_memory<D: Scalar>(plant: &mut Plant<D>, state: &mut PlantSt
     let sliding = if plant.cables.iter().any(|c| c.friction.is_some()) { plant.cables.len() } else { 0 };
     state.set_memory(plant.mechanism.frictions.len() + sliding, &slow);
     state.greatest_j = energies;
+    PlantLaws::settle(plant, state);
 }

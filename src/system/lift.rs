@@ -19,6 +19,7 @@ impl Plant<f64> {
             muscles: self.muscles.iter().map(MusclePlant::lift).collect(),
             cables: self.cables.iter().map(CablePlant::lift).collect(),
             mechanism: MechanismExtras::default(),
+            laws: self.laws.as_ref().map(|laws| Box::new(laws.lift())),
         }
     }
 }

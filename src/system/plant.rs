@@ -11,6 +11,7 @@ use crate::scalar::Scalar;
 
 use super::elastic::Elastic;
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
+use super::laws::{Acts, PlantLaws};
 use super::state::{Parts, PlantState, sized, sized_mut};
 
 /// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
@@ -122,6 +123,8 @@ pub struct Plant<D> {
     pub muscles: Vec<MusclePlant<D>>,
     pub cables: Vec<CablePlant<D>>,
     pub mechanism: MechanismExtras<D>,
+    /// Laws that the scene has written down; none costs nothing.
+    pub laws: Option<Box<PlantLaws<D>>>,
 }
 
 /// Inputs over one fine step: their value at its start and the (constant) slope, SI.
@@ -148,9 +151,15 @@ impl<'a, D: Scalar, const N: usize> Instant<'a, D, N> {
         Self { state, at: state.layout.parts(&state.row), inputs, elapsed_s }
     }
 
+    /// Time of the run's clock, s.
+    #[inline]
+    pub fn time_s(&self) -> f64 {
+        self.state.time_s + self.elapsed_s
+    }
+
     /// Value of an input.
     #[inline]
-    fn input(&self, index: usize) -> f64 {
+    pub fn input(&self, index: usize) -> f64 {
         self.inputs[index].value + self.elapsed_s * self.inputs[index].slope
     }
 }
@@ -263,15 +272,22 @@ impl<D: Scalar> MusclePlant<D> {
 }
 
 impl<D: Scalar> CablePlant<D> {
-    /// Stretch, stretching rate and tension; the tension is never negative and zero when slack.
+    /// Stretch and stretching rate.
     #[inline]
-    pub(super) fn pull<const N: usize>(&self, now: &Instant<D, N>) -> (D, D, D) {
+    pub(super) fn stretch_and_rate<const N: usize>(&self, now: &Instant<D, N>) -> (D, D) {
         let mut stretch = self.stretch_0_m + dot::<_, N>(&self.jacobian, now.at.y());
         let mut rate = dot::<_, N>(&self.jacobian, now.at.w());
         if let Some((input, gain)) = self.drive {
             stretch += gain * now.input(input);
             rate += gain * now.inputs[input].slope;
         }
+        (stretch, rate)
+    }
+
+    /// Stretch, stretching rate and tension; the tension is never negative and zero when slack.
+    #[inline]
+    pub(super) fn pull<const N: usize>(&self, now: &Instant<D, N>) -> (D, D, D) {
+        let (stretch, rate) = self.stretch_and_rate(now);
         if stretch.is_below(0.0) {
             return (stretch, rate, D::constant(0.0));
         }
@@ -292,7 +308,7 @@ impl<D: Scalar> Plant<D> {
     }
 
     #[inline]
-    fn pressure<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> D {
+    pub(super) fn pressure<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> D {
         match &self.muscles[muscle].drive {
             Drive::Hydraulic { chain, .. } => now.at.line(muscle)[chain.segments()],
             Drive::Pressure { pressure } => D::constant(now.input(*pressure)),
@@ -311,8 +327,28 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Forces of one muscle at an instant.
-    #[inline]
     pub(super) fn forces<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> MuscleForces<D> {
+        let acts = self.laws.as_ref().map(|laws| laws.afresh(self, now));
+        self.forces_seen(muscle, now, acts.as_ref())
+    }
+
+    /// The same where what laws do at the instant is known.
+    #[inline]
+    pub(super) fn forces_seen<const N: usize>(
+        &self,
+        muscle: usize,
+        now: &Instant<D, N>,
+        acts: Option<&Acts<D>>,
+    ) -> MuscleForces<D> {
+        let stock = self.stock_forces(muscle, now);
+        let Some(acts) = acts else { return stock };
+        let (m, z) = (&self.muscles[muscle], now.at.z(muscle));
+        m.forces_under(stock, &acts.muscles[muscle], z, m.slow(&now.at), now.state.greatest_j[muscle])
+    }
+
+    /// Forces of one muscle without laws.
+    #[inline]
+    pub(super) fn stock_forces<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> MuscleForces<D> {
         let m = &self.muscles[muscle];
         let pressure = self.pressure(muscle, now);
         let (elongation, speed) = (m.elongation_m::<N>(now.at.y()), dot::<_, N>(&m.jacobian, now.at.w()));
@@ -329,7 +365,10 @@ impl<D: Scalar> Plant<D> {
         let (y, w) = (now.at.y(), now.at.w());
         let mut bits = 0;
         let mut note = |acts: bool| bits = bits << 1 | u64::from(acts);
-        self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0)));
+        match self.laws.as_ref().filter(|_| !self.cables.is_empty()) {
+            Some(laws) => laws.afresh(self, now).tension_n.iter().for_each(|tension| note(tension.is_above(0.0))),
+            None => self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0))),
+        }
         self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.is_above(0.0)));
         for muscle in self.muscles.iter().filter(|m| m.stop.is_some()) {
             note(muscle.elongation_m::<N>(y).is_below(0.0));
@@ -343,7 +382,20 @@ impl<D: Scalar> Plant<D> {
 
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.
     pub fn cable(&self, cable: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> (D, D, D) {
-        self.cables[cable].pull::<0>(&Instant::of(state, inputs, elapsed_s))
+        let now: Instant<D> = Instant::of(state, inputs, elapsed_s);
+        let Some(laws) = &self.laws else { return self.cables[cable].pull(&now) };
+        let pull = laws.cable(cable, self, &now, &laws.afresh(self, &now));
+        (pull.stretch_m, pull.rate_m_s, pull.tension_n)
+    }
+
+    /// How many inputs the plant reads, at least.
+    pub(super) fn inputs(&self) -> usize {
+        let of_muscles = self.muscles.iter().map(|m| match m.drive {
+            Drive::Hydraulic { plunger, .. } => plunger,
+            Drive::Pressure { pressure } => pressure,
+        });
+        let of_cables = self.cables.iter().filter_map(|c| c.drive).map(|(input, _)| input);
+        of_muscles.chain(of_cables).max().map_or(0, |last| last + 1)
     }
 }
 

@@ -1,7 +1,10 @@
 //! The right-hand side of a plant's equations.
 
+use crate::hydraulics::Chain;
+use crate::laws::Port;
 use crate::scalar::Scalar;
 
+use super::laws::{Acts, MuscleActs, line_drop};
 use super::plant::{CoordinateStop, Drive, Instant, MuscleForces, Plant, add_scaled, dot};
 use super::state::{PartsMut, sized};
 
@@ -21,13 +24,25 @@ impl Switches {
 pub(super) struct Seen<D> {
     pub forces: Vec<MuscleForces<D>>,
     pub tension_n: Vec<D>,
+    /// What laws do, and the lines with what laws do to them; none without laws.
+    pub acts: Option<Box<Acts<D>>>,
+    pub chains: Vec<Option<Chain<D>>>,
 }
 
 impl<D: Scalar> Seen<D> {
     /// Nothing yet.
     pub fn new(plant: &Plant<D>) -> Self {
         let none = MuscleForces::none();
-        Self { forces: vec![none; plant.muscles.len()], tension_n: vec![D::constant(0.0); plant.cables.len()] }
+        let lines = plant.muscles.iter().filter(|_| plant.laws.is_some()).map(|m| match &m.drive {
+            Drive::Hydraulic { chain, .. } => Some(chain.clone()),
+            Drive::Pressure { .. } => None,
+        });
+        Self {
+            forces: vec![none; plant.muscles.len()],
+            tension_n: vec![D::constant(0.0); plant.cables.len()],
+            acts: plant.laws.as_ref().map(|laws| Box::new(laws.room(plant))),
+            chains: lines.collect(),
+        }
     }
 }
 
@@ -40,10 +55,13 @@ pub(super) fn rates<D: Scalar, const N: usize>(
     mut out: PartsMut<D, N>,
 ) -> Switches {
     let mut switches = Switches::default();
+    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
+        laws.act(plant, now, acts);
+    }
     coordinate_rates(plant, now, &mut out, &mut switches);
-    cable_rates(plant, now, &mut seen.tension_n, &mut out, &mut switches);
+    cable_rates(plant, now, seen, &mut out, &mut switches);
     for (i, muscle) in plant.muscles.iter().enumerate() {
-        let forces = plant.forces(i, now);
+        let forces = plant.forces_seen(i, now, seen.acts.as_deref());
         switches.note(forces.stop_n.is_above(0.0));
         add_scaled::<_, N>(out.w(), &muscle.jacobian, -forces.pull_n());
         if let Some(friction) = &muscle.friction {
@@ -51,7 +69,17 @@ pub(super) fn rates<D: Scalar, const N: usize>(
         }
         if let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive {
             let boils = now.state.boiling_of::<N>(i);
-            chain.rates(now.at.line(i), boils, piston_m_s[i] * *syringe_area_m2, &forces.port, out.line(i));
+            let inflow = piston_m_s[i] * *syringe_area_m2;
+            match (&seen.acts, seen.chains.get_mut(i)) {
+                (Some(acts), Some(Some(under))) => {
+                    let own = &acts.muscles[i];
+                    chain_under(chain, own, under);
+                    let inflow = inflow + acts.piston_m_s[i] * *syringe_area_m2 - own.at(Port::SyringeFlow).add;
+                    under.rates(now.at.line(i), boils, inflow, &forces.port, out.line(i));
+                    drop_under(chain, own, under, now.at.line(i), out.line(i));
+                }
+                _ => chain.rates(now.at.line(i), boils, inflow, &forces.port, out.line(i)),
+            }
             boils.iter().for_each(|b| switches.note(*b));
         }
         if !out.slow().is_empty() {
@@ -61,7 +89,54 @@ pub(super) fn rates<D: Scalar, const N: usize>(
         seen.forces[i] = forces;
     }
     mechanism_rates(plant, now, &mut out, &mut switches);
+    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
+        laws.push_joints(plant, now, acts, &mut out);
+        laws.state_rates(plant, now, acts, out.law_states());
+    }
     switches
+}
+
+/// Rate of each muscle's pressure with all that acts, Pa/s.
+pub(super) fn pressure_rates(plant: &Plant<f64>, now: &Instant<f64>) -> Vec<f64> {
+    let row = all_rates(plant, now);
+    let at = now.state.layout.parts::<f64, 0>(&row);
+    (0..plant.muscles.len()).map(|i| at.line(i)[now.state.segments()]).collect()
+}
+
+/// The row of all rates, plungers going as their inputs do.
+pub(super) fn all_rates(plant: &Plant<f64>, now: &Instant<f64>) -> Vec<f64> {
+    let mut row = vec![0.0; now.state.row.len()];
+    let speed = |drive: &Drive<f64>| match drive {
+        Drive::Hydraulic { plunger, .. } => now.inputs[*plunger].slope,
+        Drive::Pressure { pressure } => now.inputs[*pressure].slope,
+    };
+    let pistons: Vec<f64> = plant.muscles.iter().map(|m| speed(&m.drive)).collect();
+    rates(plant, now, &pistons, &mut Seen::new(plant), now.state.layout.parts_mut(&mut row));
+    row
+}
+
+/// The line with what laws make of its compliances and its inertia; its resistance is that of the last call of [`drop_under`].
+fn chain_under<D: Scalar>(chain: &Chain<D>, acts: &MuscleActs<D>, under: &mut Chain<D>) {
+    let share = chain.end_share_m3_pa;
+    let upstream = acts.at(Port::SyringeCompliance).on(chain.compliance_m3_pa[0] - share);
+    under.compliance_m3_pa[0] = upstream + share + acts.at(Port::Plunger).add;
+    let n = chain.segments() as f64;
+    under.inertance_pa_s2_m3 = acts.at(Port::Inertance).on(chain.inertance_pa_s2_m3 * n) / n;
+}
+
+/// Exchanges the line's own pressure drop for that under laws, and keeps its slope for the tangents.
+fn drop_under<D: Scalar>(chain: &Chain<D>, acts: &MuscleActs<D>, under: &mut Chain<D>, line: &[D], out: &mut [D]) {
+    let n = chain.segments();
+    for j in n + 1..=2 * n {
+        let flow = line[j];
+        let own = |r: D| r + chain.quadratic_pa_s2_m6 * flow.abs();
+        let drop = line_drop(acts, chain.resistance_pa_s_m3, own(chain.resistance_pa_s_m3), flow, n);
+        let taken = own(under.resistance_pa_s_m3) * flow;
+        out[j] += (taken - drop) / under.inertance_pa_s2_m3;
+    }
+    let count = n as f64;
+    let resistance = acts.at(Port::Resistance).on(chain.resistance_pa_s_m3 * count) / count;
+    under.resistance_pa_s_m3 = resistance * acts.at(Port::PressureDrop).scale;
 }
 
 /// Springs, dampers, stops and contacts of the coordinates: the first to write their forces.
@@ -96,15 +171,24 @@ fn coordinate_rates<D: Scalar, const N: usize>(
 fn cable_rates<D: Scalar, const N: usize>(
     plant: &Plant<D>,
     now: &Instant<D, N>,
-    tension_n: &mut [D],
+    seen: &mut Seen<D>,
     out: &mut PartsMut<D, N>,
     switches: &mut Switches,
 ) {
     for (i, cable) in plant.cables.iter().enumerate() {
-        let (_, _, tension) = cable.pull(now);
-        tension_n[i] = tension;
+        let tension = match (&plant.laws, &seen.acts) {
+            (Some(laws), Some(acts)) => {
+                laws.push_cable(i, plant, now, acts, out);
+                acts.tension_n[i]
+            }
+            _ => {
+                let (_, _, tension) = cable.pull(now);
+                add_scaled::<_, N>(out.w(), &cable.jacobian, -tension);
+                tension
+            }
+        };
+        seen.tension_n[i] = tension;
         switches.note(tension.is_above(0.0));
-        add_scaled::<_, N>(out.w(), &cable.jacobian, -tension);
         if let Some(friction) = &cable.friction {
             let at = plant.mechanism.frictions.len() + i;
             let sliding = now.at.joint_z()[at];

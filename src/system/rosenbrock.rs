@@ -107,7 +107,7 @@ impl<D: Scalar> Stepper<D> {
         let now = Instant::<D, N>::of(state, inputs, 0.0);
         let switches = rates(plant, &now, &self.piston_m_s, &mut self.seen, layout.parts_mut(&mut self.r));
         if switches != self.switches || h != self.tangent_step_s || self.are_tangents_old(h) {
-            self.tangents.take(plant, &now, &self.seen, g);
+            self.tangents.take(plant, &now, &mut self.seen, g);
             (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
         }
         self.age += 1;
@@ -140,8 +140,8 @@ impl<D: Scalar> Stepper<D> {
         plant.pulling::<0>(&Instant { state, at: state.layout.parts(&self.ahead), inputs, elapsed_s })
     }
 
-    /// Moves `state` to the end of the step that was taken from it.
-    pub(super) fn accept(&mut self, plant: &Plant<D>, state: &mut PlantState<D>) {
+    /// Moves `state` to the end of the step of `h` seconds that was taken from it; `inputs` are still those of its beginning.
+    pub(super) fn accept(&mut self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
         std::mem::swap(&mut state.row, &mut self.ahead);
         for (i, muscle) in plant.muscles.iter().enumerate() {
             if let Drive::Hydraulic { chain, .. } = &muscle.drive {
@@ -153,6 +153,10 @@ impl<D: Scalar> Stepper<D> {
             }
         }
         remember_greatest(plant, state);
+        if let Some(laws) = &plant.laws {
+            laws.follow(plant, state, inputs, h);
+        }
+        state.time_s += h;
     }
 
     /// Where the pistons are at the end of the step, and how fast they go there.
@@ -200,6 +204,9 @@ fn solve<D: Scalar, const N: usize>(
     if !tangents.dashpots.is_empty() {
         push_dashpots(plant, tangents, g, r.slow(), k_w);
     }
+    if let Some(laws) = &tangents.laws {
+        laws.push_states(plant, g, r.law_states(), k_w);
+    }
     tangents.ldl.solve::<N>(k_w);
     for i in 0..n {
         k_y[i] = r_y[i] + k_w[i] * g;
@@ -217,6 +224,10 @@ fn solve<D: Scalar, const N: usize>(
     if !tangents.dashpots.is_empty() {
         let (coordinates, states) = k.y_and_slow();
         stages_of_dashpots(plant, tangents, r.slow(), coordinates, states);
+    }
+    if let Some(laws) = &tangents.laws {
+        let (moving, states) = k.moving_and_law_states();
+        laws.stages(plant, g, r.law_states(), moving, states);
     }
 }
 

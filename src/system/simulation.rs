@@ -100,6 +100,7 @@ impl Simulation {
         };
         simulation.resolve_loads()?;
         simulation.hold_spans();
+        simulation.check_laws()?;
         Ok(simulation)
     }
 
@@ -151,6 +152,7 @@ impl Simulation {
     pub fn start_at(&mut self, time_s: f64) {
         let begin_s = self.inputs.iter().filter_map(InputSource::begins_s).fold(time_s, f64::min);
         self.time_s = if time_s - begin_s <= LONGEST_LOST_S { begin_s } else { time_s };
+        self.built.state.time_s = self.time_s;
         self.hold_spans();
     }
 
@@ -215,8 +217,18 @@ impl Simulation {
         for i in 0..steps {
             let end = if i + 1 == steps { time_s } else { start + (time_s - start) * (i + 1) as f64 / steps as f64 };
             self.engine_step(end);
+            self.check_laws()?;
         }
         self.check_finite()
+    }
+
+    /// Stops where a law has left the range in which its port means anything.
+    fn check_laws(&self) -> Result<(), SystemError> {
+        let Built { plant, state, .. } = &self.built;
+        let fault = plant.laws.as_ref().and_then(|laws| laws.fault(plant, state, &self.spans));
+        fault.map_or(Ok(()), |fault| {
+            Err(SystemError::Law { file: self.scene.path.clone(), time_s: self.time_s, law: fault.law, what: fault.what })
+        })
     }
 
     fn engine_step(&mut self, end_s: f64) {
@@ -233,10 +245,12 @@ impl Simulation {
         let mut pulling = None;
         for i in 0..substeps {
             let start = self.time_s + fine * i as f64;
+            self.built.state.time_s = start;
             self.renew_spans(start, fine);
             self.fine_step(fine, &mut pulling);
         }
         self.spans.iter_mut().zip(&self.inputs).for_each(|(span, input)| span.value = input.value(end_s));
+        self.built.state.time_s = end_s;
         self.carry_engine(h);
         self.has_stepped = true;
         self.time_s = end_s;
@@ -320,6 +334,10 @@ impl Simulation {
         }
         self.touching = touches_a_link(mechanism, self.scene.file.mechanism.as_ref().map_or(0, |m| m.body.len()));
         mechanism.positions(&mut self.positions);
+        if let Some(laws) = &plant.laws {
+            let by: Vec<f64> = self.positions[..joints].iter().zip(state.y()).map(|(to, from)| to - from).collect();
+            laws.joints_moved(plant, state, &self.spans, &by);
+        }
         let (y, w) = state.y_and_w_mut();
         for ((y, w), &position) in y.iter_mut().zip(w).zip(&self.positions[..joints]) {
             *w += (position - *y) / h;

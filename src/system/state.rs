@@ -16,10 +16,12 @@ pub struct PlantState<D> {
     /// Of each muscle: the greatest energy of its wall so far, J, and how far its piston is ahead of the plunger, m.
     pub(super) greatest_j: Vec<D>,
     pub(super) piston_ahead_m: Vec<D>,
+    /// Time of the run's clock, s.
+    pub(super) time_s: f64,
 }
 
 /// Where everything stands in the row: coordinates, their rates, friction states of the muscles, lines of the muscles,
-/// dry frictions of the mechanism and the cables, slow states of the effects.
+/// dry frictions of the mechanism and the cables, slow states of the effects, states of the laws.
 ///
 /// All lines have room for the same number of segments; that of a muscle whose pressure is recorded stands empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +30,7 @@ pub(super) struct Layout {
     muscles: usize,
     segments: usize,
     slow_at: usize,
+    laws_at: usize,
 }
 
 /// A row to be read. `N` is the number of coordinates where that is known when compiling, else 0 ([`sized`]).
@@ -144,7 +147,18 @@ impl<'a, D: Copy, const N: usize> Parts<'a, D, N> {
     /// Slow states of all muscles' effects, m.
     #[inline]
     pub fn slow(&self) -> &'a [D] {
-        &self.row[self.layout.slow_at..]
+        &self.row[self.layout.slow_at..self.layout.laws_at]
+    }
+
+    /// States of all laws, each in its own unit.
+    #[inline]
+    pub fn law_states(&self) -> &'a [D] {
+        &self.row[self.layout.laws_at..]
+    }
+
+    /// The whole row.
+    pub fn row(&self) -> &'a [D] {
+        self.row
     }
 }
 
@@ -164,9 +178,16 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
 
     /// Coordinates, and slow states of all muscles' effects.
     pub fn y_and_slow(&mut self) -> (&mut [D], &mut [D]) {
-        let (n, from) = (self.layout.dim::<N>(), self.layout.slow_at);
-        let (before, slow) = self.row.split_at_mut(from);
+        let (n, from, to) = (self.layout.dim::<N>(), self.layout.slow_at, self.layout.laws_at);
+        let (before, slow) = self.row[..to].split_at_mut(from);
         (&mut before[..n], slow)
+    }
+
+    /// Coordinates with their rates, and states of the laws.
+    pub fn moving_and_law_states(&mut self) -> (&mut [D], &mut [D]) {
+        let (n, from) = (2 * self.layout.dim::<N>(), self.layout.laws_at);
+        let (before, laws) = self.row.split_at_mut(from);
+        (&mut before[..n], laws)
     }
 
     /// Rates of the coordinates, and frictions of the mechanism and the cables.
@@ -193,15 +214,21 @@ impl<D: Copy, const N: usize> PartsMut<'_, D, N> {
 
     #[inline]
     pub fn slow(&mut self) -> &mut [D] {
-        &mut self.row[self.layout.slow_at..]
+        &mut self.row[self.layout.slow_at..self.layout.laws_at]
+    }
+
+    #[inline]
+    pub fn law_states(&mut self) -> &mut [D] {
+        &mut self.row[self.layout.laws_at..]
     }
 }
 
 impl<D: Scalar> PlantState<D> {
     /// At rest at the coordinates `y`, with muscles whose lines have so many segments.
     pub(super) fn at_rest(y: &[D], muscles: usize, segments: usize) -> Self {
-        let mut layout = Layout { dim: y.len(), muscles, segments, slow_at: 0 };
+        let mut layout = Layout { dim: y.len(), muscles, segments, slow_at: 0, laws_at: 0 };
         layout.slow_at = layout.joint_z_at();
+        layout.laws_at = layout.slow_at;
         let mut row = y.to_vec();
         row.resize(layout.slow_at, D::constant(0.0));
         Self {
@@ -210,6 +237,7 @@ impl<D: Scalar> PlantState<D> {
             boiling: vec![false; muscles * (segments + 1)],
             greatest_j: vec![D::constant(0.0); muscles],
             piston_ahead_m: vec![D::constant(0.0); muscles],
+            time_s: 0.0,
         }
     }
 
@@ -228,8 +256,20 @@ impl<D: Scalar> PlantState<D> {
         self.row.resize(self.row.len() + dry_frictions, D::constant(0.0));
         self.layout.slow_at = self.row.len();
         self.row.extend_from_slice(slow);
+        self.layout.laws_at = self.row.len();
         self.greatest_j.fill(D::constant(0.0));
         self.piston_ahead_m.fill(D::constant(0.0));
+    }
+
+    /// Gives the laws their memory.
+    pub(super) fn set_law_states(&mut self, states: &[D]) {
+        self.row.truncate(self.layout.laws_at);
+        self.row.extend_from_slice(states);
+    }
+
+    /// States of the laws, to be written.
+    pub(super) fn law_states_mut(&mut self) -> &mut [D] {
+        &mut self.row[self.layout.laws_at..]
     }
 
     #[inline]
@@ -299,6 +339,7 @@ impl PlantState<f64> {
             boiling: self.boiling.clone(),
             greatest_j: all(&self.greatest_j),
             piston_ahead_m: all(&self.piston_ahead_m),
+            time_s: self.time_s,
         }
     }
 }

@@ -37,7 +37,7 @@ impl<D: Scalar> Stepper<D> {
     ) {
         watch.begin(plant, state, inputs);
         if self.step(plant, state, inputs, h) && self.pulling_ahead(plant, state, inputs, h) == *pulling {
-            self.accept(plant, state);
+            self.accept(plant, state, inputs, h);
             watch.end(plant, state, inputs, h);
             inputs.iter_mut().for_each(|s| s.value += h * s.slope);
             return;
@@ -60,7 +60,7 @@ impl<D: Scalar> Stepper<D> {
         for _ in 0..SWITCH_STEPS {
             watch.begin(plant, state, inputs);
             self.step(plant, state, inputs, part);
-            self.accept(plant, state);
+            self.accept(plant, state, inputs, part);
             watch.end(plant, state, inputs, part);
             inputs.iter_mut().for_each(|s| s.value += part * s.slope);
         }

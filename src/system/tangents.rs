@@ -1,10 +1,12 @@
 //! Slopes of a plant's rates, in the form in which the stages of a step need them.
 
 use crate::hydraulics::ChainSolver;
+use crate::laws::Port;
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
 use super::extras::CableFriction;
+use super::laws::{Acts, LawTangents, MuscleSlopes, PlantLaws};
 use super::ldl::Ldl;
 use super::plant::{Drive, Instant, MuscleForces, Plant, dot};
 use super::rates::Seen;
@@ -49,6 +51,8 @@ pub(super) struct Tangents<D> {
     pub frictions: Vec<FrictionTangent<D>>,
     /// Of every slow state.
     pub dashpots: Vec<DashpotTangent<D>>,
+    /// Of laws, where there are any.
+    pub laws: Option<Box<LawTangents<D>>>,
     /// `g K`, row by row: every spring that acts, seen from the coordinates.
     pub springs: Vec<D>,
     matrix: Vec<D>,
@@ -95,6 +99,7 @@ impl<D: Scalar> Tangents<D> {
             muscles: vec![muscle; plant.muscles.len()],
             frictions: vec![FrictionTangent::none(); frictions],
             dashpots: vec![DashpotTangent::none(); slow_states],
+            laws: plant.laws.as_ref().map(|laws| Box::new(LawTangents::new(laws, plant))),
             springs: vec![zero; n * n],
             matrix: vec![zero; n * n],
             ldl: Ldl::new(n),
@@ -104,24 +109,68 @@ impl<D: Scalar> Tangents<D> {
     /// Takes them at an instant whose forces have been `seen`, and factorises `M + g D + g² K`.
     ///
     /// Cables, muscles and the like enter as rank-one terms.
-    pub fn take<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, seen: &Seen<D>, g: f64) {
+    pub fn take<const N: usize>(&mut self, plant: &Plant<D>, now: &Instant<D, N>, seen: &mut Seen<D>, g: f64) {
         let n = plant.dim();
         self.matrix.copy_from_slice(&plant.coordinates.inertia);
         self.springs.fill(D::constant(0.0));
         self.take_coordinates(plant, now, g);
-        for (cable, tension) in plant.cables.iter().zip(&seen.tension_n) {
-            if tension.is_above(0.0) {
-                self.add_spring::<N>(&cable.jacobian, cable.stiffness_n_m * g, cable.damping_n_s_m * g);
+        if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
+            self.take_laws(laws, plant, now, acts, g);
+        } else {
+            for (cable, tension) in plant.cables.iter().zip(&seen.tension_n) {
+                if tension.is_above(0.0) {
+                    self.add_spring::<N>(&cable.jacobian, cable.stiffness_n_m * g, cable.damping_n_s_m * g);
+                }
             }
         }
-        for (i, forces) in seen.forces.iter().enumerate() {
-            self.take_muscle(plant, i, now, forces, g);
+        for i in 0..plant.muscles.len() {
+            self.take_muscle(plant, i, now, seen, g);
         }
         self.take_frictions(plant, now, seen, g);
         for i in 0..n * n {
             self.matrix[i] += self.springs[i] * g;
         }
         self.ldl.factorise::<N>(&self.matrix);
+    }
+
+    /// Cables under laws, joints with laws on them, and laws' states that are on no muscle.
+    fn take_laws<const N: usize>(
+        &mut self,
+        laws: &PlantLaws<D>,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+        g: f64,
+    ) {
+        let Some(own) = &mut self.laws else { return };
+        own.levers_at(laws, plant, acts);
+        laws.other_states(plant, now, acts, (g, &mut own.states));
+        for (i, cable) in plant.cables.iter().enumerate().filter(|(i, _)| acts.tension_n[*i].is_above(0.0)) {
+            let stiffness = cable.stiffness_n_m * acts.cables[i].at(Port::CableStiffness).scale;
+            add_outer_of(&mut self.springs, &own.levers[i], stiffness * g);
+            add_outer_of(&mut self.matrix, &own.levers[i], cable.damping_n_s_m * g);
+        }
+        for site in laws.joint_sites() {
+            let slopes = laws.joint_slopes(site, plant, now, acts);
+            let direction = laws.direction(site);
+            add_outer::<_, N>(&mut self.springs, direction, -slopes.by_position * g);
+            add_outer::<_, N>(&mut self.matrix, direction, -slopes.by_speed * g);
+        }
+    }
+
+    /// Slopes that laws give a muscle's pull; those of its states are kept.
+    fn slopes_of_laws<const N: usize>(
+        &mut self,
+        plant: &Plant<D>,
+        i: usize,
+        now: &Instant<D, N>,
+        seen: &mut Seen<D>,
+        g: f64,
+    ) -> Option<MuscleSlopes<D>> {
+        let (laws, acts, own) = (plant.laws.as_ref()?, seen.acts.as_mut()?, self.laws.as_mut()?);
+        let slopes = laws.muscle_slopes(i, plant, now, (&seen.forces[i], acts), (g, &mut own.states));
+        self.lines[i].set_conductance(slopes.conductance_m3_s_pa);
+        Some(slopes)
     }
 
     /// Springs, dampers, stops, contacts and walls.
@@ -154,12 +203,17 @@ impl<D: Scalar> Tangents<D> {
         plant: &Plant<D>,
         i: usize,
         now: &Instant<D, N>,
-        forces: &MuscleForces<D>,
+        seen: &mut Seen<D>,
         g: f64,
     ) {
-        let muscle = &plant.muscles[i];
+        let slopes = self.slopes_of_laws(plant, i, now, seen, g);
+        let acts = seen.acts.as_ref().map(|acts| &acts.muscles[i]);
+        let (muscle, forces): (_, &MuscleForces<D>) = (&plant.muscles[i], &seen.forces[i]);
         let z = now.at.z(i);
         let mut damping = muscle.damping_n_s_m;
+        if let Some(acts) = acts {
+            damping *= acts.at(Port::Damping).scale * acts.at(Port::Pull).scale;
+        }
         if let (Some(stop), true) = (&muscle.stop, forces.stop_n.is_above(0.0)) {
             damping += stop.damping_n_s_m;
         }
@@ -168,18 +222,33 @@ impl<D: Scalar> Tangents<D> {
         let mut pull_per_pressure = forces.area_m2;
         if let Some(friction) = &muscle.friction {
             let slopes = friction.rate_jacobian(z, forces.speed_m_s);
-            let level = friction.level_n(forces.pressure_pa);
-            pull_per_pressure -= friction.force_per_pressure(z, forces.pressure_pa);
+            let mut level = friction.level_n(forces.pressure_pa);
+            let mut per_pressure = friction.force_per_pressure(z, forces.pressure_pa);
+            if let Some(acts) = acts {
+                let kept = acts.at(Port::Pull).scale;
+                level = acts.at(Port::Friction).on(level) * kept;
+                per_pressure *= acts.at(Port::Friction).scale * kept;
+            }
+            pull_per_pressure -= per_pressure;
             tangent.friction = FrictionTangent::new(level, slopes.drate_dz, slopes.drate_dv, g);
+        }
+        if let Some(slopes) = &slopes {
+            damping += slopes.pull_n_s_m;
+            pull_per_pressure -= slopes.pull_n_pa;
         }
         let mut along = damping * g + tangent.friction.inertia();
         if let Drive::Hydraulic { chain, .. } = &muscle.drive {
+            let chain = seen.chains.get(i).and_then(Option::as_ref).unwrap_or(chain);
             let sigma = self.lines[i].factorise(chain, now.at.line(i), now.state.boiling_of::<N>(i), &forces.port, g);
             tangent.pull_per_rho = pull_per_pressure * g;
             along += tangent.pull_per_rho * sigma * tangent.area;
         }
         self.muscles[i] = tangent;
-        let given_way = self.take_dashpots(plant, i, g);
+        let mut given_way = self.take_dashpots(plant, i, g);
+        if let (Some(slopes), Some(own)) = (&slopes, &self.laws) {
+            given_way -= slopes.pull_n_m + own.stiffness_through(i);
+            along += own.damping_through(i) * g;
+        }
         self.add_spring::<N>(&muscle.jacobian, (forces.stiffness_n_m - given_way) * g, along);
     }
 
@@ -235,6 +304,16 @@ fn sliding_tangent<D: Scalar, const N: usize>(
     let along = D::constant(0.0).select_above(speed, sliding + 1.0, -sliding + 1.0);
     let force_per_z = -friction.slope_n(now.at.y(), tension);
     FrictionTangent::new(force_per_z, -pace, -(along / friction.law.presliding_m), g)
+}
+
+/// `matrix += scale * j j^T`, of levers that laws change.
+fn add_outer_of<D: Scalar>(matrix: &mut [D], j: &[D], scale: D) {
+    let n = j.len();
+    for (row, &a) in j.iter().enumerate().filter(|(_, a)| !a.is_at(0.0)) {
+        for (x, &b) in matrix[row * n..(row + 1) * n].iter_mut().zip(j) {
+            *x += scale * a * b;
+        }
+    }
 }
 
 /// `matrix += scale * j j^T`.

@@ -20,8 +20,8 @@ use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 
-use super::build::build;
-use super::install::{Site, install, settle_memory};
+use super::build::{build, wrong_law};
+use super::install::{Site, install, install_laws, settle_memory};
 use super::plant::{Drive, InputSpan, Plant, dot};
 use super::state::PlantState;
 use super::{Schedule, SystemError};
@@ -135,6 +135,8 @@ impl Twin {
     pub fn new(scene: &Scene) -> Result<Self, SystemError> {
         let mut bare = scene.clone();
         bare.file.effect.clear();
+        // Laws are put on the few coordinates below.
+        let laws = std::mem::take(&mut bare.laws);
         let mechanism = match &bare.file.mechanism {
             Some(spec) => {
                 let loaded = Mechanism::load(spec, bare.folder());
@@ -144,9 +146,11 @@ impl Twin {
         };
         let built = build(&bare, mechanism.as_ref())?;
         lump::refuse_what_has_none(&bare, &built)?;
-        let lumped = lump::lump(&bare, mechanism.as_ref(), built)?;
+        let mut lumped = lump::lump(scene, mechanism.as_ref(), built)?;
         let wraps = bare.file.cable.iter().map(|c| c.sheath_angle_rad).collect();
-        let site = Site::of(&lumped.plant, lumped.joints, lumped.hinges.clone(), wraps);
+        let joints = (lumped.names.clone(), lumped.slides.clone());
+        let site = Site::of(&lumped.plant, joints, lumped.hinges.clone(), wraps);
+        install_laws(&mut lumped.plant, &site, &laws).map_err(|wrong| wrong_law(scene, wrong))?;
         let outputs = bare.file.output.iter().map(|o| output::resolve(&bare, o, &lumped)).collect::<Result<_, _>>()?;
         Ok(Self {
             site,
@@ -169,7 +173,7 @@ impl Twin {
 
     /// The parameter behind a scene key; `None` when the fast model cannot vary it.
     pub fn parameter(&self, key: &str) -> Option<TwinParameter> {
-        parameter::resolve(self, crate::scene::calibration_key(key))
+        parameter::resolve(self, &crate::scene::calibration_key(key))
     }
 
     /// Simulates; returns each output at the run's times, in the unit of its column. `None` when it diverges.
@@ -177,7 +181,7 @@ impl Twin {
         if let Some(axis) = &self.axis {
             return Some(output::axis_series(axis, &self.outputs, run, setting));
         }
-        let mut sensors = Sensors::new(&self.outputs, &setting.effects);
+        let mut sensors = Sensors::new(&self.outputs, setting);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
         self.watch(run, setting, |k, plant, state, spans| {
             for (output, series) in self.outputs.iter().zip(&mut series) {
@@ -200,7 +204,7 @@ impl Twin {
             if k > 0 {
                 let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
                 course.advance(&plant, run, k, steps);
-                if !course.is_finite() {
+                if !course.is_sound(&plant) {
                     return None;
                 }
             }

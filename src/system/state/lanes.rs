@@ -12,6 +12,7 @@ impl<const L: usize> PlantState<Lanes<L>> {
             return false;
         }
         self.boiling.clone_from(&first.boiling);
+        self.time_s = first.time_s;
         for (lane, state) in states.iter().enumerate() {
             put(&mut self.row, &state.row, lane);
             put(&mut self.greatest_j, &state.greatest_j, lane);
@@ -23,6 +24,7 @@ impl<const L: usize> PlantState<Lanes<L>> {
     /// Gives the state of one plant back.
     pub(in crate::system) fn part(&self, lane: usize, state: &mut PlantState<f64>) {
         state.boiling.clone_from(&self.boiling);
+        state.time_s = self.time_s;
         take(&self.row, &mut state.row, lane);
         take(&self.greatest_j, &mut state.greatest_j, lane);
         take(&self.piston_ahead_m, &mut state.piston_ahead_m, lane);

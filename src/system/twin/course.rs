@@ -16,7 +16,8 @@ pub(super) struct Course<D> {
 
 impl<D: Scalar> Course<D> {
     /// At a run's first sample.
-    pub fn new(plant: &Plant<D>, state: PlantState<D>, run: &TwinRun) -> Self {
+    pub fn new(plant: &Plant<D>, mut state: PlantState<D>, run: &TwinRun) -> Self {
+        state.time_s = run.times_s.first().copied().unwrap_or(0.0);
         let spans = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         Self { stepper: Stepper::new(plant, &state), state, spans }
     }
@@ -29,6 +30,7 @@ impl<D: Scalar> Course<D> {
             *span = InputSpan { value: values[k - 1], slope: (values[k] - values[k - 1]) / (to - from) };
         }
         self.stepper.plant_changed();
+        self.state.time_s = from;
         let mut pulling = plant.pulling::<0>(&Instant::of(&self.state, &self.spans, 0.0));
         for _ in 0..steps {
             self.stepper.advance(plant, &mut self.state, &mut self.spans, h, &mut pulling, &mut ());
@@ -38,8 +40,9 @@ impl<D: Scalar> Course<D> {
         }
     }
 
-    /// Whether it has not diverged.
-    pub fn is_finite(&self) -> bool {
-        self.state.y().iter().all(|y| y.is_finite())
+    /// Whether it has not diverged, and no law has left the range in which it means anything.
+    pub fn is_sound(&self, plant: &Plant<D>) -> bool {
+        let is_lawful = || plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, &self.state, &self.spans));
+        self.state.y().iter().all(|y| y.is_finite()) && is_lawful()
     }
 }

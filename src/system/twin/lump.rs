@@ -6,18 +6,18 @@ use crate::mechanism::{Mechanism, Route};
 use crate::scene::Scene;
 use crate::system::PlantState;
 use crate::system::SystemError;
-use crate::system::build::Built;
+use crate::system::build::{Built, slides};
 use crate::system::plant::{CoordinateStop, Coordinates, Plant};
 
 /// A plant on few coordinates.
 pub(super) struct Lumped {
     pub plant: Plant<f64>,
     pub state: PlantState<f64>,
-    pub joints: usize,
     /// Of each coordinate (muscle ends too): how many hinges it stands for.
     pub hinges: Vec<usize>,
-    /// Names of the joints of each joint coordinate.
+    /// Names of the joints of each joint coordinate, and whether they slide.
     pub names: Vec<Vec<String>>,
+    pub slides: Vec<bool>,
     pub spring_table: Vec<Option<usize>>,
 }
 
@@ -50,7 +50,8 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
         mechanism.iter().flat_map(|m| m.coordinates()).map(|coordinate| coordinate.name.clone()).collect();
     let joints = names.len();
     let inertia = joint_inertia(mechanism, joints);
-    let groups = groups(full, joints, &built.state, &inertia);
+    let alone: Vec<bool> = names.iter().map(|name| has_own_law(scene, name)).collect();
+    let groups = groups(full, &alone, &built.state, &inertia);
     let shares = Shares::of(&groups, joints, full.dim());
     let entry = |i: usize, j: usize| match i < joints && j < joints {
         true => inertia[(i, j)],
@@ -74,7 +75,14 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let group_names: Vec<Vec<String>> = groups.iter().map(|g| g.iter().map(|&i| names[i].clone()).collect()).collect();
     let tables = scene.file.mechanism.as_ref().map_or(&[][..], |m| &m.joint);
     let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
-    Ok(Lumped { joints: groups.len(), plant, state, hinges, names: group_names, spring_table })
+    let kinds = slides(mechanism.map_or(&[][..], Mechanism::coordinates));
+    let slides = groups.iter().map(|g| kinds[g[0]]).collect();
+    Ok(Lumped { plant, state, hinges, names: group_names, slides, spring_table })
+}
+
+/// Whether a law names this very joint.
+fn has_own_law(scene: &Scene, joint: &str) -> bool {
+    scene.laws.iter().any(|law| law.address.of.as_deref() == Some(joint))
 }
 
 fn joint_inertia(mechanism: Option<&Mechanism>, joints: usize) -> DMatrix<f64> {
@@ -140,7 +148,8 @@ impl Shares {
 }
 
 /// Joints that may be joined: equal in lever, spring, damper, rest, start and stops, and without a muscle on them.
-fn groups(plant: &Plant<f64>, joints: usize, state: &PlantState<f64>, inertia: &DMatrix<f64>) -> Vec<Vec<usize>> {
+fn groups(plant: &Plant<f64>, alone: &[bool], state: &PlantState<f64>, inertia: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let joints = alone.len();
     let c = &plant.coordinates;
     let stops = |i: usize| -> Vec<CoordinateStop> {
         c.stops.iter().filter(|s| s.coordinate == i).map(|s| CoordinateStop { coordinate: 0, ..*s }).collect()
@@ -160,7 +169,8 @@ fn groups(plant: &Plant<f64>, joints: usize, state: &PlantState<f64>, inertia: &
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for i in 0..joints {
-        let home = groups.iter_mut().find(|g| !bears_muscle(i) && !bears_muscle(g[0]) && alike(g[0], i));
+        let stays = |i: usize| alone[i] || bears_muscle(i);
+        let home = groups.iter_mut().find(|g| !stays(i) && !stays(g[0]) && alike(g[0], i));
         match home {
             Some(group) => group.push(i),
             None => groups.push(vec![i]),

@@ -13,7 +13,7 @@ use crate::system::plant::Plant;
 
 use super::course::Course;
 use super::output::Sensors;
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Twin, TwinParameter, TwinRun, TwinSetting};
 
 /// Settings taken together, at most.
 const TOGETHER: usize = 8;
@@ -97,7 +97,7 @@ impl Twin {
     }
 
     fn through_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let mut sensors = Sensors::new(&self.outputs, &setting.effects);
+        let mut sensors = Sensors::new(&self.outputs, setting);
         let channels = self.outputs.iter().zip(series);
         let mut show = |(output, values): (_, &Vec<f64>)| {
             run.times_s.iter().zip(values).map(|(&time_s, &value)| sensors.show(output, time_s, value)).collect()
@@ -109,6 +109,7 @@ impl Twin {
 fn without_sensors(setting: &TwinSetting<f64>) -> TwinSetting<f64> {
     let mut body = setting.clone();
     body.effects.retain(|effect| effect.element.kind != ElementKind::Sensor);
+    body.parameters.retain(|(parameter, _)| !matches!(parameter, TwinParameter::SensorLaw(..)));
     body
 }
 
@@ -206,7 +207,7 @@ impl<const L: usize> Bundle<'_, L> {
         if self.phase == Phase::Together {
             self.before.clone_from(&self.course.state);
             self.course.advance(&self.plant, self.run, k, steps);
-            let is_finite = self.course.is_finite();
+            let is_finite = self.course.is_sound(&self.plant);
             if !take_disagreement() && is_finite {
                 self.patience /= 2;
                 return;
@@ -215,7 +216,7 @@ impl<const L: usize> Bundle<'_, L> {
         }
         for single in self.apart.iter_mut().filter(|single| !single.has_diverged) {
             single.course.advance(&single.plant, self.run, k, steps);
-            single.has_diverged = !single.course.is_finite();
+            single.has_diverged = !single.course.is_sound(&single.plant);
         }
         self.reunite();
     }

@@ -1,12 +1,15 @@
 //! Output channels of the fast model.
 
 use crate::effects::{Effect, Kind, Sensor, SensorHistory};
+use crate::laws::Law;
 use crate::recording::parse_column;
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
 use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::axis::{Axis, AxisFriction, AxisNumbers};
+use crate::system::channels::sensor_laws;
+use crate::system::laws::LawSensor;
 use crate::system::plant::{Drive, InputSpan, Plant};
 
 use super::lump::Lumped;
@@ -31,6 +34,8 @@ pub(super) struct TwinOutput {
     pub column: String,
     reader: Reader,
     factor: f64,
+    /// Laws on what it shows.
+    pub laws: Vec<Law>,
 }
 
 impl TwinOutput {
@@ -80,7 +85,8 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
         message: format!("the fast model has no {:?} of {of:?}", spec.quantity),
         remedy: "leave this channel out of the recordings".to_owned(),
     })?;
-    Ok(TwinOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor })
+    let laws = sensor_laws(&scene.laws, &spec.channel).cloned().collect();
+    Ok(TwinOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor, laws })
 }
 
 fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
@@ -91,22 +97,40 @@ fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
     lumped.names.iter().enumerate().filter_map(part).collect()
 }
 
-/// Sensor effects on the channels.
-pub(super) struct Sensors<D>(Vec<(String, SensorHistory<D>)>);
+/// Sensor effects and laws on the channels.
+pub(super) struct Sensors<D> {
+    effects: Vec<(String, SensorHistory<D>)>,
+    laws: Vec<(String, LawSensor<D>)>,
+}
 
 impl<D: Scalar> Sensors<D> {
-    pub fn new(outputs: &[TwinOutput], effects: &[Effect<D>]) -> Self {
-        let sensors = effects.iter().filter_map(|e| {
+    pub fn new(outputs: &[TwinOutput], setting: &TwinSetting<D>) -> Self {
+        let effects = setting.effects.iter().filter_map(|e| {
             let channel = e.channel.clone().filter(|c| outputs.iter().any(|o| o.column == *c))?;
             sensor(e).map(|s| (channel, SensorHistory::new(s)))
         });
-        Self(sensors.collect())
+        let laws = outputs.iter().enumerate().flat_map(|(o, output)| {
+            output.laws.iter().enumerate().map(move |(l, law)| {
+                let mut values: Vec<D> = law.values().into_iter().map(D::constant).collect();
+                for (parameter, value) in &setting.parameters {
+                    if let TwinParameter::SensorLaw(_, _, p) = parameter
+                        && *parameter == TwinParameter::SensorLaw(o, l, *p)
+                    {
+                        values[*p] = *value;
+                    }
+                }
+                (output.column.clone(), LawSensor::new(law, values, output.factor))
+            })
+        });
+        Self { effects: effects.collect(), laws: laws.collect() }
     }
 
     /// The value as the channel's sensors show it.
     pub fn show(&mut self, output: &TwinOutput, time_s: f64, value: D) -> D {
-        let own = self.0.iter_mut().filter(|(c, _)| *c == output.column);
-        own.fold(value, |value, (_, sensor)| sensor.show(time_s, value))
+        let own = self.effects.iter_mut().filter(|(c, _)| *c == output.column);
+        let shown = own.fold(value, |value, (_, sensor)| sensor.show(time_s, value));
+        let laws = self.laws.iter_mut().filter(|(c, _)| *c == output.column);
+        laws.fold(shown, |value, (_, law)| law.show(time_s, value))
     }
 }
 
@@ -136,7 +160,7 @@ pub(super) fn axis_series<D: Scalar>(
         }
     }
     let mut friction = AxisFriction::of(&setting.effects);
-    let mut sensors = Sensors::new(outputs, &setting.effects);
+    let mut sensors = Sensors::new(outputs, setting);
     let motion = axis.motion(&run.times_s, &run.inputs);
     let mut series = vec![Vec::with_capacity(run.times_s.len()); outputs.len()];
     for (k, &time) in run.times_s.iter().enumerate() {

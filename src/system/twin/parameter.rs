@@ -25,6 +25,10 @@ pub enum TwinParameter {
     /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
     JointStiffness(Vec<(usize, f64)>),
     Axis(AxisNumber),
+    /// A parameter of a law of the scene: both by index.
+    Law(usize, usize),
+    /// A parameter of a law on what a channel shows: output, law on it, parameter.
+    SensorLaw(usize, usize, usize),
 }
 
 /// The parameter of a full scene key.
@@ -59,6 +63,18 @@ fn resolve_named(twin: &Twin, key: &str) -> Option<TwinParameter> {
             let by_number = name.parse().ok().filter(|i| *i < twin.cable_names.len());
             Some(TwinParameter::CableStiffness(by_name.or(by_number)?))
         }
+        ["law", name, "parameter", parameter, "value"] => {
+            let laws = twin.plant.laws.as_ref().map_or(&[][..], |laws| laws.laws());
+            if let Some(law) = laws.iter().position(|law| law.name == *name) {
+                return Some(TwinParameter::Law(law, laws[law].parameter(parameter)?));
+            }
+            let shown = twin.outputs.iter().enumerate().find_map(|(o, output)| {
+                let law = output.laws.iter().position(|law| law.name == *name)?;
+                Some((o, law, &output.laws[law]))
+            });
+            let (output, at, law) = shown?;
+            Some(TwinParameter::SensorLaw(output, at, law.parameter(parameter)?))
+        }
         ["mechanism", "joint", number, "stiffness_n_m_rad" | "stiffness_n_m"] => {
             let number: usize = number.parse().ok()?;
             let springs = twin.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
@@ -77,7 +93,12 @@ impl TwinParameter {
             Self::JointStiffness(springs) => {
                 springs.iter().for_each(|(i, share)| plant.coordinates.stiffness[*i] = value * *share);
             }
-            Self::Axis(_) => {}
+            Self::Axis(_) | Self::SensorLaw(..) => {}
+            Self::Law(law, parameter) => {
+                if let Some(laws) = &mut plant.laws {
+                    laws.set(*law, *parameter, value);
+                }
+            }
             _ => plant.muscles.iter_mut().for_each(|m| self.put_in_muscle(value, m)),
         }
     }

@@ -50,7 +50,7 @@ impl Twin {
             loop {
                 let mut fine = course.clone();
                 fine.advance(&plant, run, k, 2 * steps);
-                if !fine.is_finite() {
+                if !fine.is_sound(&plant) {
                     return None;
                 }
                 let pairs = shown(&coarse).into_iter().zip(shown(&fine));

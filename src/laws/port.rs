@@ -1,0 +1,425 @@
+//! The places of the chain at which a law can act.
+
+use std::fmt;
+
+use super::quantity::Quantity as Q;
+use super::{Acts, Dimension, Quantity};
+use crate::nearest::did_you_mean;
+
+/// A named term or coefficient of an element's equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Port {
+    Plunger,
+    SyringeFlow,
+    SyringeCompliance,
+    PressureDrop,
+    Resistance,
+    Inertance,
+    Outflow,
+    LineCompliance,
+    Pull,
+    Wall,
+    Coil,
+    Friction,
+    Damping,
+    Area,
+    RestLength,
+    Tension,
+    Stretch,
+    CableStiffness,
+    Lever,
+    Transmission,
+    Torque,
+    JointStiffness,
+    JointDamping,
+    Sensor,
+}
+
+/// What carries a port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// Plunger, syringe, line or muscle: there is one of each for every muscle of a rig.
+    Muscle,
+    Cable,
+    Joint,
+    Sensor,
+}
+
+/// A port as it is described.
+#[derive(Clone, Copy, Debug)]
+pub struct PortSpec {
+    pub port: Port,
+    /// `muscle.friction` as element and term; a plunger has no terms.
+    pub element: &'static str,
+    pub term: &'static str,
+    pub carrier: Carrier,
+    /// Units of what may be added; empty where nothing may be. A joint that slides has the second one.
+    pub adds: &'static [&'static str],
+    pub scales: bool,
+    /// One line: what it means, and which sign does what.
+    pub means: &'static str,
+    /// An example: whether it adds or scales, and the expression.
+    pub example: (Acts, &'static str),
+    /// Whether what stands here takes energy from the rig: a law that gives some is warned about.
+    pub dissipates: bool,
+}
+
+const MUSCLE: &[Quantity] = &[
+    Q::Elongation,
+    Q::Speed,
+    Q::Pressure,
+    Q::SyringePressure,
+    Q::Flow,
+    Q::Plunger,
+    Q::PlungerSpeed,
+    Q::FrictionState,
+    Q::Tension,
+    Q::Angle,
+    Q::AngularSpeed,
+    Q::Time,
+];
+const PLUNGER: &[Quantity] = &[Q::Pressure, Q::Plunger, Q::PlungerSpeed, Q::Time];
+const CABLE: &[Quantity] =
+    &[Q::Stretch, Q::Tension, Q::Angle, Q::AngularSpeed, Q::Elongation, Q::Speed, Q::Pressure, Q::Time];
+const JOINT: &[Quantity] = &[Q::Angle, Q::AngularSpeed, Q::Position, Q::Speed, Q::Tension, Q::Pressure, Q::Elongation, Q::Time];
+const SENSOR: &[Quantity] = &[Q::Reading, Q::Time];
+
+const fn port(
+    port: Port,
+    (element, term, carrier): (&'static str, &'static str, Carrier),
+    (adds, scales, dissipates): (&'static [&'static str], bool, bool),
+    means: &'static str,
+    example: (Acts, &'static str),
+) -> PortSpec {
+    PortSpec { port, element, term, carrier, adds, scales, means, example, dissipates }
+}
+
+use Acts::{Adds, Scales};
+use Carrier as C;
+
+/// Every port, in the order of [`Port`].
+pub const PORTS: [PortSpec; 24] = [
+    port(
+        Port::Plunger,
+        ("plunger", "", C::Muscle),
+        (&["m"], false, false),
+        "how far the piston is ahead of the recorded plunger: play, a drive that yields (> 0: further in)",
+        (Adds, "-compliance_m_pa * pressure_pa"),
+    ),
+    port(
+        Port::SyringeFlow,
+        ("syringe", "flow", C::Muscle),
+        (&["m3/s"], false, true),
+        "flow that leaves the fluid before the line: a seal that leaks",
+        (Adds, "conductance_m3_s_pa * pressure_pa"),
+    ),
+    port(
+        Port::SyringeCompliance,
+        ("syringe", "compliance", C::Muscle),
+        (&["m3/Pa"], true, false),
+        "compliance before the line: barrel, stopper, hose",
+        (Scales, "1 + a * pressure_pa / scale_pa"),
+    ),
+    port(
+        Port::PressureDrop,
+        ("line", "pressure_drop", C::Muscle),
+        (&["Pa"], true, true),
+        "viscous pressure drop over the line, falling towards the muscle; scaled as a whole",
+        (Adds, "q_pa_s2_m6 * flow_m3_s * abs(flow_m3_s)"),
+    ),
+    port(
+        Port::Resistance,
+        ("line", "resistance", C::Muscle),
+        (&["Pa s/m3"], true, true),
+        "viscous resistance of the line",
+        (Scales, "1 + a * (flow_m3_s < 0)"),
+    ),
+    port(
+        Port::Inertance,
+        ("line", "inertance", C::Muscle),
+        (&["Pa s2/m3"], true, false),
+        "inertia of the fluid in the line",
+        (Scales, "1 + a"),
+    ),
+    port(
+        Port::Outflow,
+        ("line", "outflow", C::Muscle),
+        (&["m3/s"], false, true),
+        "flow that leaves the fluid after the line: a leak",
+        (Adds, "conductance_m3_s_pa * max(pressure_pa - opening_pa, 0)"),
+    ),
+    port(
+        Port::LineCompliance,
+        ("line", "compliance", C::Muscle),
+        (&["m3/Pa"], true, false),
+        "compliance after the line: air, fittings, swelling",
+        (Adds, "volume_m3 * atmosphere_pa / (atmosphere_pa + pressure_pa)^2"),
+    ),
+    port(
+        Port::Pull,
+        ("muscle", "pull", C::Muscle),
+        (&["N"], true, false),
+        "force of the muscle on its end, > 0 pulls more; scaled as a whole, without the closed coil's stop",
+        (Adds, "stiffness_n_m * max(elongation_m - taut_m, 0)"),
+    ),
+    port(
+        Port::Wall,
+        ("muscle", "wall", C::Muscle),
+        (&["N"], true, false),
+        "pull of the rubber wall",
+        (Scales, "1 - a * ln(1 + time_s / ageing_s)"),
+    ),
+    port(
+        Port::Coil,
+        ("muscle", "coil", C::Muscle),
+        (&["N"], true, false),
+        "pull of the coil",
+        (Adds, "preload_n * tanh(elongation_m / opening_m)"),
+    ),
+    port(
+        Port::Friction,
+        ("muscle", "friction", C::Muscle),
+        (&["N"], true, true),
+        "level of the friction between tube and coil, m0 + m1 p; the friction state gives it its direction",
+        (Scales, "1 + a * exp(-abs(speed_m_s) / speed_scale_m_s)"),
+    ),
+    port(
+        Port::Damping,
+        ("muscle", "damping", C::Muscle),
+        (&["N"], true, true),
+        "viscous force c v, > 0 while the muscle grows longer",
+        (Adds, "c3_n * (speed_m_s / speed_scale_m_s)^3"),
+    ),
+    port(
+        Port::Area,
+        ("muscle", "area", C::Muscle),
+        (&["m2"], true, false),
+        "effective area: what pressure adds to the pull is what motion takes from the fluid",
+        (Scales, "1 + growth_1_m * elongation_m"),
+    ),
+    port(
+        Port::RestLength,
+        ("muscle", "rest_length", C::Muscle),
+        (&["m"], false, false),
+        "by how much wall and coil have become longer: set, swelling",
+        (Adds, "rate_m_s * time_s"),
+    ),
+    port(
+        Port::Tension,
+        ("cable", "tension", C::Cable),
+        (&["N"], true, false),
+        "tension of a taut cable; never below zero",
+        (Scales, "1 - a * angle_rad^2"),
+    ),
+    port(
+        Port::Stretch,
+        ("cable", "stretch", C::Cable),
+        (&["m"], false, false),
+        "stretch of the cable: < 0 is slack",
+        (Adds, "-slack_m"),
+    ),
+    port(
+        Port::CableStiffness,
+        ("cable", "stiffness", C::Cable),
+        (&["N"], true, false),
+        "elastic part of the tension, k s",
+        (Scales, "1 + a * stretch_m / scale_m"),
+    ),
+    port(
+        Port::Lever,
+        ("cable", "lever", C::Cable),
+        (&["m"], true, false),
+        "lever of the cable on the joints; its travel is the integral of the lever, so that no work is lost",
+        (Scales, "1 + a * sin(angle_rad)"),
+    ),
+    port(
+        Port::Transmission,
+        ("cable", "transmission", C::Cable),
+        (&["1"], true, true),
+        "share of the tension that arrives at the joints",
+        (Scales, "exp(-mu * abs(angle_rad))"),
+    ),
+    port(
+        Port::Torque,
+        ("joint", "torque", C::Joint),
+        (&["N m", "N"], true, false),
+        "torque on a joint (force on a slider), > 0 turns along +angle; scales: that of its own spring and damper",
+        (Adds, "-torque_n_m * tanh(angular_speed_rad_s / speed_rad_s)"),
+    ),
+    port(
+        Port::JointStiffness,
+        ("joint", "stiffness", C::Joint),
+        (&["N m", "N"], true, false),
+        "torque of the joint's own spring, > 0 turns back",
+        (Scales, "1 + a * angle_rad^2"),
+    ),
+    port(
+        Port::JointDamping,
+        ("joint", "damping", C::Joint),
+        (&["N m", "N"], true, true),
+        "torque of the joint's own damper, > 0 against +angle",
+        (Adds, "c_n_m_s_rad * angular_speed_rad_s * abs(angle_rad)"),
+    ),
+    port(
+        Port::Sensor,
+        ("sensor", "CHANNEL", C::Sensor),
+        (&[], true, false),
+        "what a channel shows; added in the SI unit of the channel",
+        (Scales, "1 + a * time_s / scale_s"),
+    ),
+];
+
+impl Port {
+    /// How it is described.
+    pub fn spec(self) -> &'static PortSpec {
+        &PORTS[self as usize]
+    }
+}
+
+impl PortSpec {
+    /// `muscle.friction`.
+    pub fn name(&self) -> String {
+        if self.term.is_empty() { self.element.to_owned() } else { format!("{}.{}", self.element, self.term) }
+    }
+
+    /// What a law here can depend on without a number in the name.
+    pub fn variables(&self) -> &'static [Quantity] {
+        match self.port {
+            Port::Plunger => PLUNGER,
+            _ => match self.carrier {
+                Carrier::Muscle => MUSCLE,
+                Carrier::Cable => CABLE,
+                Carrier::Joint => JOINT,
+                Carrier::Sensor => SENSOR,
+            },
+        }
+    }
+
+    /// Units of what may be added.
+    pub fn added_units(&self) -> impl Iterator<Item = Dimension> {
+        self.adds.iter().filter_map(|unit| Dimension::parse(unit).ok())
+    }
+}
+
+/// A port of one rig: `muscle_2.friction`, `joint(pulley).torque`, `sensor.angle_deg`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Address {
+    pub port: Port,
+    /// Counts from 0; none means all there are.
+    pub number: Option<usize>,
+    /// Name of the joint or of the channel.
+    pub of: Option<String>,
+}
+
+impl Address {
+    /// Reads the address of a port.
+    ///
+    /// ```
+    /// use smam::laws::{Address, Port};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let second = Address::parse("muscle_2.friction").map_err(|(message, _)| message)?;
+    /// assert_eq!((second.port, second.number), (Port::Friction, Some(1)));
+    /// assert_eq!(second.to_string(), "muscle_2.friction");
+    /// assert!(Address::parse("muscle.frction").is_err_and(|(message, _)| message.contains("muscle.friction")));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// What is none, with the nearest that is one, and what to write instead.
+    pub fn parse(text: &str) -> Result<Self, (String, String)> {
+        let text = text.trim();
+        let unknown = || {
+            let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
+            let known: Vec<&str> = names.iter().map(String::as_str).collect();
+            let near = did_you_mean(text, &known);
+            (format!("port = \"{text}\" is no port{near}"), "`smam laws` lists the ports".to_owned())
+        };
+        let (element, term) = text.split_once('.').unwrap_or((text, ""));
+        if element == "sensor" && !term.is_empty() {
+            return Ok(Self { port: Port::Sensor, number: None, of: Some(term.to_owned()) });
+        }
+        let named = element.strip_suffix(')').and_then(|e| e.split_once('('));
+        let (element, of) = named.map_or((element, None), |(e, name)| (e, Some(name.trim().to_owned())));
+        let find = |element: &str| PORTS.iter().find(|p| p.element == element && p.term == term && p.port != Port::Sensor);
+        if let Some(spec) = find(element) {
+            if of.is_some() && spec.carrier != Carrier::Joint {
+                let remedy = format!("number the elements of a rig that has several: {element}_1");
+                return Err((format!("port = \"{text}\": only joints go by name"), remedy));
+            }
+            return Ok(Self { port: spec.port, number: None, of });
+        }
+        let numbered = element.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
+        let found = numbered.and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
+        match found {
+            Some((spec, number)) if of.is_none() && spec.carrier != Carrier::Joint => {
+                Ok(Self { port: spec.port, number: Some(number), of: None })
+            }
+            _ => Err(unknown()),
+        }
+    }
+
+    /// Which of `count` elements it means; none where there is none.
+    pub fn indices(&self, count: usize) -> std::ops::Range<usize> {
+        self.number.map_or(0..count, |n| n.min(count)..(n + 1).min(count))
+    }
+
+    /// Name of the element that it belongs to in answers: `line_1`, `mechanism`, `sensor`.
+    pub fn element(&self) -> String {
+        let name = match self.port.spec().element {
+            "plunger" => "syringe",
+            "joint" => "mechanism",
+            other => other,
+        };
+        self.number.map_or_else(|| name.to_owned(), |n| format!("{name}_{}", n + 1))
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let spec = self.port.spec();
+        f.write_str(spec.element)?;
+        if let Some(number) = self.number {
+            write!(f, "_{}", number + 1)?;
+        }
+        match (&self.of, self.port) {
+            (Some(channel), Port::Sensor) => return write!(f, ".{channel}"),
+            (Some(joint), _) => write!(f, "({joint})")?,
+            (None, _) => {}
+        }
+        if spec.term.is_empty() { Ok(()) } else { write!(f, ".{}", spec.term) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_in_order() {
+        for (i, spec) in PORTS.iter().enumerate() {
+            assert_eq!(spec.port as usize, i, "{}", spec.name());
+            assert!(spec.adds.iter().all(|unit| Dimension::parse(unit).is_ok()), "{}", spec.name());
+        }
+    }
+
+    #[test]
+    fn addresses_go_there_and_back() {
+        for text in [
+            "plunger",
+            "plunger_2",
+            "line.outflow",
+            "line_1.pressure_drop",
+            "muscle_2.rest_length",
+            "joint.torque",
+            "joint(notch_3).stiffness",
+            "sensor.angle_deg",
+        ] {
+            assert_eq!(Address::parse(text).unwrap_or_else(|e| panic!("{e:?}")).to_string(), text);
+        }
+        for wrong in ["", "muscle", "muscle_0.friction", "muscle.speed", "joint_1.torque", "muscle(a).pull", "sensor"] {
+            assert!(Address::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,371 @@
+//! From a table to a law: names, units, ranges.
+
+use std::sync::Arc;
+
+use super::law::{Law, Memory, Parameter, Programs, State, StateTrees, Symbol};
+use super::port::{Address, Port, PortSpec};
+use super::quantity::{QUANTITIES, Variable};
+use super::syntax::{SyntaxError, parse};
+use super::table::{LawTable, ParameterTable, StateTable};
+use super::tree::{Function, Node, Operator};
+use super::units::{Unit, said, unit_of};
+use super::{Acts, Dimension};
+use crate::nearest::did_you_mean;
+
+/// What is wrong with a [`LawTable`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct LawError {
+    pub message: String,
+    pub remedy: String,
+}
+
+fn refuse(message: impl Into<String>, remedy: impl Into<String>) -> LawError {
+    LawError { message: message.into(), remedy: remedy.into() }
+}
+
+/// What a law may know besides its element: the run's conditions that are numbers, and a channel's unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    pub conditions: Vec<(String, f64)>,
+    /// SI unit of the channel that a sensor's law acts on.
+    pub channel: Option<Dimension>,
+}
+
+impl LawTable {
+    /// Reads the expressions, checks names and units, and compiles.
+    ///
+    /// ```
+    /// use smam::laws::{LawTable, Surroundings};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let table: LawTable = toml::from_str(
+    ///     "name = 'breakaway'
+    ///      port = 'muscle.friction'
+    ///      scales = '1 + a * exp(-abs(speed_m_s) / speed_scale_m_s)'
+    ///      parameter.a = { value = 0.4, min = 0.0, max = 5.0 }
+    ///      parameter.speed_scale_m_s = { value = 2e-3 }",
+    /// )?;
+    /// let law = table.law(&Surroundings::default())?;
+    /// assert_eq!(law.values(), [0.4, 2e-3]);
+    /// // Without its scale the speed is no plain number.
+    /// let wrong = LawTable { scales: Some("1 + a * exp(-abs(speed_m_s))".to_owned()), ..table };
+    /// assert!(wrong.law(&Surroundings::default()).is_err_and(|e| e.message.contains("m/s")));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// Names, expressions, units and numbers that are not right, each with key and remedy.
+    pub fn law(&self, around: &Surroundings) -> Result<Law, LawError> {
+        check_name("name", &self.name)?;
+        let address = Address::parse(&self.port).map_err(|(message, remedy)| refuse(message, remedy))?;
+        let (acts, expression) = self.expression(&address)?;
+        let reader = Reader::new(self, &address, around)?;
+        reader.read(acts, expression)
+    }
+
+    fn expression(&self, address: &Address) -> Result<(Acts, &str), LawError> {
+        let spec = address.port.spec();
+        match (&self.adds, &self.scales) {
+            (Some(adds), None) => Ok((Acts::Adds, adds)),
+            (None, Some(scales)) if spec.scales => Ok((Acts::Scales, scales)),
+            (None, Some(_)) => Err(refuse(
+                format!("scales: nothing stands at {address} that could be scaled"),
+                format!("write adds = \"...\", in {}", spec.adds.first().unwrap_or(&"the channel's unit")),
+            )),
+            (Some(_), Some(_)) => Err(refuse("adds and scales stand side by side", "write two laws")),
+            (None, None) => {
+                let (acts, example) = spec.example;
+                Err(refuse("there is no expression", format!("write {} = \"{example}\"", acts.word())))
+            }
+        }
+    }
+}
+
+/// Names are words: they stand in keys and expressions.
+fn check_name(key: &str, name: &str) -> Result<(), LawError> {
+    let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_word {
+        return Ok(());
+    }
+    Err(refuse(format!("{key} = \"{name}\" is no word"), "use letters, digits and _, and begin with a letter"))
+}
+
+struct Reader<'a> {
+    table: &'a LawTable,
+    address: &'a Address,
+    spec: &'static PortSpec,
+    around: &'a Surroundings,
+    parameters: Vec<Parameter>,
+    states: Vec<(&'a str, &'a StateTable)>,
+}
+
+/// Names that the expressions have used so far, each with what it stands for.
+#[derive(Default)]
+struct Used {
+    names: Vec<String>,
+    symbols: Vec<Symbol>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(table: &'a LawTable, address: &'a Address, around: &'a Surroundings) -> Result<Self, LawError> {
+        let parameters =
+            table.parameter.iter().map(|(name, p)| parameter(name, p)).collect::<Result<Vec<_>, _>>()?;
+        let states: Vec<_> = table.state.iter().map(|(name, s)| (name.as_str(), s)).collect();
+        let reader = Self { table, address, spec: address.port.spec(), around, parameters, states };
+        reader.check_names()?;
+        Ok(reader)
+    }
+
+    /// A name means one thing.
+    fn check_names(&self) -> Result<(), LawError> {
+        let own = self.parameters.iter().map(|p| ("parameter", p.name.as_str()));
+        let names: Vec<(&str, &str)> = own.chain(self.states.iter().map(|(name, _)| ("state", *name))).collect();
+        for (i, (key, name)) in names.iter().enumerate() {
+            check_name(key, name)?;
+            let is_function = Function::NAMED.iter().any(|(f, _)| f == name) || ["min", "max"].contains(name);
+            let is_taken = names[..i].iter().any(|(_, other)| other == name)
+                || Variable::parse(name, self.spec.variables()).is_some()
+                || self.around.conditions.iter().any(|(condition, _)| condition == name);
+            if is_function || is_taken {
+                return Err(refuse(format!("{key}.{name}: the name is taken"), "give it another name"));
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&self, acts: Acts, expression: &str) -> Result<Law, LawError> {
+        let mut used = Used::default();
+        let value = self.tree(acts.word(), expression, &mut used)?;
+        let gate = self.table.when.as_ref().map(|when| self.tree("when", when, &mut used)).transpose()?;
+        let mut trees = Vec::new();
+        let mut units: Vec<Unit> = vec![Unit::Open; self.states.len()];
+        for (i, (name, state)) in self.states.iter().enumerate() {
+            let (tree, unit) = self.state(name, state, &mut used)?;
+            trees.push(tree);
+            units[i] = unit;
+        }
+        let unit = |tree: &Node| self.unit(tree, &used, &units);
+        self.check_value(acts, &unit(&value).map_err(|e| self.wrong_unit(acts.word(), &e))?)?;
+        for (tree, (name, _)) in trees.iter().zip(&self.states) {
+            self.check_state(name, tree, &used, &units)?;
+        }
+        if let Some(gate) = &gate {
+            unit(gate).map_err(|e| self.wrong_unit("when", &e))?;
+        }
+        self.check_used(&used)?;
+        let whole = gated(acts, value, gate);
+        let states = self.states.iter().map(|(name, s)| State {
+            name: (*name).to_owned(),
+            memory: memory(s),
+            follows_start: s.rate.is_none() && s.start.is_none(),
+        });
+        Ok(Law {
+            name: self.table.name.clone(),
+            address: self.address.clone(),
+            acts,
+            expression: expression.to_owned(),
+            when: self.table.when.clone(),
+            parameters: self.parameters.clone().into(),
+            states: states.collect(),
+            programs: Arc::new(Programs::new(&whole, &trees, &used.symbols)),
+            symbols: used.symbols.into(),
+        })
+    }
+
+    /// Reads the expression of a key.
+    fn tree(&self, key: &str, text: &str, used: &mut Used) -> Result<Node, LawError> {
+        let mut resolve = |name: &str| self.symbol(name, used);
+        parse(text, &mut resolve).map_err(|SyntaxError { at, message, remedy }| {
+            let before = text[..at].chars().count();
+            refuse(format!("{key} = \"{text}\": at character {}: {message}", before + 1), remedy)
+        })
+    }
+
+    fn symbol(&self, name: &str, used: &mut Used) -> Result<usize, (String, String)> {
+        if let Some(known) = used.names.iter().position(|n| n == name) {
+            return Ok(known);
+        }
+        let parameter = || self.parameters.iter().position(|p| p.name == name).map(Symbol::Parameter);
+        let state = || self.states.iter().position(|(s, _)| *s == name).map(Symbol::State);
+        let variable = || Variable::parse(name, self.spec.variables()).map(Symbol::Variable);
+        let condition = || self.around.conditions.iter().find(|(c, _)| c == name).map(|(_, x)| Symbol::Constant(*x));
+        let found = parameter().or_else(state).or_else(variable).or_else(condition);
+        let symbol = found.ok_or_else(|| self.unknown(name))?;
+        used.names.push(name.to_owned());
+        used.symbols.push(symbol);
+        Ok(used.names.len() - 1)
+    }
+
+    fn unknown(&self, name: &str) -> (String, String) {
+        let variables: Vec<String> = self.spec.variables().iter().map(|q| q.spec().name()).collect();
+        let own = self.parameters.iter().map(|p| p.name.as_str()).chain(self.states.iter().map(|(s, _)| *s));
+        let conditions = self.around.conditions.iter().map(|(c, _)| c.as_str());
+        let known: Vec<&str> = variables.iter().map(String::as_str).chain(own).chain(conditions).collect();
+        let elsewhere = QUANTITIES.iter().any(|q| q.name() == name);
+        let message = match elsewhere {
+            true => format!("{} has no {name} of its own", self.spec.name()),
+            false => format!("there is no variable or parameter \"{name}\"{}", did_you_mean(name, &known)),
+        };
+        let port = self.spec.name();
+        let remedy = format!(
+            "`smam laws {port}` lists the variables ({}); a number of your own is parameter.{name} = {{ value = 1.0 }}",
+            variables.join(", ")
+        );
+        (message, remedy)
+    }
+
+    fn unit(&self, tree: &Node, used: &Used, states: &[Unit]) -> Result<Unit, String> {
+        let of = |i: usize| match used.symbols[i] {
+            Symbol::Variable(v) if v.quantity == super::Quantity::Reading => {
+                self.around.channel.map_or(Unit::Open, Unit::Known)
+            }
+            Symbol::Variable(v) => Unit::Known(v.quantity.dimension()),
+            Symbol::Parameter(p) => Unit::Known(self.parameters[p].dimension),
+            Symbol::State(s) => states[s],
+            Symbol::Constant(_) => Unit::Known(Dimension::of_name(&used.names[i]).unwrap_or(Dimension::NONE)),
+        };
+        unit_of(tree, &of, &used.names)
+    }
+
+    fn wrong_unit(&self, key: &str, why: &str) -> LawError {
+        refuse(
+            format!("{key}: the units do not come out: {why}"),
+            "divide by a scale in the same unit; a parameter's unit is what its name ends in (speed_scale_m_s), or unit = \"m/s\"",
+        )
+    }
+
+    fn check_value(&self, acts: Acts, unit: &Unit) -> Result<(), LawError> {
+        let wanted: Vec<Dimension> = match (acts, self.address.port) {
+            (Acts::Scales, _) => vec![Dimension::NONE],
+            (Acts::Adds, Port::Sensor) => self.around.channel.into_iter().collect(),
+            (Acts::Adds, _) => self.spec.added_units().collect(),
+        };
+        if wanted.is_empty() || wanted.iter().any(|d| unit.can_be(*d)) {
+            return Ok(());
+        }
+        let words: Vec<String> = wanted.iter().map(Dimension::to_string).collect();
+        let wanted = words.join(" or ");
+        Err(refuse(
+            format!("{}: the units do not come out: {} takes {wanted}, the expression is in {}", acts.word(), self.address, said(*unit)),
+            format!("multiply by a parameter whose unit is missing, so that {wanted} comes out"),
+        ))
+    }
+
+    fn state(&self, name: &str, table: &StateTable, used: &mut Used) -> Result<(StateTrees, Unit), LawError> {
+        let given = [&table.rate, &table.greatest, &table.play_of].into_iter().flatten().count();
+        if given != 1 {
+            return Err(refuse(
+                format!("state.{name}: exactly one of rate, greatest and play_of is needed"),
+                format!("write state.{name} = {{ rate = \"(elongation_m - {name}) / tau_s\", start = \"elongation_m\" }}"),
+            ));
+        }
+        if table.play_of.is_some() != table.width.is_some() {
+            let remedy = format!("write state.{name} = {{ play_of = \"plunger_m\", width = \"width_m\" }}");
+            return Err(refuse(format!("state.{name}: play_of and width go together"), remedy));
+        }
+        let mut part = |key: &str, text: &Option<String>| match text {
+            Some(text) => self.tree(&format!("state.{name}.{key}"), text, used),
+            None => Ok(Node::number(0.0)),
+        };
+        let rate = part("rate", &table.rate)?;
+        let greatest = part("greatest", &table.greatest)?;
+        let play = part("play_of", &table.play_of)?;
+        let width = part("width", &table.width)?;
+        let start = part("start", &table.start)?;
+        let follows = if table.greatest.is_some() { greatest } else { play };
+        let unit = self.unit_of_state(name, table, (&start, &follows), used)?;
+        Ok((StateTrees { rate, start, follows, width }, unit))
+    }
+
+    /// As said, as the name ends, as what it starts from or follows; else it is open.
+    fn unit_of_state(
+        &self,
+        name: &str,
+        table: &StateTable,
+        (start, follows): (&Node, &Node),
+        used: &Used,
+    ) -> Result<Unit, LawError> {
+        if let Some(text) = &table.unit {
+            let unit = Dimension::parse(text).map_err(|e| refuse(format!("state.{name}.unit: {e}"), "use SI units"))?;
+            return Ok(Unit::Known(unit));
+        }
+        if let Some(unit) = Dimension::of_name(name) {
+            return Ok(Unit::Known(unit));
+        }
+        let open = vec![Unit::Open; self.states.len()];
+        let told = |node: &Node| self.unit(node, used, &open).ok().filter(|u| matches!(u, Unit::Known(_)));
+        let by_start = table.start.as_ref().and_then(|_| told(start));
+        Ok(by_start.or_else(|| told(follows)).unwrap_or(Unit::Open))
+    }
+
+    fn check_state(&self, name: &str, tree: &StateTrees, used: &Used, units: &[Unit]) -> Result<(), LawError> {
+        let own = units[self.states.iter().position(|(s, _)| *s == name).unwrap_or(0)];
+        let second = Dimension::of_name("x_s").unwrap_or(Dimension::NONE);
+        for (key, part, per_second) in
+            [("rate", &tree.rate, true), ("start", &tree.start, false), ("width", &tree.width, false)]
+        {
+            let key = format!("state.{name}.{key}");
+            let unit = self.unit(part, used, units).map_err(|e| self.wrong_unit(&key, &e))?;
+            let Unit::Known(own) = own else { continue };
+            let wanted = if per_second { own / second } else { own };
+            if !unit.can_be(wanted) {
+                return Err(self.wrong_unit(&key, &format!("{wanted} is wanted, the expression is in {}", said(unit))));
+            }
+        }
+        let follows = self.unit(&tree.follows, used, units).map_err(|e| self.wrong_unit(&format!("state.{name}"), &e))?;
+        match (own, follows) {
+            (Unit::Known(own), follows) if !follows.can_be(own) => {
+                Err(self.wrong_unit(&format!("state.{name}"), &format!("it is in {own}, what it follows in {}", said(follows))))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A parameter that stands in no expression is a slip of the pen.
+    fn check_used(&self, used: &Used) -> Result<(), LawError> {
+        match self.parameters.iter().find(|p| !used.names.contains(&p.name)) {
+            Some(p) => Err(refuse(format!("parameter.{} stands in no expression", p.name), "use it, or remove it")),
+            None => Ok(()),
+        }
+    }
+}
+
+fn memory(table: &StateTable) -> Memory {
+    match (&table.rate, &table.greatest) {
+        (Some(_), _) => Memory::Rate,
+        (None, Some(_)) => Memory::Greatest,
+        (None, None) => Memory::Play,
+    }
+}
+
+/// The law where its condition is met, and nothing elsewhere.
+fn gated(acts: Acts, value: Node, gate: Option<Node>) -> Node {
+    let Some(gate) = gate else { return value };
+    let neutral = if acts == Acts::Adds { 0.0 } else { 1.0 };
+    let is_met = Node::Of(Function::Abs, Box::new(gate));
+    let beyond = Node::two(Operator::Subtract, value, Node::number(neutral));
+    let gated = Node::Where(Box::new([is_met, Node::number(0.0), beyond, Node::number(0.0)]));
+    Node::two(Operator::Add, gated, Node::number(neutral))
+}
+
+fn parameter(name: &str, table: &ParameterTable) -> Result<Parameter, LawError> {
+    let at = |message: String, remedy: &str| refuse(format!("parameter.{name}: {message}"), remedy);
+    let dimension = match &table.unit {
+        Some(unit) => Dimension::parse(unit).map_err(|e| at(format!("unit: {e}"), "use SI units"))?,
+        None => Dimension::of_name(name).unwrap_or(Dimension::NONE),
+    };
+    let (min, max) = (table.min.unwrap_or(f64::NEG_INFINITY), table.max.unwrap_or(f64::INFINITY));
+    if !table.value.is_finite() {
+        return Err(at(format!("value = {} must be finite", table.value), "give a number in SI units"));
+    }
+    if min.is_nan() || max.is_nan() || min >= max {
+        return Err(at(format!("min = {min} must be < max = {max}"), "give the smaller number as min"));
+    }
+    if table.value < min || table.value > max {
+        return Err(at(format!("value = {} is outside {min} to {max}", table.value), "move the value, or widen the range"));
+    }
+    Ok(Parameter { name: name.to_owned(), value: table.value, min, max, dimension })
+}

@@ -1,0 +1,107 @@
+//! A law as a table of a scene file, and as one line.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[[law]]`: a port of the rig, and an expression that is added to it or scales it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawTable {
+    /// Shown in answers, in the energy balance and in keys (`law.NAME.parameter.a.value`).
+    pub name: String,
+    /// Where it acts: `muscle_1.friction` (`smam laws` lists the ports).
+    pub port: String,
+    /// Expression that is added to the port, in the port's unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adds: Option<String>,
+    /// Expression that the port is multiplied by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scales: Option<String>,
+    /// The law acts where this expression is not zero: `time_s > 10.0`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when: Option<String>,
+    /// The law is not part of the scene: a diagnosis weighs it against everything else.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub candidate: bool,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameter: BTreeMap<String, ParameterTable>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub state: BTreeMap<String, StateTable>,
+}
+
+/// A number of a law; its name ends in its unit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterTable {
+    pub value: f64,
+    /// Outside of it nothing physical is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// Where the name does not end in it: `N s/m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// Memory of a law. Exactly one of `rate`, `greatest` and `play_of`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StateTable {
+    /// Its rate of change, the state's unit per second: a lag `(elongation_m - s) / tau_s`, an integral `flow_m3_s`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<String>,
+    /// The greatest value of this expression so far.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub greatest: Option<String>,
+    /// Follows this expression with a dead zone of `width` in all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub play_of: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width: Option<String>,
+    /// Where it starts; 0 for a rate, the expression's first value for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<String>,
+    /// Where neither its name nor `start` tells it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+impl LawTable {
+    /// Reads the short form: `muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)`.
+    ///
+    /// ```
+    /// use smam::laws::LawTable;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let law = LawTable::parse("line.outflow adds 1e-17 * pressure_pa", "mine").map_err(|(message, _)| message)?;
+    /// assert_eq!((law.port.as_str(), law.adds.as_deref()), ("line.outflow", Some("1e-17 * pressure_pa")));
+    /// assert!(LawTable::parse("line.outflow 1e-17", "mine").is_err());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// A text without port, `adds` or `scales`, and expression; with what to write.
+    pub fn parse(text: &str, name: &str) -> Result<Self, (String, String)> {
+        let words = text.trim().split_once(char::is_whitespace);
+        let parts = words.and_then(|(port, rest)| Some((port, rest.trim_start().split_once(char::is_whitespace)?)));
+        let (adds, scales) = match parts {
+            Some((_, ("adds", law))) => (Some(law), None),
+            Some((_, ("scales", law))) => (None, Some(law)),
+            _ => {
+                return Err((
+                    format!("\"{text}\" is no law"),
+                    "write PORT adds EXPRESSION or PORT scales EXPRESSION, for example \
+                     'muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)'"
+                        .to_owned(),
+                ));
+            }
+        };
+        let own = |law: &str| law.trim().to_owned();
+        let port = parts.map_or(String::new(), |(port, _)| port.to_owned());
+        Ok(Self { name: name.to_owned(), port, adds: adds.map(own), scales: scales.map(own), ..Self::default() })
+    }
+}

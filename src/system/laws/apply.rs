@@ -1,0 +1,266 @@
+//! What acts on the terms of muscles, cables and joints.
+
+use crate::laws::Port;
+use crate::muscle::Friction;
+use crate::scalar::Scalar;
+use crate::system::elastic::{Elastic, ElasticPoint};
+use crate::system::plant::{CablePlant, Drive, Instant, MuscleForces, MusclePlant, Plant, dot};
+use crate::system::state::PartsMut;
+
+use super::{Act, Acts, CableActs, Instance, MuscleActs, PlantLaws};
+
+/// The parts of a muscle's pull that have a port each, at one state: wall, coil, friction, damper, and the pressure's part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Terms<D> {
+    pub wall_n: D,
+    pub coil_n: D,
+    pub friction_level_n: D,
+    pub damping_n: D,
+    pub area_m2: D,
+    /// Slopes of wall and coil to the elongation.
+    pub wall_n_m: D,
+    pub coil_n_m: D,
+}
+
+impl<D: Scalar> Terms<D> {
+    pub fn new(muscle: &MusclePlant<D>, law: &ElasticPoint<D>, seen_m: D, speed_m_s: D, pressure_pa: D) -> Self {
+        let zero = D::constant(0.0);
+        let (coil_n, coil_n_m) = match &muscle.elastic {
+            Elastic::Tube { coil, .. } => (coil.pull_n(seen_m), coil.stiffness_n_m),
+            Elastic::Linear { .. } => (zero, zero),
+        };
+        Self {
+            wall_n: law.pull_n + pressure_pa * law.area_m2 - coil_n,
+            coil_n,
+            friction_level_n: muscle.friction.as_ref().map_or(zero, |f: &Friction<D>| f.level_n(pressure_pa)),
+            damping_n: muscle.damping_n_s_m * speed_m_s,
+            area_m2: law.area_m2,
+            wall_n_m: law.stiffness_n_m - coil_n_m,
+            coil_n_m,
+        }
+    }
+}
+
+impl<D: Scalar> MusclePlant<D> {
+    /// The elastic law at the elongation that wall and coil see, with what laws add to their rest length.
+    pub(super) fn seen(&self, at_m: D, pressure_pa: D, slow: &[D], greatest_j: D) -> ElasticPoint<D> {
+        if self.extras.acts {
+            self.elastic.softened(at_m - self.extras.set_m(slow), pressure_pa, self.extras.mullins.as_ref(), greatest_j)
+        } else {
+            self.elastic.at(at_m, pressure_pa)
+        }
+    }
+
+    /// The stock forces with what laws do to each of their terms.
+    pub(in crate::system) fn forces_under(
+        &self,
+        stock: MuscleForces<D>,
+        acts: &MuscleActs<D>,
+        z: D,
+        slow: &[D],
+        greatest_j: D,
+    ) -> MuscleForces<D> {
+        let (e, v, p) = (stock.elongation_m, stock.speed_m_s, stock.pressure_pa);
+        let before = self.seen(e, p, slow, greatest_j);
+        let longer = acts.at(Port::RestLength).add;
+        let law = self.seen(e - longer, p, slow, greatest_j);
+        let terms = Terms::new(self, &law, e - longer, v, p);
+        let area = acts.at(Port::Area).on(terms.area_m2);
+        // What relaxation, preload and the like add has no port of its own.
+        let others = stock.elastic_n - before.pull_n;
+        let elastic = acts.at(Port::Wall).on(terms.wall_n) + acts.at(Port::Coil).on(terms.coil_n) - p * area + others;
+        let friction = acts.at(Port::Friction).on(terms.friction_level_n) * z;
+        let damping = acts.at(Port::Damping).on(terms.damping_n);
+        let whole = acts.at(Port::Pull);
+        let sum = elastic + friction + damping;
+        let stop_n_m = stock.stiffness_n_m - before.stiffness_n_m;
+        let stiffness = terms.wall_n_m * acts.at(Port::Wall).scale + terms.coil_n_m * acts.at(Port::Coil).scale;
+        let mut forces = stock;
+        forces.elastic_n = elastic + (whole.on(sum) - sum);
+        forces.friction_n = friction;
+        forces.damping_n = damping;
+        forces.stiffness_n_m = stiffness * whole.scale + stop_n_m;
+        forces.area_m2 = area;
+        forces.port.outflow_m3_s += (area - before.area_m2) * v + acts.at(Port::Outflow).add;
+        if let Drive::Hydraulic { chain, .. } = &self.drive {
+            let last = chain.compliance_m3_pa[chain.segments()] - chain.end_share_m3_pa;
+            forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
+        }
+        forces
+    }
+}
+
+/// A cable under its laws.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct CablePull<D> {
+    pub stretch_m: D,
+    pub rate_m_s: D,
+    /// At the near end, and at the joints.
+    pub tension_n: D,
+    pub far_n: D,
+}
+
+impl<D: Scalar> CablePlant<D> {
+    /// Lever on a coordinate with what laws do to it; ends of muscles keep theirs.
+    #[inline]
+    pub(in crate::system) fn lever_under(&self, act: &Act<D>, coordinate: usize, joints: usize) -> D {
+        let own = self.jacobian[coordinate];
+        if coordinate >= joints || own == 0.0 {
+            return D::constant(own);
+        }
+        act.scale * own + act.add * own.signum()
+    }
+
+    fn pull_under<const N: usize>(
+        &self,
+        now: &Instant<D, N>,
+        acts: &CableActs<D>,
+        travel_m: D,
+        joints: usize,
+    ) -> CablePull<D> {
+        let zero = D::constant(0.0);
+        let (mut stretch, mut rate) = self.stretch_and_rate(now);
+        stretch += acts.at(Port::Stretch).add + travel_m;
+        let lever = acts.at(Port::Lever);
+        if *lever != Act::neutral() {
+            for (i, &w) in now.at.w().iter().enumerate().take(joints) {
+                rate += (self.lever_under(lever, i, joints) - self.jacobian[i]) * w;
+            }
+        }
+        let taut = || {
+            let elastic = acts.at(Port::CableStiffness).on(self.stiffness_n_m * stretch);
+            let pull = acts.at(Port::Tension).on(elastic + self.damping_n_s_m * rate);
+            pull.select_above(zero, pull, zero)
+        };
+        let tension = stretch.select_above(zero, taut(), zero);
+        let far = acts.at(Port::Transmission).on(D::constant(1.0)) * tension;
+        CablePull { stretch_m: stretch, rate_m_s: rate, tension_n: tension, far_n: far }
+    }
+}
+
+impl<D: Scalar> PlantLaws<D> {
+    /// The cable under its laws, which have been evaluated.
+    pub(in crate::system) fn cable<const N: usize>(
+        &self,
+        cable: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &Acts<D>,
+    ) -> CablePull<D> {
+        plant.cables[cable].pull_under(now, &acts.cables[cable], acts.travel_m[cable], self.joints)
+    }
+
+    /// Tensions under the laws of cables.
+    pub(super) fn pull_cables<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
+        for i in 0..plant.cables.len() {
+            if let Some(at) = self.travel_at {
+                acts.travel_m[i] = now.at.law_states()[at + i];
+            }
+            acts.tension_n[i] = self.cable(i, plant, now, acts).tension_n;
+        }
+    }
+
+    /// Adds the force of a cable under its laws to the coordinates'.
+    pub(in crate::system) fn push_cable<const N: usize>(
+        &self,
+        cable: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &Acts<D>,
+        out: &mut PartsMut<D, N>,
+    ) {
+        let pull = self.cable(cable, plant, now, acts);
+        let lever = acts.cables[cable].at(Port::Lever);
+        for (i, force) in out.w().iter_mut().enumerate() {
+            let tension = if i < self.joints { pull.far_n } else { pull.tension_n };
+            *force -= plant.cables[cable].lever_under(lever, i, self.joints) * tension;
+        }
+    }
+
+    /// Speed at which the cables go further than their levers say, m/s, as rates of their states.
+    pub(super) fn travel_rates<const N: usize>(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &Acts<D>,
+        out: &mut [D],
+    ) {
+        let Some(at) = self.travel_at else { return };
+        for (i, cable) in plant.cables.iter().enumerate() {
+            let lever = acts.cables[i].at(Port::Lever);
+            let further = |(j, &w): (usize, &D)| (cable.lever_under(lever, j, self.joints) - cable.jacobian[j]) * w;
+            out[at + i] = now.at.w().iter().enumerate().take(self.joints).map(further).sum();
+        }
+    }
+
+    /// Adds what acts on the joints to the coordinates' forces.
+    pub(in crate::system) fn push_joints<const N: usize>(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &Acts<D>,
+        out: &mut PartsMut<D, N>,
+    ) {
+        for site in self.joint_sites() {
+            let direction = &self.rig.directions[site].direction;
+            for (i, share) in direction.iter().enumerate().filter(|(_, d)| **d != 0.0) {
+                out.w()[i] += joint_force(plant, now, &acts.joints[site], i) * *share;
+            }
+        }
+    }
+
+    /// Directions on which laws act, each once.
+    pub(in crate::system) fn joint_sites(&self) -> impl Iterator<Item = usize> {
+        let is_joint = |i: &&Instance| self.port(i).spec().carrier == crate::laws::Carrier::Joint;
+        (0..self.rig.directions.len()).filter(move |d| self.instances.iter().filter(is_joint).any(|i| i.at == *d))
+    }
+
+    /// Speed of the piston against its plunger's, m/s, and what the drive's yielding adds to the syringe's compliance.
+    ///
+    /// The piston is at `x + f(t, x, p, s)`: its speed is `dx/dt + df/dt`, and the part that follows the pressure acts as a
+    /// compliance `-A df/dp`.
+    pub(super) fn move_piston<const N: usize>(
+        &self,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) {
+        let (law, at) = (&self.laws[instance.law], instance.at);
+        let Drive::Hydraulic { syringe_area_m2, plunger, .. } = &plant.muscles[at].drive else { return };
+        let [by_pressure, by_plunger, by_time] = [2, 6, 7];
+        self.run(&law.programs.slopes, instance, plant, now, acts);
+        let slope = |i: usize, acts: &Acts<D>| law.programs.slopes.output(i, &acts.registers);
+        let (pressure, plunger_slope, time) = (slope(by_pressure, acts), slope(by_plunger, acts), slope(by_time, acts));
+        let states: Vec<D> = (0..law.states.len()).map(|i| slope(crate::laws::SLOPES.len() + i, acts)).collect();
+        let mut speed = time + plunger_slope * now.inputs[*plunger].slope;
+        if !states.is_empty() {
+            self.run(&law.programs.rates, instance, plant, now, acts);
+            for (i, by_state) in states.into_iter().enumerate() {
+                speed += by_state * law.programs.rates.output(i, &acts.registers);
+            }
+        }
+        acts.piston_m_s[at] += speed;
+        acts.muscles[at].at_mut(Port::Plunger).add -= pressure * *syringe_area_m2;
+    }
+}
+
+/// Generalised force of what acts on one coordinate of a site: torque, and what is done to its spring and damper.
+pub(super) fn joint_force<D: Scalar, const N: usize>(
+    plant: &Plant<D>,
+    now: &Instant<D, N>,
+    acts: &super::JointActs<D>,
+    i: usize,
+) -> D {
+    let c = &plant.coordinates;
+    let spring = c.stiffness[i] * (now.at.y()[i] - c.rest[i]);
+    let damper = c.damping[i] * now.at.w()[i];
+    let own = -(spring + damper);
+    let torque = -(acts.at(Port::JointStiffness).on(spring) + acts.at(Port::JointDamping).on(damper));
+    acts.at(Port::Torque).on(torque) - own
+}
+
+/// Position along a direction.
+pub(super) fn along<D: Scalar>(direction: &[f64], y: &[D]) -> D {
+    dot::<_, 0>(direction, y)
+}

@@ -1,0 +1,84 @@
+//! What no equation can carry: values that are no numbers, coefficients that turn over.
+
+use crate::laws::{Port, Symbol};
+use crate::scalar::Scalar;
+use crate::system::plant::{Drive, InputSpan, Instant, Plant};
+use crate::system::state::PlantState;
+
+use super::{Acts, PlantLaws};
+
+/// A law that has left the range in which its port has a meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawFault {
+    pub law: String,
+    /// What is wrong, with the values of the variables.
+    pub what: String,
+}
+
+impl<D: Scalar> PlantLaws<D> {
+    /// Whether every law can be followed at a state.
+    pub fn is_sound(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> bool {
+        let acts = self.afresh(plant, &Instant::<D>::of(state, inputs, 0.0));
+        let is_positive = |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
+        self.instances.iter().all(|i| is_positive(self.port(i), i.at)) && state.parts().law_states().iter().all(|s| s.is_finite())
+    }
+
+    /// What a port's coefficient has become, where it must stay above zero.
+    fn coefficient(&self, plant: &Plant<D>, acts: &Acts<D>, port: Port, at: usize) -> Option<D> {
+        let act = acts.muscles.get(at).filter(|_| port <= Port::RestLength)?.at(port);
+        let Drive::Hydraulic { chain, .. } = &plant.muscles[at].drive else { return None };
+        match port {
+            Port::Plunger => Some(chain.compliance_m3_pa[0] + act.add),
+            Port::SyringeCompliance => Some(act.on(chain.compliance_m3_pa[0])),
+            Port::LineCompliance => Some(act.on(chain.compliance_m3_pa[chain.segments()])),
+            Port::Inertance => Some(act.on(chain.inertance_pa_s2_m3)),
+            Port::Area => Some(act.scale),
+            _ => None,
+        }
+    }
+}
+
+/// What is said of a coefficient that is not above zero.
+fn turned_over(port: Port) -> &'static str {
+    match port {
+        Port::Plunger => "makes the drive yield against the pressure",
+        Port::Inertance => "makes the fluid's inertia negative",
+        Port::Area => "turns the muscle's area over",
+        _ => "makes a compliance negative",
+    }
+}
+
+impl PlantLaws<f64> {
+    /// The first law that cannot be followed at a state.
+    pub fn fault(&self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Option<LawFault> {
+        let now: Instant<f64> = Instant::of(state, inputs, 0.0);
+        let mut acts = self.afresh(plant, &now);
+        for instance in &self.instances {
+            let law = &self.laws[instance.law];
+            let value = self.evaluate(&law.programs.value, instance, plant, &now, &mut acts, 0);
+            let (at, port) = (instance.at, self.port(instance));
+            let states = &now.at.law_states()[instance.state_at..][..law.states.len()];
+            let is_turned = self.coefficient(plant, &acts, port, at).is_some_and(|c| c <= 0.0);
+            let turned = is_turned.then(|| turned_over(port));
+            let fault = match (value.is_finite(), states.iter().position(|s| !s.is_finite()), turned) {
+                (_, Some(i), _) => Some(format!("its state {} is {}", law.states[i].name, states[i])),
+                (false, None, _) => Some(format!("its value is {value}")),
+                (true, None, Some(words)) => Some(format!("its value {value:.4e} {words}")),
+                (true, None, None) => None,
+            };
+            if let Some(what) = fault {
+                let values = law.symbols.iter().enumerate().filter_map(|(i, symbol)| match symbol {
+                    Symbol::Variable(v) => {
+                        let value = self.read(instance.sources[i], instance, plant, &now, &acts);
+                        Some(format!("{} = {value:.4e}", v.name()))
+                    }
+                    _ => None,
+                });
+                let values = values.collect::<Vec<_>>().join(", ");
+                let what = if values.is_empty() { what } else { format!("{what} at {values}") };
+                return Some(LawFault { law: format!("{} ({})", law.name, law.address), what });
+            }
+        }
+        None
+    }
+}

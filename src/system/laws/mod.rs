@@ -1,0 +1,272 @@
+//! Laws in a plant: which port of which element each acts on, evaluated at every instant that the integrator asks for.
+//!
+//! A plant without laws does not come here. With laws, [`PlantLaws::act`] evaluates all of them once per stage into [`Acts`];
+//! the equations then ask what acts on each of their terms. Laws of cables come first, since others may depend on tensions.
+
+mod acts;
+mod apply;
+mod fault;
+mod memory;
+mod place;
+mod power;
+mod sensor;
+mod slopes;
+mod tangents;
+
+use crate::laws::{Carrier, Law, Port};
+use crate::scalar::Scalar;
+
+use super::install::Site;
+use super::plant::{Instant, Plant, dot};
+use super::state::PlantState;
+
+pub use acts::{Act, Acts, CableActs, JointActs, MuscleActs};
+pub use fault::LawFault;
+pub use place::{Rig, Source, Wrong};
+pub use power::law_powers;
+pub(super) use power::line_drop;
+pub(super) use sensor::LawSensor;
+pub(super) use slopes::MuscleSlopes;
+pub(super) use tangents::LawTangents;
+
+/// A law at one element.
+#[derive(Clone, Debug, PartialEq)]
+struct Instance {
+    /// Index of the law.
+    law: usize,
+    /// Muscle, cable or direction.
+    at: usize,
+    /// Where each symbol of the law is read.
+    sources: Vec<Source>,
+    /// Where its states begin among those of all laws.
+    state_at: usize,
+}
+
+/// The laws of a plant.
+#[derive(Clone, Debug)]
+pub struct PlantLaws<D> {
+    rig: Rig,
+    laws: Vec<Law>,
+    /// Values of each law's parameters.
+    values: Vec<Vec<D>>,
+    instances: Vec<Instance>,
+    /// Number of coordinates that are joints: what follows are ends of muscles.
+    joints: usize,
+    /// Where the extra travels of the cables begin among the states, if a law changes a lever.
+    travel_at: Option<usize>,
+    states: usize,
+}
+
+impl<D: Scalar> PlantLaws<D> {
+    /// None yet, on this rig.
+    pub(super) fn new(plant: &Plant<D>, site: &Site) -> Self {
+        let rig = Rig::of(plant, site);
+        Self {
+            rig,
+            laws: Vec::new(),
+            values: Vec::new(),
+            instances: Vec::new(),
+            joints: site.joints,
+            travel_at: None,
+            states: 0,
+        }
+    }
+
+    /// One law more, with the values of its parameters.
+    ///
+    /// # Errors
+    /// A port or a variable that the rig does not have.
+    pub fn add(&mut self, law: &Law, values: Vec<D>, cables: usize) -> Result<(), Wrong> {
+        let index = self.laws.len();
+        for at in self.rig.places(&law.address)? {
+            let sources = self.rig.sources(law, at)?;
+            self.instances.push(Instance { law: index, at, sources, state_at: self.states });
+            self.states += law.states.len();
+        }
+        if law.address.port == Port::Lever && self.travel_at.is_none() {
+            self.travel_at = Some(self.states);
+            self.states += cables;
+        }
+        self.laws.push(law.clone());
+        self.values.push(values);
+        Ok(())
+    }
+
+    /// Gives a parameter another value.
+    pub fn set(&mut self, law: usize, parameter: usize, value: D) {
+        self.values[law][parameter] = value;
+    }
+
+    pub fn laws(&self) -> &[Law] {
+        &self.laws
+    }
+
+    /// The same over another number type.
+    pub fn lift<E: Scalar>(&self) -> PlantLaws<E> {
+        let constants = |values: &Vec<D>| values.iter().map(|x| E::constant(x.value())).collect();
+        PlantLaws {
+            rig: self.rig.clone(),
+            laws: self.laws.clone(),
+            values: self.values.iter().map(constants).collect(),
+            instances: self.instances.clone(),
+            joints: self.joints,
+            travel_at: self.travel_at,
+            states: self.states,
+        }
+    }
+
+    /// Room for what they do.
+    pub fn room(&self, plant: &Plant<D>) -> Acts<D> {
+        Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len())
+    }
+
+    /// The joints of a direction.
+    pub fn direction(&self, site: usize) -> &[f64] {
+        &self.rig.directions[site].direction
+    }
+
+    fn port(&self, instance: &Instance) -> Port {
+        self.laws[instance.law].address.port
+    }
+
+    /// Whether some law acts on a cable.
+    fn on_cables(&self) -> bool {
+        self.laws.iter().any(|law| law.address.port.spec().carrier == Carrier::Cable)
+    }
+
+    /// Evaluates all laws at an instant.
+    pub(super) fn act<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
+        self.act_first(self.laws.len(), plant, now, acts);
+    }
+
+    /// Evaluates the first so many laws.
+    fn act_first<const N: usize>(&self, count: usize, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
+        for instance in &self.instances {
+            self.clear(instance, acts);
+        }
+        let wanted = || self.instances.iter().filter(|i| i.law < count);
+        let is_cable = |i: &&Instance| self.port(i).spec().carrier == Carrier::Cable;
+        if !plant.cables.is_empty() {
+            for (cable, tension) in plant.cables.iter().zip(&mut acts.tension_n) {
+                *tension = cable.pull(now).2;
+            }
+            wanted().filter(is_cable).for_each(|i| self.act_at(i, plant, now, acts));
+            if self.on_cables() {
+                self.pull_cables(plant, now, acts);
+            }
+        }
+        wanted().filter(|i| !is_cable(i)).for_each(|i| self.act_at(i, plant, now, acts));
+    }
+
+    fn clear(&self, instance: &Instance, acts: &mut Acts<D>) {
+        let (port, at) = (self.port(instance), instance.at);
+        let act = match port.spec().carrier {
+            Carrier::Muscle => acts.muscles[at].at_mut(port),
+            Carrier::Cable => acts.cables[at].at_mut(port),
+            Carrier::Joint => acts.joints[at].at_mut(port),
+            Carrier::Sensor => return,
+        };
+        *act = Act::neutral();
+        if port == Port::Plunger {
+            acts.piston_m_s[at] = D::constant(0.0);
+        }
+    }
+
+    fn act_at<const N: usize>(&self, instance: &Instance, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
+        let (port, at, law) = (self.port(instance), instance.at, &self.laws[instance.law]);
+        if port == Port::Plunger {
+            return self.move_piston(instance, plant, now, acts);
+        }
+        let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+        let act = match port.spec().carrier {
+            Carrier::Muscle => acts.muscles[at].at_mut(port),
+            Carrier::Cable => acts.cables[at].at_mut(port),
+            Carrier::Joint => acts.joints[at].at_mut(port),
+            Carrier::Sensor => return,
+        };
+        act.join(law.acts, value);
+    }
+
+    /// Runs a program of a law and reads one of its results.
+    #[inline]
+    fn evaluate<const N: usize>(
+        &self,
+        program: &crate::laws::Program,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+        output: usize,
+    ) -> D {
+        self.run(program, instance, plant, now, acts);
+        program.output(output, &acts.registers)
+    }
+
+    /// Runs a program of a law; its results stand in the registers of the acts.
+    #[inline]
+    fn run<const N: usize>(
+        &self,
+        program: &crate::laws::Program,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) {
+        let mut registers = std::mem::take(&mut acts.registers);
+        let read = |symbol: &usize| self.read(instance.sources[*symbol], instance, plant, now, acts);
+        program.run(program.symbols().iter().map(read), &mut registers);
+        acts.registers = registers;
+    }
+
+    /// Value of a symbol at an instant.
+    #[inline]
+    fn read<const N: usize>(
+        &self,
+        source: Source,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &Acts<D>,
+    ) -> D {
+        let at = &now.at;
+        match source {
+            Source::Elongation(m) => plant.muscles[m].elongation_m::<N>(at.y()),
+            Source::Speed(m) => dot::<_, N>(&plant.muscles[m].jacobian, at.w()),
+            Source::Pressure(m) => plant.pressure(m, now),
+            Source::SyringePressure(m) => at.line(m)[0],
+            Source::Flow(m) => at.line(m)[now.state.segments() + 1],
+            Source::Input(i) => D::constant(now.input(i)),
+            Source::InputSpeed(i) => D::constant(now.inputs[i].slope),
+            Source::FrictionState(m) => at.z(m),
+            Source::Stretch(c) => plant.cables[c].stretch_and_rate(now).0,
+            Source::Tension(c) => acts.tension_n[c],
+            Source::Along(d) => dot::<_, N>(&self.rig.directions[d].direction, at.y()),
+            Source::AlongSpeed(d) => dot::<_, N>(&self.rig.directions[d].direction, at.w()),
+            Source::Time => D::constant(now.time_s()),
+            Source::Parameter(p) => self.values[instance.law][p],
+            Source::State(s) => at.law_states()[instance.state_at + s],
+            Source::Constant(x) => D::constant(x),
+        }
+    }
+
+    /// What laws do to the state's plant, evaluated afresh.
+    pub(super) fn afresh<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Acts<D> {
+        let mut acts = self.room(plant);
+        self.act(plant, now, &mut acts);
+        acts
+    }
+
+    /// Gives a state the memory that they need, as it starts; time and inputs are those of the beginning.
+    pub fn settle(plant: &Plant<D>, state: &mut PlantState<D>) {
+        if let Some(laws) = &plant.laws {
+            state.set_law_states(&vec![D::constant(0.0); laws.states]);
+            memory::start(laws, plant, state);
+        }
+    }
+}
+
+/// The play operator: `before` moved by as little as keeps it within half a width of `followed`.
+fn play<D: Scalar>(before: D, followed: D, half: D) -> D {
+    let low = (followed - half).select_above(before, followed - half, before);
+    low.select_above(followed + half, followed + half, low)
+}

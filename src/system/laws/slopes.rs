@@ -1,0 +1,241 @@
+//! Slopes of laws, in the form in which the implicit step needs them.
+//!
+//! They decide over stability alone: the method is of second order whatever stands in for the Jacobian. A law's dependence on
+//! the element's own elongation, speed, pressure, angle and state is kept, that on its neighbours is left out.
+
+use crate::laws::{Acts as Sense, Carrier, Memory, Port, SLOPES};
+use crate::scalar::Scalar;
+use crate::system::plant::{Instant, MuscleForces, Plant};
+
+use super::apply::Terms;
+use super::{Act, Acts, Instance, PlantLaws};
+
+/// Places in [`SLOPES`].
+const ELONGATION: usize = 0;
+const SPEED: usize = 1;
+const PRESSURE: usize = 2;
+const ANGLE: usize = 3;
+const ANGULAR_SPEED: usize = 4;
+const POSITION: usize = 5;
+
+/// How a muscle's pull and the flows out of its line change with the muscle's own quantities because of laws alone.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct MuscleSlopes<D> {
+    pub pull_n_m: D,
+    pub pull_n_s_m: D,
+    pub pull_n_pa: D,
+    /// Flow lost per pressure before and after the line, m³/(s Pa).
+    pub conductance_m3_s_pa: [D; 2],
+}
+
+/// How the torque on a site changes with its position and its speed because of laws.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct JointSlopes<D> {
+    pub by_position: D,
+    pub by_speed: D,
+}
+
+/// Tangent of a law's state: its stage is `(r + by_elongation k_e + by_speed k_v) damper`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct StateTangent<D> {
+    pub damper: D,
+    pub by_elongation: D,
+    pub by_speed: D,
+    /// What the muscle's pull gains per state, and which muscle's.
+    pub pull: D,
+    pub muscle: Option<usize>,
+}
+
+impl<D: Scalar> StateTangent<D> {
+    pub fn none() -> Self {
+        let zero = D::constant(0.0);
+        Self { damper: D::constant(1.0), by_elongation: zero, by_speed: zero, pull: zero, muscle: None }
+    }
+}
+
+/// What a muscle's pull depends on at one instant.
+struct Muscle<'a, D> {
+    acts: &'a super::MuscleActs<D>,
+    terms: Terms<D>,
+    z: D,
+    pressure_pa: D,
+    /// All that the port of the whole pull scales.
+    sum_n: D,
+}
+
+impl<D: Scalar> Muscle<'_, D> {
+    /// Change of the pull with a change of what acts at a port.
+    fn pull_per(&self, port: Port, change: &Act<D>) -> D {
+        let on = |term: D| term * change.scale + change.add;
+        let whole = self.acts.at(Port::Pull).scale;
+        let (wall, coil) = (self.acts.at(Port::Wall).scale, self.acts.at(Port::Coil).scale);
+        match port {
+            Port::Wall => on(self.terms.wall_n) * whole,
+            Port::Coil => on(self.terms.coil_n) * whole,
+            Port::Friction => on(self.terms.friction_level_n) * self.z * whole,
+            Port::Damping => on(self.terms.damping_n) * whole,
+            Port::Area => -(on(self.terms.area_m2) * self.pressure_pa * whole),
+            Port::RestLength => -((self.terms.wall_n_m * wall + self.terms.coil_n_m * coil) * change.add * whole),
+            Port::Pull => on(self.sum_n),
+            _ => D::constant(0.0),
+        }
+    }
+}
+
+impl<D: Scalar> PlantLaws<D> {
+    /// Change of what acts at an instance's port with one of the outputs of its slopes, which have been run.
+    fn change(&self, instance: &Instance, value: D, acts: &Acts<D>, output: usize, total: D) -> Act<D> {
+        let law = &self.laws[instance.law];
+        let slope = law.programs.slopes.output(output, &acts.registers);
+        let zero = D::constant(0.0);
+        match law.acts {
+            Sense::Adds => Act { add: slope, scale: zero },
+            // Of a product: the others as they are.
+            Sense::Scales if value.is_at(0.0) => Act { add: zero, scale: slope },
+            Sense::Scales => Act { add: zero, scale: slope * (total / value) },
+        }
+    }
+
+    fn at<'a>(&'a self, wanted: Carrier, at: usize) -> impl Iterator<Item = &'a Instance> + 'a {
+        self.instances.iter().filter(move |i| i.at == at && self.port(i).spec().carrier == wanted)
+    }
+
+    fn muscle<'a>(
+        &self,
+        i: usize,
+        plant: &Plant<D>,
+        forces: &MuscleForces<D>,
+        now_z: D,
+        acts: &'a super::MuscleActs<D>,
+        (slow, greatest_j): (&[D], D),
+    ) -> Muscle<'a, D> {
+        let muscle = &plant.muscles[i];
+        let seen = forces.elongation_m - acts.at(Port::RestLength).add;
+        let law = muscle.seen(seen, forces.pressure_pa, slow, greatest_j);
+        let terms = Terms::new(muscle, &law, seen, forces.speed_m_s, forces.pressure_pa);
+        let whole = acts.at(Port::Pull);
+        let sum = forces.elastic_n + forces.friction_n + forces.damping_n - whole.add;
+        let sum_n = if whole.scale.is_at(0.0) { sum } else { sum / whole.scale };
+        Muscle { acts, terms, z: now_z, pressure_pa: forces.pressure_pa, sum_n }
+    }
+
+    /// Slopes of a muscle's laws, and tangents of their states for steps of `g`.
+    pub(in crate::system) fn muscle_slopes<const N: usize>(
+        &self,
+        i: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        (forces, acts): (&MuscleForces<D>, &mut Acts<D>),
+        (g, states): (f64, &mut [StateTangent<D>]),
+    ) -> MuscleSlopes<D> {
+        let zero = D::constant(0.0);
+        let mut slopes =
+            MuscleSlopes { pull_n_m: zero, pull_n_s_m: zero, pull_n_pa: zero, conductance_m3_s_pa: [zero; 2] };
+        let own = acts.muscles[i];
+        let memory = (plant.muscles[i].slow(&now.at), now.state.greatest_j[i]);
+        let muscle = self.muscle(i, plant, forces, now.at.z(i), &own, memory);
+        for instance in self.at(Carrier::Muscle, i).filter(|x| self.port(x) != Port::Plunger) {
+            let (port, law) = (self.port(instance), &self.laws[instance.law]);
+            let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+            self.run(&law.programs.slopes, instance, plant, now, acts);
+            let total = own.at(port).scale;
+            let change = |output: usize| self.change(instance, value, acts, output, total);
+            slopes.pull_n_m += muscle.pull_per(port, &change(ELONGATION));
+            slopes.pull_n_s_m += muscle.pull_per(port, &change(SPEED));
+            slopes.pull_n_pa += muscle.pull_per(port, &change(PRESSURE));
+            match port {
+                Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change(PRESSURE).add,
+                Port::Outflow => slopes.conductance_m3_s_pa[1] += change(PRESSURE).add,
+                _ => {}
+            }
+            let pulls: Vec<D> =
+                (0..law.states.len()).map(|s| muscle.pull_per(port, &change(SLOPES.len() + s))).collect();
+            self.state_tangents(instance, plant, now, acts, (g, states, &pulls));
+        }
+        slopes
+    }
+
+    fn state_tangents<const N: usize>(
+        &self,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+        (g, states, pulls): (f64, &mut [StateTangent<D>], &[D]),
+    ) {
+        let law = &self.laws[instance.law];
+        if law.states.is_empty() {
+            return;
+        }
+        self.run(&law.programs.rate_slopes, instance, plant, now, acts);
+        for (s, _) in law.states.iter().enumerate().filter(|(_, s)| s.memory == Memory::Rate) {
+            let slope = |k: usize| law.programs.rate_slopes.output(3 * s + k, &acts.registers) * g;
+            let is_muscle = self.port(instance).spec().carrier == Carrier::Muscle;
+            states[instance.state_at + s] = StateTangent {
+                damper: (-slope(0) + 1.0).recip(),
+                by_elongation: if is_muscle { slope(1) } else { D::constant(0.0) },
+                by_speed: if is_muscle { slope(2) } else { D::constant(0.0) },
+                pull: pulls.get(s).copied().unwrap_or(D::constant(0.0)),
+                muscle: is_muscle.then_some(instance.at),
+            };
+        }
+    }
+
+    /// Tangents of the states of laws that are on no muscle, for steps of `g`.
+    pub(in crate::system) fn other_states<const N: usize>(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+        (g, states): (f64, &mut [StateTangent<D>]),
+    ) {
+        for instance in &self.instances {
+            if self.port(instance).spec().carrier != Carrier::Muscle || self.port(instance) == Port::Plunger {
+                self.state_tangents(instance, plant, now, acts, (g, states, &[]));
+            }
+        }
+        // What goes through the plunger acts on its speed alone.
+        for instance in self.instances.iter().filter(|i| self.port(i) == Port::Plunger) {
+            for tangent in &mut states[instance.state_at..][..self.laws[instance.law].states.len()] {
+                tangent.muscle = None;
+            }
+        }
+    }
+
+    /// Slopes of the laws on a site.
+    pub(in crate::system) fn joint_slopes<const N: usize>(
+        &self,
+        site: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) -> JointSlopes<D> {
+        let direction = &self.rig.directions[site];
+        let (position, speed) = if direction.slides { (POSITION, SPEED) } else { (ANGLE, ANGULAR_SPEED) };
+        let Some(i) = direction.direction.iter().position(|d| *d != 0.0) else {
+            return JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
+        };
+        let count = direction.direction.iter().filter(|d| **d != 0.0).count() as f64;
+        let (c, own) = (&plant.coordinates, acts.joints[site]);
+        let spring = c.stiffness[i] * (now.at.y()[i] - c.rest[i]);
+        let damper = c.damping[i] * now.at.w()[i];
+        let mut slopes = JointSlopes {
+            by_position: -(c.stiffness[i] * (own.at(Port::JointStiffness).scale - 1.0)) / count,
+            by_speed: -(c.damping[i] * (own.at(Port::JointDamping).scale - 1.0)) / count,
+        };
+        for instance in self.at(Carrier::Joint, site) {
+            let (port, law) = (self.port(instance), &self.laws[instance.law]);
+            let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+            self.run(&law.programs.slopes, instance, plant, now, acts);
+            let change = |output: usize| self.change(instance, value, acts, output, own.at(port).scale);
+            let torque = |act: Act<D>| match port {
+                Port::JointStiffness => -(spring * act.scale + act.add),
+                Port::JointDamping => -(damper * act.scale + act.add),
+                _ => -((spring + damper) * act.scale) + act.add,
+            };
+            slopes.by_position += torque(change(position));
+            slopes.by_speed += torque(change(speed));
+        }
+        slopes
+    }
+}
