@@ -113,7 +113,10 @@ mod practice_laws {
             let scene = Scene::from_file(scene.file, &scene.path).unwrap_or_else(|e| panic!("{name}: {e}"));
             let with = errors(&replay(scene, &recorded), &recorded, &set);
             for ((column, before), (_, after)) in without.iter().zip(&with) {
-                println!("{name} {column}: {before:.3} -> {after:.3} of the noise, {} {:?}{:?}", law.port, law.adds, law.scales);
+                println!(
+                    "{name} {column}: {before:.3} -> {after:.3} of the noise, {} {:?}{:?}",
+                    law.port, law.adds, law.scales
+                );
                 if *after > WITHIN {
                     wrong.push(format!("{name} {column}: {after:.3}"));
                 }

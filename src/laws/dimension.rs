@@ -120,7 +120,8 @@ impl Dimension {
     /// The unit that a name ends in (`gap_m`, `conductance_m3_s_pa`); none where it ends in no unit. A name with `torque` or
     /// `moment` in it that ends in `_n_m` is in N m, any other one in N/m.
     pub fn of_name(name: &str) -> Option<Self> {
-        let ends_in = |ending: &str| name.strip_suffix(ending).is_some_and(|rest| rest.len() > 1 && rest.ends_with('_'));
+        let ends_in =
+            |ending: &str| name.strip_suffix(ending).is_some_and(|rest| rest.len() > 1 && rest.ends_with('_'));
         if name.ends_with("_rad") && !ends_in("n_m_rad") && !ends_in("n_m_s_rad") {
             return Some(Self::NONE);
         }

@@ -81,7 +81,8 @@ const MUSCLE: &[Quantity] = &[
 const PLUNGER: &[Quantity] = &[Q::Pressure, Q::Plunger, Q::PlungerSpeed, Q::Time];
 const CABLE: &[Quantity] =
     &[Q::Stretch, Q::Tension, Q::Angle, Q::AngularSpeed, Q::Elongation, Q::Speed, Q::Pressure, Q::Time];
-const JOINT: &[Quantity] = &[Q::Angle, Q::AngularSpeed, Q::Position, Q::Speed, Q::Tension, Q::Pressure, Q::Elongation, Q::Time];
+const JOINT: &[Quantity] =
+    &[Q::Angle, Q::AngularSpeed, Q::Position, Q::Speed, Q::Tension, Q::Pressure, Q::Elongation, Q::Time];
 const SENSOR: &[Quantity] = &[Q::Reading, Q::Time];
 
 const fn port(
@@ -342,7 +343,8 @@ impl Address {
         }
         let named = element.strip_suffix(')').and_then(|e| e.split_once('('));
         let (element, of) = named.map_or((element, None), |(e, name)| (e, Some(name.trim().to_owned())));
-        let find = |element: &str| PORTS.iter().find(|p| p.element == element && p.term == term && p.port != Port::Sensor);
+        let find =
+            |element: &str| PORTS.iter().find(|p| p.element == element && p.term == term && p.port != Port::Sensor);
         if let Some(spec) = find(element) {
             if of.is_some() && spec.carrier != Carrier::Joint {
                 let remedy = format!("number the elements of a rig that has several: {element}_1");

@@ -111,8 +111,7 @@ struct Used {
 
 impl<'a> Reader<'a> {
     fn new(table: &'a LawTable, address: &'a Address, around: &'a Surroundings) -> Result<Self, LawError> {
-        let parameters =
-            table.parameter.iter().map(|(name, p)| parameter(name, p)).collect::<Result<Vec<_>, _>>()?;
+        let parameters = table.parameter.iter().map(|(name, p)| parameter(name, p)).collect::<Result<Vec<_>, _>>()?;
         let states: Vec<_> = table.state.iter().map(|(name, s)| (name.as_str(), s)).collect();
         let reader = Self { table, address, spec: address.port.spec(), around, parameters, states };
         reader.check_names()?;
@@ -249,7 +248,12 @@ impl<'a> Reader<'a> {
         let words: Vec<String> = wanted.iter().map(Dimension::to_string).collect();
         let wanted = words.join(" or ");
         Err(refuse(
-            format!("{}: the units do not come out: {} takes {wanted}, the expression is in {}", acts.word(), self.address, said(*unit)),
+            format!(
+                "{}: the units do not come out: {} takes {wanted}, the expression is in {}",
+                acts.word(),
+                self.address,
+                said(*unit)
+            ),
             format!("multiply by a parameter whose unit is missing, so that {wanted} comes out"),
         ))
     }
@@ -259,7 +263,9 @@ impl<'a> Reader<'a> {
         if given != 1 {
             return Err(refuse(
                 format!("state.{name}: exactly one of rate, greatest and play_of is needed"),
-                format!("write state.{name} = {{ rate = \"(elongation_m - {name}) / tau_s\", start = \"elongation_m\" }}"),
+                format!(
+                    "write state.{name} = {{ rate = \"(elongation_m - {name}) / tau_s\", start = \"elongation_m\" }}"
+                ),
             ));
         }
         if table.play_of.is_some() != table.width.is_some() {
@@ -315,11 +321,13 @@ impl<'a> Reader<'a> {
                 return Err(self.wrong_unit(&key, &format!("{wanted} is wanted, the expression is in {}", said(unit))));
             }
         }
-        let follows = self.unit(&tree.follows, used, units).map_err(|e| self.wrong_unit(&format!("state.{name}"), &e))?;
+        let follows =
+            self.unit(&tree.follows, used, units).map_err(|e| self.wrong_unit(&format!("state.{name}"), &e))?;
         match (own, follows) {
-            (Unit::Known(own), follows) if !follows.can_be(own) => {
-                Err(self.wrong_unit(&format!("state.{name}"), &format!("it is in {own}, what it follows in {}", said(follows))))
-            }
+            (Unit::Known(own), follows) if !follows.can_be(own) => Err(self.wrong_unit(
+                &format!("state.{name}"),
+                &format!("it is in {own}, what it follows in {}", said(follows)),
+            )),
             _ => Ok(()),
         }
     }
@@ -365,7 +373,10 @@ fn parameter(name: &str, table: &ParameterTable) -> Result<Parameter, LawError> 
         return Err(at(format!("min = {min} must be < max = {max}"), "give the smaller number as min"));
     }
     if table.value < min || table.value > max {
-        return Err(at(format!("value = {} is outside {min} to {max}", table.value), "move the value, or widen the range"));
+        return Err(at(
+            format!("value = {} is outside {min} to {max}", table.value),
+            "move the value, or widen the range",
+        ));
     }
     Ok(Parameter { name: name.to_owned(), value: table.value, min, max, dimension })
 }

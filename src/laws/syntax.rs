@@ -23,10 +23,7 @@ const GREATEST: usize = 400;
 ///
 /// # Errors
 /// Words, signs and brackets that do not make an expression; what `symbol` refuses.
-pub fn parse(
-    text: &str,
-    symbol: &mut dyn FnMut(&str) -> Result<usize, (String, String)>,
-) -> Result<Node, SyntaxError> {
+pub fn parse(text: &str, symbol: &mut dyn FnMut(&str) -> Result<usize, (String, String)>) -> Result<Node, SyntaxError> {
     let mut reader = Reader { text, at: 0, depth: 0, symbol };
     let node = reader.comparison()?;
     reader.skip_space();
@@ -215,7 +212,8 @@ impl<'a> Reader<'a, '_> {
         };
         if function.is_none() && joins.is_none() {
             let known: Vec<&str> = Function::NAMED.iter().map(|(name, _)| *name).chain(["min", "max"]).collect();
-            let usual = [("log", "ln"), ("pow", "a^b"), ("step", "(x > a)"), ("heaviside", "(x > 0)"), ("atan", "tanh")];
+            let usual =
+                [("log", "ln"), ("pow", "a^b"), ("step", "(x > a)"), ("heaviside", "(x > 0)"), ("atan", "tanh")];
             let meant = usual.iter().find(|(word, _)| *word == name).map(|(_, own)| format!(", write {own}"));
             let near = meant.unwrap_or_else(|| crate::nearest::did_you_mean(name, &known));
             let message = format!("there is no function \"{name}\"{near}");

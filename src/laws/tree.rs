@@ -237,7 +237,9 @@ fn slope(function: Function, x: &Node) -> Node {
         Function::Sqrt => over(Node::number(0.5), of(Function::Sqrt)),
         Function::Sin => of(Function::Cos),
         Function::Cos => Node::of(Function::Negate, of(Function::Sin)),
-        Function::Tanh => Node::two(Operator::Subtract, one(), Node::two(Operator::Power, of(Function::Tanh), Node::number(2.0))),
+        Function::Tanh => {
+            Node::two(Operator::Subtract, one(), Node::two(Operator::Power, of(Function::Tanh), Node::number(2.0)))
+        }
     }
 }
 

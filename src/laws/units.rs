@@ -92,12 +92,7 @@ fn of_two(
         _ => match of_a.join(of_b) {
             Some(_) if matches!(operator, Operator::Above | Operator::AtLeast) => Ok(Unit::Known(Dimension::NONE)),
             Some(unit) => Ok(unit),
-            None => Err(format!(
-                "in `{}` the one is in {}, the other in {}",
-                node.text(names),
-                said(of_a),
-                said(of_b)
-            )),
+            None => Err(format!("in `{}` the one is in {}, the other in {}", node.text(names), said(of_a), said(of_b))),
         },
     }
 }

@@ -3,10 +3,10 @@
 use super::bag_read::{found_in_bag, read_bag};
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::Keys;
-use crate::nearest::did_you_mean;
 use super::source::unopened;
 use super::{Channel, FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
 use crate::files::read_text;
+use crate::nearest::did_you_mean;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use toml::Table;

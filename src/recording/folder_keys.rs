@@ -1,7 +1,7 @@
 //! Reading TOML keys with errors that name file, table, key and remedy.
 
-use crate::nearest::did_you_mean;
 use super::RecordingError;
+use crate::nearest::did_you_mean;
 use std::path::Path;
 use toml::{Table, Value};
 

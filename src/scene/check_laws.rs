@@ -81,9 +81,14 @@ fn check_port(scene: &SceneFile, address: &Address) -> Result<(), (String, Strin
         return lacks(&format!("the scene has no {element}"), "take another port, or another scene".to_owned());
     }
     if address.number.is_some_and(|n| n >= count) {
-        return lacks(&format!("the scene has {count}"), format!("number it from 1 to {count}, or leave the number out for all"));
+        return lacks(
+            &format!("the scene has {count}"),
+            format!("number it from 1 to {count}, or leave the number out for all"),
+        );
     }
-    if scene.muscles.as_ref().is_some_and(|m| m.displacement.is_some()) && address.port.spec().carrier == Carrier::Muscle {
+    if scene.muscles.as_ref().is_some_and(|m| m.displacement.is_some())
+        && address.port.spec().carrier == Carrier::Muscle
+    {
         let remedy = "describe the muscle by [muscles.tube] or [muscles.linear]".to_owned();
         return lacks("[muscles.displacement] is a formula without fluid, wall or pull", remedy);
     }
@@ -104,5 +109,8 @@ fn check_channel(scene: &SceneFile, address: &Address) -> Result<(), (String, St
     }
     let outputs: Vec<&str> = scene.output.iter().map(|o| o.channel.as_str()).collect();
     let near = crate::nearest::did_you_mean(channel, &outputs);
-    Err((format!("port = \"{address}\": \"{channel}\" is no output{near}"), format!("use one of: {}", outputs.join(", "))))
+    Err((
+        format!("port = \"{address}\": \"{channel}\" is no output{near}"),
+        format!("use one of: {}", outputs.join(", ")),
+    ))
 }

@@ -59,10 +59,10 @@ pub use error::SystemError;
 pub use events::Warnings;
 pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
-pub use laws::{LawFault, PlantLaws};
 pub use halving::{StepError, step_errors, with_half_steps};
 pub use influence::{Influence, Influenced, influence};
 pub use inputs::InputSource;
+pub use laws::{LawFault, PlantLaws};
 pub use measured_pose::measured_poses;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,

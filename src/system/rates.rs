@@ -47,7 +47,35 @@ impl<D: Scalar> Seen<D> {
 }
 
 /// The rates at an instant; for those of the speeds the *force* is given, not the acceleration.
+#[inline]
 pub(super) fn rates<D: Scalar, const N: usize>(
+    plant: &Plant<D>,
+    now: &Instant<D, N>,
+    piston_m_s: &[D],
+    seen: &mut Seen<D>,
+    out: PartsMut<D, N>,
+) -> Switches {
+    if plant.laws.is_some() {
+        return rates_under_laws(plant, now, piston_m_s, seen, out);
+    }
+    rates_of::<D, N, false>(plant, now, piston_m_s, seen, out)
+}
+
+/// Kept apart: what a stock scene goes through knows no laws.
+#[cold]
+#[inline(never)]
+fn rates_under_laws<D: Scalar, const N: usize>(
+    plant: &Plant<D>,
+    now: &Instant<D, N>,
+    piston_m_s: &[D],
+    seen: &mut Seen<D>,
+    out: PartsMut<D, N>,
+) -> Switches {
+    rates_of::<D, N, true>(plant, now, piston_m_s, seen, out)
+}
+
+#[inline(always)]
+fn rates_of<D: Scalar, const N: usize, const LAWS: bool>(
     plant: &Plant<D>,
     now: &Instant<D, N>,
     piston_m_s: &[D],
@@ -55,13 +83,16 @@ pub(super) fn rates<D: Scalar, const N: usize>(
     mut out: PartsMut<D, N>,
 ) -> Switches {
     let mut switches = Switches::default();
-    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
-        laws.act(plant, now, acts);
+    if LAWS {
+        evaluate_laws(plant, now, seen);
     }
     coordinate_rates(plant, now, &mut out, &mut switches);
-    cable_rates(plant, now, seen, &mut out, &mut switches);
+    if LAWS {
+        cables_under_laws(plant, now, seen, &mut out);
+    }
+    cable_rates::<D, N, LAWS>(plant, now, &mut seen.tension_n, &mut out, &mut switches);
     for (i, muscle) in plant.muscles.iter().enumerate() {
-        let forces = plant.forces_seen(i, now, seen.acts.as_deref());
+        let forces = if LAWS { plant.forces_seen(i, now, seen.acts.as_deref()) } else { plant.stock_forces(i, now) };
         switches.note(forces.stop_n.is_above(0.0));
         add_scaled::<_, N>(out.w(), &muscle.jacobian, -forces.pull_n());
         if let Some(friction) = &muscle.friction {
@@ -70,15 +101,11 @@ pub(super) fn rates<D: Scalar, const N: usize>(
         if let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive {
             let boils = now.state.boiling_of::<N>(i);
             let inflow = piston_m_s[i] * *syringe_area_m2;
-            match (&seen.acts, seen.chains.get_mut(i)) {
-                (Some(acts), Some(Some(under))) => {
-                    let own = &acts.muscles[i];
-                    chain_under(chain, own, under);
-                    let inflow = inflow + acts.piston_m_s[i] * *syringe_area_m2 - own.at(Port::SyringeFlow).add;
-                    under.rates(now.at.line(i), boils, inflow, &forces.port, out.line(i));
-                    drop_under(chain, own, under, now.at.line(i), out.line(i));
-                }
-                _ => chain.rates(now.at.line(i), boils, inflow, &forces.port, out.line(i)),
+            let line = out.line(i);
+            if LAWS {
+                line_under_laws(chain, *syringe_area_m2, now, (i, inflow, &forces.port), seen, line);
+            } else {
+                chain.rates(now.at.line(i), boils, inflow, &forces.port, line);
             }
             boils.iter().for_each(|b| switches.note(*b));
         }
@@ -89,11 +116,61 @@ pub(super) fn rates<D: Scalar, const N: usize>(
         seen.forces[i] = forces;
     }
     mechanism_rates(plant, now, &mut out, &mut switches);
-    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
-        laws.push_joints(plant, now, acts, &mut out);
-        laws.state_rates(plant, now, acts, out.law_states());
+    if LAWS {
+        push_laws(plant, now, seen, &mut out);
     }
     switches
+}
+
+/// What laws do at the instant.
+fn evaluate_laws<D: Scalar, const N: usize>(plant: &Plant<D>, now: &Instant<D, N>, seen: &mut Seen<D>) {
+    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
+        laws.act(plant, now, acts);
+    }
+}
+
+/// Torques on joints, and rates of the laws' states.
+fn push_laws<D: Scalar, const N: usize>(
+    plant: &Plant<D>,
+    now: &Instant<D, N>,
+    seen: &mut Seen<D>,
+    out: &mut PartsMut<D, N>,
+) {
+    if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
+        laws.push_joints(plant, now, acts, out);
+        laws.state_rates(plant, now, acts, out.law_states());
+    }
+}
+
+/// Rates of a muscle's line under laws.
+fn line_under_laws<D: Scalar, const N: usize>(
+    chain: &Chain<D>,
+    syringe_area_m2: f64,
+    now: &Instant<D, N>,
+    (i, inflow, port): (usize, D, &crate::hydraulics::Port<D>),
+    seen: &mut Seen<D>,
+    out: &mut [D],
+) {
+    let (Some(acts), Some(Some(under))) = (&seen.acts, seen.chains.get_mut(i)) else { return };
+    let (own, at) = (&acts.muscles[i], now.at.line(i));
+    chain_under(chain, own, under);
+    let inflow = inflow + acts.piston_m_s[i] * syringe_area_m2 - own.at(Port::SyringeFlow).add;
+    under.rates(at, now.state.boiling_of::<N>(i), inflow, port, out);
+    drop_under(chain, own, under, at, out);
+}
+
+/// Tensions of the cables under their laws, which pull at the coordinates.
+fn cables_under_laws<D: Scalar, const N: usize>(
+    plant: &Plant<D>,
+    now: &Instant<D, N>,
+    seen: &mut Seen<D>,
+    out: &mut PartsMut<D, N>,
+) {
+    let (Some(laws), Some(acts)) = (&plant.laws, &seen.acts) else { return };
+    for (i, tension) in seen.tension_n.iter_mut().enumerate() {
+        laws.push_cable(i, plant, now, acts, out);
+        *tension = acts.tension_n[i];
+    }
 }
 
 /// Rate of each muscle's pressure with all that acts, Pa/s.
@@ -168,27 +245,21 @@ fn coordinate_rates<D: Scalar, const N: usize>(
 }
 
 #[inline]
-fn cable_rates<D: Scalar, const N: usize>(
+fn cable_rates<D: Scalar, const N: usize, const LAWS: bool>(
     plant: &Plant<D>,
     now: &Instant<D, N>,
-    seen: &mut Seen<D>,
+    tension_n: &mut [D],
     out: &mut PartsMut<D, N>,
     switches: &mut Switches,
 ) {
     for (i, cable) in plant.cables.iter().enumerate() {
-        let tension = match (&plant.laws, &seen.acts) {
-            (Some(laws), Some(acts)) => {
-                laws.push_cable(i, plant, now, acts, out);
-                acts.tension_n[i]
-            }
-            _ => {
-                let (_, _, tension) = cable.pull(now);
-                add_scaled::<_, N>(out.w(), &cable.jacobian, -tension);
-                tension
-            }
-        };
-        seen.tension_n[i] = tension;
+        // Under laws it has been found already, and pulls.
+        let tension = if LAWS { tension_n[i] } else { cable.pull(now).2 };
+        tension_n[i] = tension;
         switches.note(tension.is_above(0.0));
+        if !LAWS {
+            add_scaled::<_, N>(out.w(), &cable.jacobian, -tension);
+        }
         if let Some(friction) = &cable.friction {
             let at = plant.mechanism.frictions.len() + i;
             let sliding = now.at.joint_z()[at];

@@ -227,7 +227,12 @@ impl Simulation {
         let Built { plant, state, .. } = &self.built;
         let fault = plant.laws.as_ref().and_then(|laws| laws.fault(plant, state, &self.spans));
         fault.map_or(Ok(()), |fault| {
-            Err(SystemError::Law { file: self.scene.path.clone(), time_s: self.time_s, law: fault.law, what: fault.what })
+            Err(SystemError::Law {
+                file: self.scene.path.clone(),
+                time_s: self.time_s,
+                law: fault.law,
+                what: fault.what,
+            })
         })
     }
 

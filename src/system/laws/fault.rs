@@ -19,8 +19,10 @@ impl<D: Scalar> PlantLaws<D> {
     /// Whether every law can be followed at a state.
     pub fn is_sound(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> bool {
         let acts = self.afresh(plant, &Instant::<D>::of(state, inputs, 0.0));
-        let is_positive = |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
-        self.instances.iter().all(|i| is_positive(self.port(i), i.at)) && state.parts().law_states().iter().all(|s| s.is_finite())
+        let is_positive =
+            |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
+        self.instances.iter().all(|i| is_positive(self.port(i), i.at))
+            && state.parts().law_states().iter().all(|s| s.is_finite())
     }
 
     /// What a port's coefficient has become, where it must stay above zero.

@@ -46,6 +46,8 @@ impl<D: Scalar> PlantLaws<D> {
     }
 
     /// Lets states that follow an expression go with it to the end of a step.
+    #[cold]
+    #[inline(never)]
     pub(in crate::system) fn follow(&self, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan], h: f64) {
         let follows = |m: &Memory| *m != Memory::Rate;
         if !self.laws.iter().any(|law| law.states.iter().any(|s| follows(&s.memory))) {

@@ -129,7 +129,10 @@ impl Rig {
     fn joint(&self, address: &Address) -> Result<Vec<usize>, Wrong> {
         let Some(name) = &address.of else {
             let remedy = "name the joint: joint(NAME).torque".to_owned();
-            return self.main.map(|d| vec![d]).ok_or((format!("port = \"{address}\": nothing in the scene moves a joint"), remedy));
+            return self
+                .main
+                .map(|d| vec![d])
+                .ok_or((format!("port = \"{address}\": nothing in the scene moves a joint"), remedy));
         };
         let found = self.named.iter().find(|(known, _)| known == name).map(|(_, d)| vec![*d]);
         found.ok_or_else(|| {
@@ -171,21 +174,39 @@ impl Rig {
         let no_fluid = || wrong("no fluid is simulated before the muscle", "use pressure_pa");
         match (variable.quantity, muscle) {
             (Quantity::Time, _) => Ok(Source::Time),
-            (Quantity::Stretch, _) => cable.map_or_else(|| wrong("it is that of no single cable", several), |c| Ok(Source::Stretch(c))),
-            (Quantity::Tension, _) => cable.map_or_else(|| wrong("no cable pulls there", "use pressure_pa or elongation_m"), |c| Ok(Source::Tension(c))),
-            (Quantity::Angle, _) => own.along(self, false).map_or_else(|| wrong("no joint turns there", "use elongation_m, or position_m of a slider"), |d| Ok(Source::Along(d))),
-            (Quantity::AngularSpeed, _) => own.along(self, false).map_or_else(|| wrong("no joint turns there", "use speed_m_s"), |d| Ok(Source::AlongSpeed(d))),
-            (Quantity::Position, _) => own.along(self, true).map_or_else(|| wrong("no joint slides there", "use angle_rad"), |d| Ok(Source::Along(d))),
+            (Quantity::Stretch, _) => {
+                cable.map_or_else(|| wrong("it is that of no single cable", several), |c| Ok(Source::Stretch(c)))
+            }
+            (Quantity::Tension, _) => cable.map_or_else(
+                || wrong("no cable pulls there", "use pressure_pa or elongation_m"),
+                |c| Ok(Source::Tension(c)),
+            ),
+            (Quantity::Angle, _) => own.along(self, false).map_or_else(
+                || wrong("no joint turns there", "use elongation_m, or position_m of a slider"),
+                |d| Ok(Source::Along(d)),
+            ),
+            (Quantity::AngularSpeed, _) => own
+                .along(self, false)
+                .map_or_else(|| wrong("no joint turns there", "use speed_m_s"), |d| Ok(Source::AlongSpeed(d))),
+            (Quantity::Position, _) => own
+                .along(self, true)
+                .map_or_else(|| wrong("no joint slides there", "use angle_rad"), |d| Ok(Source::Along(d))),
             (Quantity::Speed, _) if variable.of.is_none() && own.along(self, true).is_some() && own.is_joint => {
                 Ok(own.along(self, true).map_or(Source::Time, Source::AlongSpeed))
             }
             (_, None) => no_muscle(),
             (Quantity::Elongation, Some(m)) => Ok(Source::Elongation(m)),
             (Quantity::Speed, Some(m)) => Ok(Source::Speed(m)),
-            (Quantity::Pressure, Some(m)) if own.is_before_line && variable.of.is_none() => Ok(Source::SyringePressure(m)),
+            (Quantity::Pressure, Some(m)) if own.is_before_line && variable.of.is_none() => {
+                Ok(Source::SyringePressure(m))
+            }
             (Quantity::Pressure, Some(m)) => Ok(Source::Pressure(m)),
             (Quantity::FrictionState, Some(m)) => Ok(Source::FrictionState(m)),
-            (Quantity::SyringePressure | Quantity::Flow | Quantity::Plunger | Quantity::PlungerSpeed, Some(_)) if plunger.is_none() => no_fluid(),
+            (Quantity::SyringePressure | Quantity::Flow | Quantity::Plunger | Quantity::PlungerSpeed, Some(_))
+                if plunger.is_none() =>
+            {
+                no_fluid()
+            }
             (Quantity::SyringePressure, Some(m)) => Ok(Source::SyringePressure(m)),
             (Quantity::Flow, Some(m)) => Ok(Source::Flow(m)),
             (Quantity::Plunger, Some(_)) => Ok(Source::Input(plunger.unwrap_or(0))),

@@ -45,8 +45,7 @@ impl PlantLaws<f64> {
         let own = &acts.muscles[i];
         let stock = plant.stock_forces(i, now);
         let muscle = &plant.muscles[i];
-        let under =
-            muscle.forces_under(stock, own, now.at.z(i), muscle.slow(&now.at), now.state.greatest_j[i]);
+        let under = muscle.forces_under(stock, own, now.at.z(i), muscle.slow(&now.at), now.state.greatest_j[i]);
         let pressure = stock.pressure_pa;
         let mut power = -(under.pull_n() - stock.pull_n()) * stock.speed_m_s;
         let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive else {
@@ -65,7 +64,8 @@ impl PlantLaws<f64> {
         for (added, node) in [(before, 0), (after, n)] {
             power -= if is_boiling[node] { 0.0 } else { added * line[node] * rates[node] };
         }
-        let inertia = own.at(Port::Inertance).on(chain.inertance_pa_s2_m3 * n as f64) / n as f64 - chain.inertance_pa_s2_m3;
+        let inertia =
+            own.at(Port::Inertance).on(chain.inertance_pa_s2_m3 * n as f64) / n as f64 - chain.inertance_pa_s2_m3;
         for (flow, rate) in flows.iter().zip(flow_rates) {
             let resistance = chain.resistance_pa_s_m3 + chain.quadratic_pa_s2_m6 * flow.abs();
             let drop = line_drop(own, chain.resistance_pa_s_m3, resistance, *flow, n);

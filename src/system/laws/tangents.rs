@@ -47,7 +47,9 @@ impl<D: Scalar> LawTangents<D> {
         self.of_muscle(muscle).map(|s| s.pull * s.damper * s.by_speed).sum()
     }
 
-    /// What the states' own rates do to the muscles' pulls within the step.
+    /// What the states' own rates do to the muscles' pulls within the step. Kept apart: a stock scene has none.
+    #[cold]
+    #[inline(never)]
     pub fn push_states(&self, plant: &Plant<D>, g: f64, r: &[D], forces: &mut [D]) {
         for (state, &r) in self.states.iter().zip(r) {
             if let Some(muscle) = state.muscle {
@@ -57,6 +59,8 @@ impl<D: Scalar> LawTangents<D> {
     }
 
     /// Stages of the states; `moving` are those of coordinates and speeds.
+    #[cold]
+    #[inline(never)]
     pub fn stages(&self, plant: &Plant<D>, g: f64, r: &[D], moving: &[D], stages: &mut [D]) {
         let (y, w) = moving.split_at(moving.len() / 2);
         for ((stage, state), &r) in stages.iter_mut().zip(&self.states).zip(r) {
