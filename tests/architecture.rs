@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("muscle", &["scalar"]),
     ("hysteresis", &["scalar"]),
     ("feedforward", &["hysteresis"]),
-    ("effects", &["scalar"]),
+    ("effects", &["laws", "scalar"]),
     ("laws", &["nearest", "scalar"]),
     (
         "scene",
@@ -39,7 +39,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("system", &["effects", "hydraulics", "hysteresis", "laws", "mechanism", "muscle", "recording", "scalar", "scene"]),
     ("identify", &["effects", "hysteresis", "recording", "scalar", "scene", "system"]),
-    ("diagnose", &["effects", "files", "identify", "recording", "scalar", "scene", "stock", "system"]),
+    ("diagnose", &["effects", "files", "identify", "laws", "recording", "scalar", "scene", "stock", "system"]),
     // Nothing of the simulation, so that the proof is one.
     ("conceal", &["files", "recording"]),
     ("proof", &["conceal", "diagnose", "files", "identify", "recording"]),

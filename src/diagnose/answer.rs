@@ -14,6 +14,9 @@ pub struct Diagnosis {
     pub scene: String,
     pub recordings: Vec<String>,
     pub verdict: Verdict,
+    /// Of unknown physics: whether a law was found for it, which scene.toml then has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modelled: Option<bool>,
     /// The verdict in two sentences.
     pub summary: String,
     pub detection: Detection,
@@ -85,7 +88,41 @@ pub struct NamedEffect {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub size_by_run: BTreeMap<String, Estimate>,
     pub law: String,
+    /// Where it acts, `muscle_1.friction`, and whether it adds to the port or scales it.
+    #[serde(default)]
+    pub port: String,
+    #[serde(default)]
+    pub acts: String,
+    /// What it depends on, by the names that laws use.
+    #[serde(default)]
+    pub variables: Vec<String>,
+    /// Other shapes, and other places, that explain the recordings as well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forms: Vec<Form>,
+    /// The law over its first variable, as far as that was visited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<Curve>,
     pub hypothetical: bool,
+}
+
+/// Another law that the recordings cannot tell from the one named.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Form {
+    pub port: String,
+    pub acts: String,
+    pub law: String,
+    /// By how much its chi² is higher, in units of what the best leaves.
+    pub score_difference: f64,
+}
+
+/// A law over one variable, SI, with the ends of its 95 % band.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    pub variable: String,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub low: Vec<f64>,
+    pub high: Vec<f64>,
 }
 
 impl NamedEffect {

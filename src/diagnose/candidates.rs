@@ -1,6 +1,6 @@
 //! Which effects a rig could have, and with which numbers each is first tried.
 
-use crate::effects::{CATALOGUE, EffectSpec, EffectTable, Element, ElementKind, Kind};
+use crate::effects::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
 use crate::scene::Scene;
 
 use super::case::Case;
@@ -19,23 +19,6 @@ pub fn variants(case: &Case) -> Vec<Variant> {
     for spec in CATALOGUE.iter().filter(|s| !s.kind.is_hypothetical()) {
         for placed in places(case, spec) {
             let tried = starts(case, &placed).into_iter().filter(|v| fits_scene(case, &placed, v));
-            all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
-        }
-    }
-    all
-}
-
-/// Terms of a hypothesis: powers of elongation and pressure as pulls of every muscle, of pressure as flows.
-pub fn hypothetical_variants(case: &Case) -> Vec<Variant> {
-    let mut all = Vec::new();
-    for spec in CATALOGUE.iter().filter(|s| s.kind.is_hypothetical()) {
-        let powers: &[&[f64]] = match spec.kind {
-            Kind::HypotheticalForce => &[&[1.0, 0.0], &[2.0, 0.0], &[3.0, 0.0], &[0.0, 1.0], &[1.0, 1.0], &[2.0, 1.0]],
-            _ => &[&[0.0], &[1.0], &[2.0], &[3.0]],
-        };
-        for placed in places(case, spec) {
-            let values = powers.iter().map(|p| [&[spec.parameters[0].typical], *p].concat());
-            let tried = values.filter(|v| fits_scene(case, &placed, v));
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
         }
     }
@@ -82,8 +65,11 @@ fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
         return false;
     }
     let mut file = case.scene.file.clone();
-    let table: EffectTable = placed.with(values).table();
-    file.effect.push(table);
+    let effect = placed.with(values);
+    match effect.law_table() {
+        Some(law) => file.law.push(law),
+        None => file.effect.push(effect.table()),
+    }
     Scene::from_file(file, &case.scene.path).is_ok()
 }
 

@@ -2,6 +2,7 @@
 
 use toml::Table;
 
+use crate::laws::LawTable;
 use crate::scene::{Override, Scene, SceneError, SceneFile};
 use crate::stock;
 
@@ -35,9 +36,23 @@ pub fn corrected_run_scene(case: &Case, fit: &Fit, base: &Scene) -> Result<Scene
     Scene::parse(&with_numbers(case, fit, base.file.clone())?, &case.scene.path, &[])
 }
 
+/// A law under a name that no other has.
+fn with_own_name(law: LawTable, others: &[LawTable]) -> LawTable {
+    let is_free = |name: &str| others.iter().all(|other| other.name != name);
+    let numbered = (2..).map(|n| format!("{}_{n}", law.name));
+    let name = std::iter::once(law.name.clone()).chain(numbered).find(|name| is_free(name));
+    LawTable { name: name.unwrap_or_default(), ..law }
+}
+
 fn with_numbers(case: &Case, fit: &Fit, mut file: SceneFile) -> Result<String, SceneError> {
     let effects = fit.model.effects_at(&fit.x[case.parameters.len()..]);
-    file.effect.extend(effects.iter().map(|e| e.table()));
+    file.law.retain(|law| !law.candidate);
+    for effect in &effects {
+        match effect.law_table() {
+            Some(law) => file.law.push(with_own_name(law, &file.law)),
+            None => file.effect.push(effect.table()),
+        }
+    }
     let refuse = |message: String| SceneError::Syntax { file: case.scene.path.clone(), message };
     let mut table: Table = Table::try_from(&file).map_err(|e| refuse(e.to_string()))?;
     for (p, value) in case.parameters.iter().zip(&fit.x) {

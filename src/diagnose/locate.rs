@@ -1,6 +1,7 @@
 //! Step 3: where the baseline's misfit sits in time and state.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::answer::{Location, NamedEffect, Verdict};
@@ -8,6 +9,7 @@ use super::case::{Case, CaseRun, Direction};
 use super::fit::Problem;
 use super::noise::Noise;
 use super::search::Found;
+use crate::laws::Address;
 
 /// Length of the pieces that time is cut into, s.
 const PIECE_S: f64 = 1.0;
@@ -25,6 +27,15 @@ pub fn location(
 ) -> Location {
     if verdict == Verdict::Adequate {
         return Location::default();
+    }
+    if !found.located.is_empty() {
+        return Location {
+            ranked: by_screening(found, effects),
+            element: effects.iter().rfind(|e| e.hypothetical).or(effects.first()).map(|e| e.element.clone()),
+            time_windows_s: time_windows(&whole.runs, before, whole.noise),
+            state_region: state_region(case, &whole.runs, before, whole.noise),
+            indistinguishable: alike_forms(effects),
+        };
     }
     let mut shares: BTreeMap<String, f64> = BTreeMap::new();
     // Hypotheses say where only when nothing known does.
@@ -49,6 +60,36 @@ pub fn location(
         state_region: state_region(case, &whole.runs, before, whole.noise),
         indistinguishable: indistinguishable(found),
     }
+}
+
+/// Elements by the share of the misfit that a law on them could explain at best, that of the law named first.
+fn by_screening(found: &Found, effects: &[NamedEffect]) -> Vec<(String, f64)> {
+    let mut best: BTreeMap<&str, f64> = BTreeMap::new();
+    for (element, gain) in &found.located {
+        let own = best.entry(element).or_default();
+        *own = own.max(*gain);
+    }
+    let all = found.baseline.cost.max(f64::MIN_POSITIVE);
+    let named = |element: &str| effects.iter().any(|e| e.hypothetical && e.element == element);
+    let mut ranked: Vec<(String, f64)> =
+        best.into_iter().map(|(element, gain)| (element.to_owned(), (gain / all).min(1.0))).collect();
+    ranked.sort_by(|a, b| (named(&b.0), b.1).partial_cmp(&(named(&a.0), a.1)).unwrap_or(Ordering::Equal));
+    ranked
+}
+
+/// Of each law named: its element with those of the forms that explain as much.
+fn alike_forms(effects: &[NamedEffect]) -> Vec<Vec<String>> {
+    let set = |e: &NamedEffect| {
+        let mut set = vec![e.element.clone()];
+        let elements = e.forms.iter().filter_map(|f| Address::parse(&f.port).ok()).map(|a| a.element());
+        for element in elements {
+            if !set.contains(&element) {
+                set.push(element);
+            }
+        }
+        set
+    };
+    effects.iter().map(set).filter(|set| set.len() > 1).collect()
 }
 
 /// Signatures more alike than this are not told apart.

@@ -41,6 +41,7 @@ mod files;
 mod fit;
 mod folds;
 mod full;
+mod grammar;
 mod hypothesis;
 mod instants;
 mod intervals;
@@ -63,15 +64,18 @@ mod steady;
 mod summary;
 mod swaps;
 mod thin;
+mod unlisted;
 mod verdict;
 mod visible;
 mod weigh;
 mod without;
+mod written;
 
 use std::collections::BTreeMap;
 
 pub use answer::{
-    ChannelProof, Detection, Diagnosis, Estimate, Location, NamedEffect, NextExperiment, Proof, Verdict, size_key,
+    ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof, Verdict,
+    size_key,
 };
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Sealed};
 pub use error::DiagnoseError;
@@ -197,6 +201,25 @@ struct Explained {
     warnings: Vec<String>,
 }
 
+/// What predicts the held-out runs worse than the calibrated scene, beyond chance, does not leave the program: it is located, not
+/// modelled.
+fn harmless(mut found: Found, proof: &mut Proof, warnings: &mut Vec<String>) -> Found {
+    let is_worse = proof.gap_closed < 0.0 && proof.gain_ci95[1] < 0.0;
+    if found.best.model.effects.is_empty() || !is_worse {
+        return found;
+    }
+    warnings.push(format!(
+        "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
+        found.best.model.title()
+    ));
+    found.withheld = Some(std::mem::replace(&mut found.best, found.baseline.clone()));
+    found.rivals.clear();
+    found.forms.clear();
+    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
+    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
+    found
+}
+
 fn diverges() -> DiagnoseError {
     DiagnoseError::Simulation("it diverges".to_owned())
 }
@@ -226,12 +249,12 @@ fn explain(
     let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
     let confirmed = confirmed.and(possible);
     let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
-    let so_far = (&found, &proof, confirmed);
-    let hypothesis = hypothesis::weigh_hypotheses(case, &noise, so_far, excess, seed, say);
+    let hypothesis = hypothesis::weigh_laws(case, &noise, (&found, confirmed), excess, seed, say);
     if let Some((with_it, renewed)) = hypothesis {
         (found, proof) = (with_it, renewed);
         (after, excess.best) = misfit(&whole, &found).map(|(a, e)| (a, e.best)).ok_or_else(diverges)?;
     }
+    let found = harmless(found, &mut proof, &mut warnings);
     say("full scene".to_owned());
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
     confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
@@ -249,11 +272,17 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);
+    for (at, placed) in complete.model.effects.iter().enumerate() {
+        if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
+            own.curve = written::curve(&case, &complete, at);
+        }
+    }
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     steady::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
     let verdict = match confirmed {
         Confirmed::InPart if is_open_set => Verdict::UnknownPhysics,
+        _ if found.withheld.is_some() && is_open_set => Verdict::UnknownPhysics,
         _ => verdict::verdict(&found, &effects, excess, is_open_set),
     };
     if verdict == Verdict::UnknownPhysics && !open_is_loud(&case, &noise, &found) {
@@ -276,6 +305,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         scene: case.scene_name.clone(),
         recordings: case.folders.clone(),
         verdict,
+        modelled: (verdict == Verdict::UnknownPhysics)
+            .then(|| complete.model.effects.iter().any(|e| e.kind.is_hypothetical())),
         summary: String::new(),
         detection: figures::detection(&case, &noise, &found, excess),
         location,
@@ -326,6 +357,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         scene: case.scene_name.clone(),
         recordings: case.folders.clone(),
         verdict: Verdict::UnusableData,
+        modelled: None,
         summary: format!("The recordings cannot be diagnosed: {}.", preflight.unusable.join("; ")),
         detection: Detection::default(),
         location: Location::default(),

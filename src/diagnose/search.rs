@@ -38,6 +38,12 @@ pub struct Found {
     pub rivals_against: f64,
     /// What the baseline's residual promised of every effect.
     pub screened: Vec<Screened>,
+    /// Other shapes and places of the last law that explain as much.
+    pub forms: Vec<Fit>,
+    /// Elements of the slots that were screened for laws, with the fall of chi² that each promised.
+    pub located: Vec<(String, f64)>,
+    /// A model that predicts held-out runs worse than the calibration: known, and not put into the scene.
+    pub withheld: Option<Fit>,
 }
 
 impl Found {
@@ -89,7 +95,16 @@ pub(super) fn search(
             }
         }
     }
-    Found { baseline, rivals_against: found.best.cost, best: found.best, rivals: found.rivals, screened }
+    Found {
+        baseline,
+        rivals_against: found.best.cost,
+        best: found.best,
+        rivals: found.rivals,
+        screened,
+        forms: Vec::new(),
+        located: Vec::new(),
+        withheld: None,
+    }
 }
 
 /// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
@@ -242,28 +257,4 @@ fn explains_its_share(problem: &Problem, baseline_cost: f64, before: &Fit, after
     let (gain, all) = (before.cost - after.cost, baseline_cost - after.cost);
     let left = before.cost - problem.noise_cost();
     adds_branch(before, after) || gain > FAIR_OF_ALL * all || gain > FAIR_OF_LEFT * left
-}
-
-/// Most terms of a hypothesis.
-const MOST_TERMS: usize = 3;
-
-/// Adds the best variants one by one, nothing else changed. `None` when none is worth it.
-pub(super) fn grow(
-    problem: &Problem,
-    baseline: &Fit,
-    from: &Fit,
-    variants: &[Variant],
-    say: &dyn Fn(String),
-) -> Option<Fit> {
-    let mut best = from.clone();
-    for _ in 0..MOST_TERMS {
-        let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
-        let screening = screen(problem, &best, variants)?;
-        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
-        let winner = refits.first().filter(|f| best.cost - f.cost > least && foretells(problem, &best, f));
-        let Some(winner) = winner else { break };
-        say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
-        best = winner.clone();
-    }
-    (best.model != from.model).then_some(best)
 }

@@ -6,6 +6,7 @@ use super::answer::{Estimate, NamedEffect, Verdict};
 use super::fit::Fit;
 use super::model::Placed;
 use super::search::Found;
+use super::written;
 
 /// Rivals with less probability than this are not in the set.
 const LEAST_PROBABILITY: f64 = 0.05;
@@ -74,7 +75,7 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
                 }
                 continue;
             }
-            effects.push(NamedEffect {
+            let mut named = NamedEffect {
                 name: rival.spec().name.to_owned(),
                 element: rival.element.to_string(),
                 channel: rival.channel.clone(),
@@ -84,7 +85,13 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
                 size_by_run: BTreeMap::new(),
                 law: rival.spec().law.to_owned(),
                 hypothetical: rival.kind.is_hypothetical(),
-            });
+                ..NamedEffect::default()
+            };
+            written::describe(&mut named, rival, source, at);
+            if is_best && index + 1 == found.best.model.effects.len() {
+                named.forms = written::forms(&found.forms, found.best.cost, unit(found, left));
+            }
+            effects.push(named);
         }
     }
     effects
@@ -146,7 +153,7 @@ fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
 /// Whether an answer names this effect.
 pub fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
     effect.name == placed.spec().name
-        && effect.element == placed.element.to_string()
+        && (placed.kind.is_hypothetical() || effect.element == placed.element.to_string())
         && effect.channel == placed.channel
 }
 
@@ -241,6 +248,9 @@ mod tests {
             rivals: vec![vec![fit(&[Kind::CoilPreload], 101.0)]],
             rivals_against: 100.0,
             screened: Vec::new(),
+            forms: Vec::new(),
+            located: Vec::new(),
+            withheld: None,
         };
         let grown = Found { best: fit(&[Kind::GravityLoad, Kind::HypotheticalForce], 40.0), ..plain.clone() };
         let probabilities = |found: &Found| -> Vec<(String, f64)> {

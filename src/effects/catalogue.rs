@@ -273,7 +273,10 @@ pub const CATALOGUE: &[EffectSpec] = &[
 
 /// The entry of a law.
 pub fn find(kind: Kind) -> &'static EffectSpec {
-    CATALOGUE.iter().find(|e| e.kind == kind).unwrap_or(&CATALOGUE[0])
+    match kind {
+        Kind::Law(id) => &id.law().spec,
+        kind => CATALOGUE.iter().find(|e| e.kind == kind).unwrap_or(&CATALOGUE[0]),
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! How an effect of the catalogue is described.
 
-use super::ElementKind;
+use super::{ElementKind, LawId};
 
 /// Which law an effect is; the key of everything that must tell them apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,17 +29,19 @@ pub enum Kind {
     SensorGain,
     HypotheticalForce,
     HypotheticalFlow,
+    /// One that is written down: an expression at a port.
+    Law(LawId),
 }
 
 impl Kind {
     /// Whether it stands for physics nobody has named: never a candidate by itself.
     pub fn is_hypothetical(self) -> bool {
-        matches!(self, Self::HypotheticalForce | Self::HypotheticalFlow)
+        matches!(self, Self::HypotheticalForce | Self::HypotheticalFlow | Self::Law(_))
     }
 
     /// Whether one element may have it several times: relaxation has a spectrum, a polynomial several terms.
     pub fn may_repeat(self) -> bool {
-        self == Self::Viscoelasticity || self.is_hypothetical()
+        matches!(self, Self::Viscoelasticity | Self::HypotheticalForce | Self::HypotheticalFlow)
     }
 }
 

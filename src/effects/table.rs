@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
+use crate::laws::LawTable;
 use crate::scalar::Scalar;
 
 /// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
@@ -56,7 +57,15 @@ impl<D: Scalar> Effect<D> {
 }
 
 impl Effect<f64> {
-    /// As a table of a scene file.
+    /// As a law of a scene file, if it is one that was written down.
+    pub fn law_table(&self) -> Option<LawTable> {
+        match self.kind {
+            Kind::Law(id) => Some(id.law().table_with(&self.values)),
+            _ => None,
+        }
+    }
+
+    /// As a table of a scene file; one that was written down is a law ([`Effect::law_table`]).
     pub fn table(&self) -> EffectTable {
         let spec = self.spec();
         EffectTable {

@@ -2,7 +2,7 @@
 
 use crate::effects::{
     Backlash, CoilPreload, Effect, ElementKind, HypotheticalFlow, HypotheticalForce, Kind, MaxwellBranch, Mullins,
-    PlasticSet, TendonFriction, TrappedAir, Wall, logarithmic_creep,
+    PlasticSet, TendonFriction, TrappedAir, Wall, WrittenLaw, logarithmic_creep,
 };
 use crate::laws::Law;
 use crate::muscle::Friction;
@@ -68,6 +68,9 @@ impl Site {
 ///
 /// The element must exist in the plant; scenes are checked for it.
 pub(super) fn install<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
+    if let Kind::Law(id) = effect.kind {
+        return install_written(plant, site, id.law(), &effect.values);
+    }
     match effect.element.kind {
         ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => {
             effect.element.indices(plant.muscles.len()).for_each(|i| on_muscle(plant, i, effect));
@@ -170,6 +173,16 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
         }
         _ => {}
     }
+}
+
+/// Puts a law with the numbers of an effect into a plant. Where the rig cannot have it nothing happens: scenes are checked for it.
+fn install_written<D: Scalar>(plant: &mut Plant<D>, site: &Site, written: &WrittenLaw, values: &[D]) {
+    if !written.law.is_physical() {
+        return;
+    }
+    let mut own = plant.laws.take().map_or_else(|| PlantLaws::new(plant, site), |laws| *laws);
+    let _not_of_this_rig = own.add(&written.law, written.values(values), plant.cables.len()).is_err();
+    plant.laws = Some(Box::new(own));
 }
 
 /// Puts the laws of a scene into a plant.

@@ -6,6 +6,7 @@
 //! sensitivities to calibrated parameters and effects are exact.
 
 mod course;
+mod inject;
 mod lump;
 mod many;
 mod output;
@@ -16,12 +17,14 @@ mod unheld;
 use nalgebra::{DMatrix, DVector};
 
 use crate::effects::Effect;
+use crate::laws::Law;
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 
 use super::build::{build, wrong_law};
 use super::install::{Site, install, install_laws, settle_memory};
+use super::laws::Visit;
 use super::plant::{Drive, InputSpan, Plant, dot};
 use super::state::PlantState;
 use super::{Schedule, SystemError};
@@ -189,6 +192,15 @@ impl Twin {
             }
         })?;
         Some(series)
+    }
+
+    /// Series of the first variable of each law over a run, SI; empty where the rig cannot have the law. `None` when the model
+    /// diverges.
+    pub fn visited(&self, run: &TwinRun, setting: &TwinSetting<f64>, laws: &[Law]) -> Option<Vec<Vec<f64>>> {
+        let (plant, _) = self.prepare(setting);
+        let mut visit = Visit::new(&plant, &self.site, laws);
+        self.watch(run, setting, |_, plant, state, inputs| visit.see(plant, state, inputs))?;
+        Some(visit.series)
     }
 
     /// Simulates and shows plant, state and inputs at every sample. `None` when it diverges.

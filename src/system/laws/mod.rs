@@ -12,6 +12,7 @@ mod power;
 mod sensor;
 mod slopes;
 mod tangents;
+mod visited;
 
 use crate::laws::{Carrier, Law, Port};
 use crate::scalar::Scalar;
@@ -28,6 +29,7 @@ pub(super) use power::line_drop;
 pub(super) use sensor::LawSensor;
 pub(super) use slopes::MuscleSlopes;
 pub(super) use tangents::LawTangents;
+pub(super) use visited::Visit;
 
 /// A law at one element.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +97,13 @@ impl<D: Scalar> PlantLaws<D> {
     /// Gives a parameter another value.
     pub fn set(&mut self, law: usize, parameter: usize, value: D) {
         self.values[law][parameter] = value;
+    }
+
+    /// Gives all parameters of the last law this value.
+    pub(super) fn set_last(&mut self, value: D) {
+        if let Some(values) = self.values.last_mut() {
+            values.fill(value);
+        }
     }
 
     pub fn laws(&self) -> &[Law] {

@@ -1,0 +1,269 @@
+//! Laws that nobody listed: every port of the scene, every variable that it can depend on, in shapes that a law may have.
+
+use std::collections::BTreeMap;
+
+use crate::effects::{Element, Fitted, Kind, LawId, Range};
+use crate::laws::{
+    Acts, Address, Carrier, Law, LawTable, PORTS, ParameterTable, Port, PortSpec, Quantity, Surroundings,
+};
+
+use super::candidates::Variant;
+use super::case::Case;
+use super::fit::Fit;
+use super::model::Placed;
+
+/// A shape over `x`, the variable over its scale.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    pub text: &'static str,
+    /// The same as a function.
+    pub at: fn(f64) -> f64,
+    /// Whether its scale bends it: if not, a size and a scale are one number.
+    pub has_scale: bool,
+    /// Whether it is one of those of which curves are made up when slots are screened.
+    pub is_basis: bool,
+}
+
+const fn shape(text: &'static str, at: fn(f64) -> f64, has_scale: bool, is_basis: bool) -> Shape {
+    Shape { text, at, has_scale, is_basis }
+}
+
+/// Shapes, the simplest first.
+pub const SHAPES: [Shape; 14] = [
+    shape("x", |x| x, false, true),
+    shape("x^2", |x| x * x, false, true),
+    shape("abs(x)", f64::abs, false, false),
+    shape("x^3", |x| x * x * x, false, true),
+    shape("x*abs(x)", |x| x * x.abs(), false, false),
+    shape("sqrt(abs(x))", |x| x.abs().sqrt(), false, false),
+    shape("max(x - 1, 0)", |x| (x - 1.0).max(0.0), true, true),
+    shape("exp(-abs(x))", |x| (-x.abs()).exp(), true, true),
+    shape("tanh(x)", f64::tanh, true, false),
+    shape("ln(1 + abs(x))", |x| x.abs().ln_1p(), true, false),
+    shape("x/(1 + abs(x))", |x| x / (1.0 + x.abs()), true, false),
+    shape("x^2/(1 + x^2)", |x| x * x / (1.0 + x * x), true, false),
+    shape("exp(-x^2)", |x| (-x * x).exp(), true, false),
+    shape("(x > 1)", |x| f64::from(u8::from(x > 1.0)), true, false),
+];
+
+/// Variables that are tried at a port without a number in the name.
+fn variables(spec: &PortSpec) -> &'static [Quantity] {
+    use Quantity as Q;
+    match spec.carrier {
+        Carrier::Muscle if spec.element == "muscle" => &[Q::Elongation, Q::Speed, Q::Pressure, Q::Time],
+        Carrier::Muscle if spec.element == "plunger" => &[Q::Pressure, Q::Plunger, Q::Time],
+        Carrier::Muscle => &[Q::Pressure, Q::Flow, Q::Elongation, Q::Time],
+        Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::AngularSpeed, Q::Time],
+        Carrier::Joint => &[Q::Angle, Q::AngularSpeed, Q::Time],
+        Carrier::Sensor => &[],
+    }
+}
+
+/// What is tried at each port: whether it adds or scales, and a size that is plain to see.
+fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
+    use Acts::{Adds, Scales};
+    Some(match port {
+        Port::Plunger => (Adds, "m", 2e-5),
+        Port::SyringeFlow | Port::Outflow => (Adds, "m3/s", 1e-11),
+        Port::PressureDrop => (Adds, "Pa", 1e4),
+        Port::Resistance => (Scales, "1", 2.0),
+        Port::Inertance => return None,
+        Port::Pull => (Adds, "N", 0.02),
+        Port::RestLength => (Adds, "m", 2e-4),
+        Port::Stretch => (Adds, "m", 1e-4),
+        Port::Torque => (Adds, "N m", 1e-4),
+        Port::Sensor => return None,
+        _ => (Scales, "1", 0.05),
+    })
+}
+
+/// A law of the grammar before it has a shape: where it acts, and on what it depends.
+#[derive(Clone, Debug)]
+pub struct Slot {
+    pub address: String,
+    pub port: Port,
+    pub variable: String,
+    /// Unit scale of the variable: half of the greatest that it reaches.
+    pub scale: f64,
+    /// The variable in each open run.
+    pub series: Vec<Vec<f64>>,
+    /// A law whose only number is what acts at the port, and the size that is plain to see.
+    pub injected: Placed,
+    pub typical: f64,
+}
+
+impl Slot {
+    /// Name of the element that it belongs to, as answers have it.
+    pub fn element(&self) -> String {
+        Address::parse(&self.address).map_or_else(|_| self.address.clone(), |a| a.element())
+    }
+}
+
+impl PartialEq for Slot {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.address, &self.variable) == (&other.address, &other.variable)
+    }
+}
+
+/// All slots of a case's scene whose variable moves in its open runs.
+pub fn slots(case: &Case, from: &Fit) -> Vec<Slot> {
+    let mut asked = Vec::new();
+    for spec in PORTS.iter().filter(|spec| action(spec.port).is_some()) {
+        for address in addresses(case, spec) {
+            for quantity in variables(spec) {
+                let variable = quantity.spec().name();
+                let probe = LawTable {
+                    name: "probe".to_owned(),
+                    port: address.clone(),
+                    adds: Some(format!("0.0 * {variable}")),
+                    ..LawTable::default()
+                };
+                let probe = match spec.adds.is_empty() {
+                    true => None,
+                    false => probe.law(&Surroundings::default()).ok(),
+                };
+                asked.extend(probe.map(|law| (law, address.clone(), spec.port, variable)));
+            }
+        }
+    }
+    let laws: Vec<Law> = asked.iter().map(|(law, ..)| law.clone()).collect();
+    let setting = from.model.setting(case, &from.x);
+    let open = case.runs.iter().filter(|run| !run.is_sealed);
+    let Some(visited) = open.map(|run| run.twin.visited(&run.drive, &setting, &laws)).collect::<Option<Vec<_>>>()
+    else {
+        return Vec::new();
+    };
+    let slot = |(i, (_, address, port, variable)): (usize, (Law, String, Port, String))| {
+        let series: Vec<Vec<f64>> = visited.iter().map(|run| run[i].clone()).collect();
+        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let (injected, typical) = injected(case, &address, port)?;
+        (greatest > 0.0).then_some(Slot { address, port, variable, scale: 0.5 * greatest, series, injected, typical })
+    };
+    asked.into_iter().enumerate().filter_map(slot).collect()
+}
+
+/// A law at a port whose only number is what acts there.
+fn injected(case: &Case, address: &str, port: Port) -> Option<(Placed, f64)> {
+    let (acts, unit, typical) = action(port)?;
+    let (adds, scales) = match acts {
+        Acts::Adds => (Some("u".to_owned()), None),
+        Acts::Scales => (None, Some("1 + u".to_owned())),
+    };
+    let number = ParameterTable { unit: Some(unit.to_owned()), ..ParameterTable::default() };
+    let table = LawTable {
+        name: "injected".to_owned(),
+        port: address.to_owned(),
+        adds,
+        scales,
+        parameter: BTreeMap::from([("u".to_owned(), number)]),
+        ..LawTable::default()
+    };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let range = Range { min: -1e3 * typical, max: 1e3 * typical };
+    Some((written(case, &table, &law, &[Fitted { typical, range, is_fitted: true }], 0), typical))
+}
+
+/// A law as something that a model can hold.
+fn written(case: &Case, table: &LawTable, law: &Law, numbers: &[Fitted], size: usize) -> Placed {
+    let id = LawId::write(table, law, size, numbers);
+    let number = law.address.number;
+    let count = match law.address.port.spec().carrier {
+        Carrier::Cable => case.scene.file.cable.len(),
+        _ => case.scene.file.muscle.len(),
+    };
+    let count = if number.is_some() { count } else { 1 };
+    Placed {
+        kind: Kind::Law(id),
+        element: Element::of(id.law().spec.element, number.unwrap_or(0), count),
+        channel: None,
+    }
+}
+
+/// A port of every element that there is by itself, and of all at once where there are several.
+fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
+    let file = &case.scene.file;
+    let (count, together) = match spec.carrier {
+        Carrier::Muscle => (file.muscle.len(), true),
+        Carrier::Cable => (file.cable.len(), true),
+        // On a slider that a muscle moves itself a force on the joint is one of the muscle.
+        Carrier::Joint => (usize::from(file.mechanism.is_some() && !file.cable.is_empty()), false),
+        Carrier::Sensor => (0, false),
+    };
+    let name = |number: Option<usize>| {
+        let number = number.map_or(String::new(), |n| format!("_{n}"));
+        if spec.term.is_empty() {
+            format!("{}{number}", spec.element)
+        } else {
+            format!("{}{number}.{}", spec.element, spec.term)
+        }
+    };
+    match count {
+        0 => Vec::new(),
+        1 => vec![name(None)],
+        n => (1..=n).map(|i| name(Some(i))).chain(together.then(|| name(None))).collect(),
+    }
+}
+
+/// The law of a slot in a shape, its scale so many times the slot's; none where the port cannot have it.
+pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<Variant> {
+    let (acts, unit, typical) = action(slot.port)?;
+    let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
+    let name = format!("scale{ending}");
+    let x = format!("({}/{name})", slot.variable);
+    let own: String = spelled(shape.text, &x);
+    let mut parameter = BTreeMap::new();
+    let number = |value: f64, unit: Option<&str>| ParameterTable {
+        value,
+        unit: unit.map(str::to_owned),
+        ..ParameterTable::default()
+    };
+    parameter.insert("a".to_owned(), number(typical, Some(unit)));
+    parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
+    let (adds, scales) = match acts {
+        Acts::Adds => (Some(format!("a * {own}")), None),
+        Acts::Scales => (None, Some(format!("1 + a * {own}"))),
+    };
+    let table = LawTable {
+        name: slot.address.replace('.', "_"),
+        port: slot.address.clone(),
+        adds,
+        scales,
+        parameter,
+        ..LawTable::default()
+    };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let size = law.parameter("a")?;
+    let numbers: Vec<Fitted> = law
+        .parameters
+        .iter()
+        .map(|p| match p.name == "a" {
+            true => Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true },
+            false => Fitted {
+                typical: scale,
+                range: Range { min: 0.02 * slot.scale, max: 50.0 * slot.scale },
+                is_fitted: shape.has_scale,
+            },
+        })
+        .collect();
+    let placed = written(case, &table, &law, &numbers, size);
+    let values = placed.spec().typical();
+    Some(Variant { placed, values })
+}
+
+/// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
+fn ending(variable: &str) -> &str {
+    let spec = crate::laws::QUANTITIES.iter().find(|q| q.name() == variable);
+    let own = spec.map_or(0, |q| q.ending.len());
+    if own == 0 { "" } else { &variable[variable.len() - own - 1..] }
+}
+
+/// A shape with `x` spelled out.
+fn spelled(shape: &str, x: &str) -> String {
+    let letters: Vec<char> = shape.chars().collect();
+    let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
+    let each = letters.iter().enumerate().map(|(i, c)| match c {
+        'x' if !is_word(i + 1) && !(i > 0 && is_word(i - 1)) => x.to_owned(),
+        c => c.to_string(),
+    });
+    each.collect()
+}

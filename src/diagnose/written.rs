@@ -1,0 +1,162 @@
+//! Laws of an answer in words and numbers: where they act, what they read, what else would do, their curve.
+
+use crate::effects::{Kind, WrittenLaw, port_of};
+use crate::laws::{Law, Symbol};
+
+use super::answer::{Curve, Form, NamedEffect};
+use super::case::Case;
+use super::fit::Fit;
+use super::model::Placed;
+
+/// Points of a curve.
+const POINTS: usize = 101;
+
+/// Law of an effect, if it is one that was written down.
+fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
+    match placed.kind {
+        Kind::Law(id) => Some(id.law()),
+        _ => None,
+    }
+}
+
+/// Says of an effect where it acts and on what it depends; of a written law also its text with the numbers of the fit.
+pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
+    if let Some(own) = written(placed) {
+        effect.port = own.law.address.to_string();
+        effect.element = own.law.address.element();
+        effect.acts = own.law.acts.word().to_owned();
+        effect.variables = own.law.variables().iter().map(|v| v.name()).collect();
+        effect.law = with_numbers(&own.law, &own.values(&values(fit, at)));
+        return;
+    }
+    let place = port_of(placed.kind);
+    effect.port = match (&placed.channel, place.port.split_once('.')) {
+        (Some(channel), _) => format!("{}.{channel}", place.port),
+        (None, Some((element, term))) if placed.element.is_numbered && placed.element.kind.name() == element => {
+            format!("{}.{term}", placed.element)
+        }
+        _ => place.port.to_owned(),
+    };
+    effect.acts = place.acts.word().to_owned();
+    effect.variables = place.variables.iter().map(|v| (*v).to_owned()).collect();
+}
+
+/// All numbers of an effect of a fit.
+fn values(fit: &Fit, effect: usize) -> Vec<f64> {
+    let calibration = fit.x.len() - fit.model.effect_numbers();
+    fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
+}
+
+/// A law's expression with numbers in place of its parameters.
+fn with_numbers(law: &Law, values: &[f64]) -> String {
+    let mut text = String::new();
+    let mut word = String::new();
+    for c in law.expression.chars().chain([' ']) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        match law.parameter(&word) {
+            Some(p) => text += &format!("{:.6e}", values[p]),
+            None => text += &word,
+        }
+        word.clear();
+        text.push(c);
+    }
+    text.trim_end().to_owned()
+}
+
+/// The other laws that explain as much, with what their chi² is higher by, in units of `unit`.
+pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
+    let form = |fit: &Fit| {
+        let at = fit.model.effects.len().checked_sub(1)?;
+        let own = written(&fit.model.effects[at])?;
+        Some(Form {
+            port: own.law.address.to_string(),
+            acts: own.law.acts.word().to_owned(),
+            law: with_numbers(&own.law, &own.values(&values(fit, at))),
+            score_difference: (fit.cost - against) / unit,
+        })
+    };
+    fits.iter().filter_map(form).collect()
+}
+
+/// A written law over its variable, as far as the runs visited it; its band is that of its own numbers.
+pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
+    let own = written(&fit.model.effects[at])?;
+    let [variable] = own.law.variables()[..] else { return None };
+    let setting = fit.model.setting(case, &fit.x);
+    let visited =
+        case.runs.iter().filter_map(|run| run.twin.visited(&run.drive, &setting, std::slice::from_ref(&own.law)));
+    let (low, high) = visited
+        .flatten()
+        .flatten()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if low >= high || !own.law.states.is_empty() {
+        return None;
+    }
+    let x: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect();
+    let best = values(fit, at);
+    let over = |numbers: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, numbers, x)).collect() };
+    let y = over(&best);
+    let half = band(fit, at, &best, &y, &over);
+    let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
+    let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
+    Some(Curve { variable: variable.name(), x, y, low, high })
+}
+
+/// Value of a law at its variable, with the numbers of an effect.
+fn value(own: &WrittenLaw, numbers: &[f64], x: f64) -> f64 {
+    let values = own.values(numbers);
+    let read = |symbol: &Symbol| match symbol {
+        Symbol::Parameter(p) => values[*p],
+        Symbol::Constant(c) => *c,
+        Symbol::Variable(_) | Symbol::State(_) => x,
+    };
+    let by_symbol: Vec<f64> = own.law.symbols.iter().map(read).collect();
+    own.law.programs.value.value(&by_symbol)
+}
+
+/// Half of the 95 % band of a curve, from the covariance of the law's fitted numbers.
+fn band(fit: &Fit, at: usize, best: &[f64], y: &[f64], over: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let own = fit.model.places().into_iter().enumerate().filter(|(_, (effect, _))| *effect == at);
+    let fitted: Vec<(usize, usize)> = own.map(|(k, (_, i))| (calibration + k, i)).collect();
+    let slopes: Vec<Vec<f64>> = fitted
+        .iter()
+        .map(|&(_, i)| {
+            let step = 1e-4 * best[i].abs().max(f64::MIN_POSITIVE);
+            let mut moved = best.to_vec();
+            moved[i] += step;
+            over(&moved).iter().zip(y).map(|(a, b)| (a - b) / step).collect()
+        })
+        .collect();
+    let variance = |k: usize| -> f64 {
+        let pairs = fitted.iter().enumerate().flat_map(|(a, &(row, _))| {
+            let slopes = &slopes;
+            fitted
+                .iter()
+                .enumerate()
+                .map(move |(b, &(column, _))| slopes[a][k] * slopes[b][k] * fit.covariance[(row, column)])
+        });
+        pairs.sum()
+    };
+    (0..y.len()).map(|k| 1.96 * variance(k).max(0.0).sqrt()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::{LawTable, Surroundings};
+
+    #[test]
+    fn a_law_is_written_with_its_numbers() {
+        let table: LawTable = toml::from_str(
+            "name = 'x'\nport = 'muscle.wall'\nscales = '1 + a * exp(-abs(time_s/scale_s))'\n\
+             parameter.a = { value = 1.0 }\nparameter.scale_s = { value = 1.0 }",
+        )
+        .expect("TOML");
+        let law = table.law(&Surroundings::default()).expect("a law");
+        assert_eq!(with_numbers(&law, &[0.5, 20.0]), "1 + 5.000000e-1 * exp(-abs(time_s/2.000000e1))");
+    }
+}
