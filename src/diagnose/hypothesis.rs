@@ -1,16 +1,18 @@
 //! Step 6: what the catalogue does not explain, as laws that the grammar proposes. They are found on the open runs alone.
 
-use super::answer::Proof;
+use rayon::prelude::*;
+
+use crate::effects::{Kind, port_of};
+
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
-use super::prove::prove;
 use super::refits::foretells;
 use super::search::{Found, least_gain};
-use super::unlisted::{Located, propose};
+use super::unlisted::{self, Located, propose};
 use super::verdict::Excess;
 use super::without::Step;
-use super::{Confirmed, verdict};
+use super::{Confirmed, verdict, weigh};
 
 /// Laws in one answer, at most.
 const MOST_LAWS: usize = 2;
@@ -37,9 +39,8 @@ pub(super) fn weigh_laws(
     noise: &[Noise],
     (found, confirmed): (&Found, Confirmed),
     excess: Excess,
-    seed: u64,
     say: &dyn Fn(String),
-) -> Option<(Found, Proof)> {
+) -> Option<Found> {
     if case.is_without(Step::OpenSet) {
         return None;
     }
@@ -63,13 +64,58 @@ pub(super) fn weigh_laws(
         return None;
     }
     say(format!("{}: chi2 {:.0} -> {:.0}", best.best.model.title(), found.best.cost, best.best.cost));
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
-    let proof = prove(&sealed, &found.baseline, &best.best, seed)?;
     let rivals = vec![Vec::new(); best.best.model.effects.len()];
     let located = best.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
-    let renewed =
-        Found { rivals_against: best.best.cost, best: best.best, rivals, forms: best.forms, located, ..found.clone() };
-    Some((renewed, proof))
+    Some(Found { rivals_against: best.best.cost, best: best.best, rivals, forms: best.forms, located, ..found.clone() })
+}
+
+/// The same with weights and steps that the law asks for: the law and the forms beside it are fitted and chosen anew.
+pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Found, Vec<Noise>) {
+    let former = case.runs.clone();
+    let Some(renewed) = weigh::renew(case, noise, &found) else {
+        case.runs = former;
+        return (found, noise.to_vec());
+    };
+    let open = weigh::open_runs(case, &renewed.noise);
+    let again: Vec<Option<Fit>> = found.forms.par_iter().map(|f| open.fit(&f.model, &f.x)).collect();
+    let mut fits: Vec<Fit> = again.into_iter().flatten().chain([renewed.start]).collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
+        (found.rivals_against, found.best, found.forms) = (best.cost, best, forms);
+    }
+    found.baseline = renewed.baseline;
+    (found, renewed.noise)
+}
+
+/// Of a single effect of the catalogue: laws at other places that explain the recordings as well. It stays the answer.
+pub(super) fn other_places(case: &Case, noise: &[Noise], found: &mut Found) {
+    let [effect] = &found.best.model.effects[..] else { return };
+    let variables = port_of(effect.kind).variables;
+    if case.is_without(Step::OpenSet) || effect.channel.is_some() || variables.is_empty() {
+        return;
+    }
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let criterion = Criterion::of(&open, [Some(&found.best), None, None]);
+    let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (found.baseline.cost - found.best.cost);
+    let own = port_of(effect.kind).port;
+    let others = unlisted::alternatives(&open, &found.baseline, &found.best, variables);
+    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().map(|e| e.kind) {
+        Some(Kind::Law(id)) => id.law().law.address.port.spec().name() != own,
+        _ => false,
+    };
+    let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
+    found.forms = near.take(MOST_FORMS).cloned().collect();
+}
+
+/// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
+fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
+    let first = fits.first()?;
+    let criterion = Criterion::of(open, [Some(first), None, None]);
+    let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (before - first.cost);
+    let same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
+    let best = *same.iter().min_by(|a, b| criterion.at(a).total_cmp(&criterion.at(b)))?;
+    let others = same.iter().filter(|f| f.model.effects != best.model.effects).take(MOST_FORMS);
+    Some((best.clone(), others.map(|f| (*f).clone()).collect()))
 }
 
 /// Whether the best leaves more than its search would still take up.
@@ -91,11 +137,7 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
         if here.cost - first.cost < least_gain(open.samples()) {
             break;
         }
-        let criterion = Criterion::of(open, [Some(first), None, None]);
-        let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (here.cost - first.cost);
-        let same: Vec<Fit> = proposals.fits.iter().filter(|f| f.cost <= first.cost + tie).cloned().collect();
-        let best = same.iter().min_by(|a, b| criterion.at(a).total_cmp(&criterion.at(b)))?.clone();
-        let forms = same.into_iter().filter(|f| f.model.effects != best.model.effects).take(MOST_FORMS).collect();
+        let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
         here = best.clone();
         let located = lawful.map_or(proposals.located, |l| l.located);
         lawful = Some(Lawful { best, forms, located });

@@ -182,7 +182,9 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     if !preflight.unusable.is_empty() {
         return Ok(unusable(case, preflight));
     }
-    let explained = explain(&mut case, preflight.warnings, options.seed, say)?;
+    let listed = explain(&mut case, preflight.warnings, options.seed, say)?;
+    let explained = explain_by_laws(&mut case, listed, options.seed, say)?;
+    let explained = hold_against_full_scene(&case, explained, options.seed, say);
     answer(case, explained, say)
 }
 
@@ -224,7 +226,7 @@ fn diverges() -> DiagnoseError {
     DiagnoseError::Simulation("it diverges".to_owned())
 }
 
-/// Calibrates, searches, and holds what is found against the sealed runs and the full scene.
+/// Calibrates, searches the catalogue, and holds what is found against the sealed runs.
 fn explain(
     case: &mut Case,
     warnings: Vec<String>,
@@ -246,19 +248,42 @@ fn explain(
     let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, &variants, &mut warnings);
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let (mut found, mut proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
+    let (found, proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
     let confirmed = confirmed.and(possible);
-    let (mut after, mut excess) = misfit(&whole, &found).ok_or_else(diverges)?;
-    let hypothesis = hypothesis::weigh_laws(case, &noise, (&found, confirmed), excess, seed, say);
-    if let Some((with_it, renewed)) = hypothesis {
-        (found, proof) = (with_it, renewed);
-        (after, excess.best) = misfit(&whole, &found).map(|(a, e)| (a, e.best)).ok_or_else(diverges)?;
-    }
+    let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
+    Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
+}
+
+/// Puts a law that nobody listed in the place of what was found, where that explains clearly more.
+fn explain_by_laws(
+    case: &mut Case,
+    listed: Explained,
+    seed: u64,
+    say: &dyn Fn(String),
+) -> Result<Explained, DiagnoseError> {
+    let Explained { found, confirmed, excess, noise, .. } = &listed;
+    let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, say) else {
+        let mut listed = listed;
+        hypothesis::other_places(case, &listed.noise, &mut listed.found);
+        return Ok(listed);
+    };
+    let (found, noise) = hypothesis::renew(case, noise, found);
+    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
+    let (sealed, whole) = (problem(Sealed::Sealed), problem(Sealed::Both));
+    let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
+    let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
+    Ok(Explained { found, proof, after, excess, noise, ..listed })
+}
+
+/// Holds what was found against the full scene, and takes back what does harm.
+fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
+    let Explained { found, mut proof, noise, mut warnings, .. } = explained;
     let found = harmless(found, &mut proof, &mut warnings);
     say("full scene".to_owned());
+    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &noise };
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
     confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
-    Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
+    Explained { found, proof, noise, warnings, ..explained }
 }
 
 /// Names what was found and where, and proposes what to record next.

@@ -99,6 +99,28 @@ pub(super) fn propose(problem: &Problem, from: &Fit, say: &dyn Fn(String)) -> Op
     Some(Proposals { located, fits })
 }
 
+/// Share of what an effect explains from which a slot is another place for it, and shapes that are refitted there.
+const AS_MUCH: f64 = 0.97;
+const SHAPES_OF_PLACE: usize = 2;
+
+/// Laws over the variables of an effect, in its place, that explain as much of what `from` leaves as `best` does; cheapest first.
+pub(super) fn alternatives(problem: &Problem, from: &Fit, best: &Fit, variables: &[&str]) -> Vec<Fit> {
+    let mut all = slots(problem.case, from);
+    all.retain(|slot| variables.contains(&slot.variable.as_str()));
+    let Some(known) = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both) else { return Vec::new() };
+    let basis = known.slopes.clone().qr().q();
+    let left = orthogonal(&basis, &known.residual);
+    let shown = Shown { problem, from, basis: &basis, left: &left };
+    let located = shown.locate(&all);
+    let as_much = located.iter().filter(|l| l.gain > AS_MUCH * (from.cost - best.cost));
+    let places: Vec<&Slot> = as_much.take(SLOTS).map(|l| &l.slot).collect();
+    let candidates = shown.shapes(&all, &places, SHAPES_OF_PLACE);
+    let fits = candidates.par_iter().filter_map(|c| refit(problem, from, &known.slopes, c));
+    let mut fits: Vec<Fit> = fits.collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
 /// The best slots, few of them at ports of one kind.
 fn several_ports(located: &[Located]) -> Vec<&Slot> {
     let mut best: Vec<&Slot> = Vec::new();

@@ -45,17 +45,17 @@ pub fn search_and_weigh(
 const SAME_COST: f64 = 0.3;
 
 /// What was found and the baseline, fitted with weights and steps of their own.
-struct Renewed {
-    noise: Vec<Noise>,
+pub(super) struct Renewed {
+    pub noise: Vec<Noise>,
     /// Whether the former weights were good enough.
     weights_hold: bool,
-    start: Fit,
-    baseline: Fit,
+    pub start: Fit,
+    pub baseline: Fit,
 }
 
 /// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the fast model then
 /// diverges; the case's steps are those that it does so with.
-fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
+pub(super) fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
     let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
     let noise = noise::estimate(case, &residuals);
     let weights_hold = noise.iter().zip(former).all(|(new, old)| new.is_near(old));
