@@ -30,7 +30,7 @@ def run(
 
     ``scene``: path of a scene file, or a name that :func:`scenes` lists.
     ``set``: keys of the scene with other values, ``{"muscles.friction.m0_n": 0.2}``; :func:`keys` lists them.
-    ``laws``: physics of your own, ``["muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)"]`` or ``[[law]]`` tables
+    ``laws``: physics of your own, ``["muscle.damping adds 0.05*tanh(speed_m_s/2e-3)"]`` or ``[[law]]`` tables
     (``smam laws`` lists the ports).
     ``input``: drives the scene's inputs at its sample times: a CSV or Parquet file, or a frame, or arrays by name with
     ``time_s`` among them. Left out, the scene's own programme is played.

@@ -18,7 +18,7 @@ use super::interrupt::stop_flag;
   smam laws                        the ports at which a law can act
   smam laws muscle.friction        what may be added or scaled there, the variables, an example
   smam laws --scene muscle_bench   the ports that this scene has
-  smam run muscle_bench --law 'muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)'")]
+  smam run muscle_bench --law 'muscle.damping adds 0.05*tanh(speed_m_s/2e-3)'")]
 pub struct LawsArguments {
     /// Show this port
     port: Option<String>,
@@ -85,6 +85,7 @@ fn page(spec: &PortSpec) -> String {
         let own = variable.spec();
         let unit = match own.quantity {
             smam::laws::Quantity::Reading => "SI unit".to_owned(),
+            _ if own.ending == "rad_s" => "rad/s".to_owned(),
             _ if own.ending.is_empty() || own.ending == "rad" => own.ending.to_owned(),
             _ => own.quantity.dimension().to_string(),
         };

@@ -323,7 +323,8 @@ fn print_energy(book: &smam::system::EnergyBook) {
     }
     let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
     say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
-    for (name, joule) in book.supplying_laws() {
+    for (line, joule) in book.supplying_laws() {
+        let name = line.strip_prefix("law_").unwrap_or(line);
         eprintln!(
             "warning: [[law]] \"{name}\" supplies {:.6} mJ at a port that only takes energy; remedy: look at its sign",
             joule * 1e3
