@@ -75,7 +75,7 @@ pub struct StateTable {
 }
 
 impl LawTable {
-    /// Reads the short form: `muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)`.
+    /// Reads the short form: `muscle.damping adds 0.05*tanh(speed_m_s/2e-3)`.
     ///
     /// ```
     /// use smam::laws::LawTable;
@@ -100,7 +100,7 @@ impl LawTable {
                 return Err((
                     format!("\"{text}\" is no law"),
                     "write PORT adds EXPRESSION or PORT scales EXPRESSION, for example \
-                     'muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)'"
+                     'muscle.damping adds 0.05*tanh(speed_m_s/2e-3)'"
                         .to_owned(),
                 ));
             }
