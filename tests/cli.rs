@@ -314,6 +314,63 @@ fn an_effect_is_said_and_drawn() {
 }
 
 #[test]
+fn a_law_on_the_command_line_acts_in_every_command() {
+    let here = folder();
+    let law = "muscle.damping adds 0.05*tanh(speed_m_s/2e-3)";
+    let run = |more: &[&str]| {
+        let first = ["run", "muscle_bench", "--duration", "2", "--law", law, "--output"];
+        let output = smam(&[&first, more].concat(), here.path());
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        output
+    };
+    assert!(printed(&run(&["a.csv", "--energy"])).contains("  law_law_1  "));
+    let supplying = smam(
+        &[
+            "run",
+            "muscle_bench",
+            "--duration",
+            "2",
+            "--law",
+            "muscle.damping adds -0.05",
+            "--energy",
+            "--output",
+            "b.csv",
+        ],
+        here.path(),
+    );
+    assert!(said(&supplying).contains("warning: [[law]] \"law_1\" supplies"), "{}", said(&supplying));
+    let checked = smam(&["check", "muscle_bench", "--law", law], here.path());
+    assert!(printed(&checked).contains(&format!(", 1 law\n  law law_1: {law}\n")), "{}", printed(&checked));
+    let vary = ["sweep", "muscle_bench", "--duration", "2", "--vary", "muscles.friction.m0_n=0.1,0.2"];
+    let swept = |more: &[&str], out: &str| {
+        let output =
+            smam(&[&vary, ["--measure", "top=max(pressure_kpa)", "--out", out].as_slice(), more].concat(), here.path());
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        std::fs::read_to_string(here.path().join(out).join("table.csv")).expect("written")
+    };
+    assert_ne!(swept(&["--law", law], "with"), swept(&[], "without"));
+    // What was recorded with the law is explained by it.
+    std::fs::create_dir(here.path().join("rig")).expect("folder");
+    std::fs::write(here.path().join("rig/recordings.toml"), RECORDINGS).expect("written");
+    for file in ["rig/sine.csv", "rig/later.csv"] {
+        run(&[file]);
+    }
+    let same = smam(&["compare", "rig", "--law", law], here.path());
+    assert!(printed(&same).contains("      0.0000"), "{}", printed(&same));
+}
+
+#[test]
+fn a_port_is_shown_and_those_of_a_scene_are_listed() {
+    let here = folder();
+    let page = printed(&smam(&["laws", "muscle.friction"], here.path()));
+    assert!(page.contains("speed_m_s              m/s") && page.contains("  port = \"muscle.friction\""), "{page}");
+    assert_eq!(page, printed(&smam(&["laws", "--port", "muscle_2.friction"], here.path())));
+    let ports = printed(&smam(&["laws", "--scene", "muscle_bench"], here.path()));
+    assert!(ports.contains("muscle.friction      muscle_1.friction\n") && !ports.contains("cable."), "{ports}");
+    refused(&smam(&["laws", "muscle.frction"], here.path()), &["did you mean \"muscle.friction\"?"]);
+}
+
+#[test]
 fn a_model_is_written_whole() {
     let here = folder();
     let output = smam(&["model", "notched-tube", "--notches", "5", "--output", "tube.urdf"], here.path());

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 use smam::mechanism::geometry::{Contact, Pose, Shape, Visual};
 use smam::system::observe::{
-    CableFrame, Frame, JointGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+    CableFrame, Frame, JointGraph, LawFrame, LawGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph,
+    SideBySide,
 };
 use smam::view::{ViewOptions, ViewSink, Viewer, show_diagnosis};
 
@@ -128,6 +129,11 @@ fn graph() -> SceneGraph {
             .collect(),
         cables: vec!["left".into(), "right".into()],
         muscles: SIDES.map(muscle).to_vec(),
+        laws: vec![LawGraph {
+            name: "drag".into(),
+            text: "joint.torque adds -c * angular_speed_rad_s".into(),
+            variable: Some("angular_speed_rad_s".into()),
+        }],
         loops: vec![(0, 6)],
         camera_target_m: [0.01, 0.0, -0.025],
         camera_position_m: [0.06, -0.33, 0.05],
@@ -206,6 +212,7 @@ fn frame(time_s: f64) -> Frame {
             })
             .collect(),
         contacts,
+        laws: vec![LawFrame { value: -0.01 * phase.cos(), variable: phase.cos() }],
         joint_positions: vec![angle_rad / LINKS as f64; LINKS],
         events,
         energy_j: vec![("stored".into(), 0.1 * angle_rad * angle_rad), ("dissipated".into(), 0.02 * time_s)],

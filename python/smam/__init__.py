@@ -10,6 +10,7 @@ from ._compare import Comparison, compare
 from ._diagnose import Diagnosis, diagnose
 from ._errors import SmamError
 from ._identify import Identification, identify
+from ._laws import Law
 from ._lists import effects, keys, scenes
 from ._recordings import write_recordings
 from ._run import run
@@ -24,6 +25,7 @@ __all__ = [
     "Comparison",
     "Diagnosis",
     "Identification",
+    "Law",
     "SmamError",
     "compare",
     "diagnose",

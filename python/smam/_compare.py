@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import pandas as pd
 
 from ._answers import answer_folder, read_json
 from ._frames import PathLike
+from ._laws import Law, law_arguments
 from ._process import Word, call
 from ._toml import set_arguments
 
@@ -34,15 +35,16 @@ def compare(
     *,
     scene: PathLike | None = None,
     set: Mapping[str, Any] | None = None,
+    laws: Sequence[Law] | None = None,
     out: PathLike | None = None,
 ) -> Comparison:
     """Simulates what was recorded and lays both over each other.
 
     ``folder``: with a recordings.toml. ``scene``: instead of the one named there. ``set``: keys of the scene with other
-    values. ``out``: where to write, ``out/compare_NAME`` if left out.
+    values. ``laws``: as in :func:`run`. ``out``: where to write, ``out/compare_NAME`` if left out.
     """
     written = answer_folder(out, "compare", folder)
-    words: list[Word] = ["compare", folder, "--out", written, *set_arguments(set)]
+    words: list[Word] = ["compare", folder, "--out", written, *law_arguments(laws), *set_arguments(set)]
     if scene is not None:
         words += ["--scene", scene]
     call(words)

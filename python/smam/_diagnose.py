@@ -12,6 +12,7 @@ import pandas as pd
 
 from ._answers import answer_folder, read_json
 from ._frames import PathLike
+from ._laws import Law, law_arguments
 from ._process import Word, call
 from ._toml import set_arguments
 
@@ -70,6 +71,7 @@ def diagnose(
     *,
     scene: PathLike | None = None,
     set: Mapping[str, Any] | None = None,
+    laws: Sequence[Law] | None = None,
     out: PathLike | None = None,
     seed: int = 1,
     threads: int | None = None,
@@ -79,6 +81,7 @@ def diagnose(
 
     ``folders``: one folder with a recordings.toml (:func:`write_recordings` makes one) or several of one rig.
     ``scene``: instead of the one that recordings.toml names. ``set``: keys of the scene with other values.
+    ``laws``: as in :func:`run`.
     ``out``: where to write, ``out/diagnose_NAME`` if left out. ``rrd``: also a stream for the Rerun viewer.
     Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
     """
@@ -86,7 +89,8 @@ def diagnose(
     if not given:
         raise ValueError("no folder of recordings given")
     folder = answer_folder(out, "diagnose", given[0])
-    words: list[Word] = ["diagnose", *given, "--out", folder, "--seed", str(seed), *set_arguments(set)]
+    words: list[Word] = ["diagnose", *given, "--out", folder, "--seed", str(seed)]
+    words += [*law_arguments(laws), *set_arguments(set)]
     if scene is not None:
         words += ["--scene", scene]
     if threads is not None:

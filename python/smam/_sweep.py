@@ -15,6 +15,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from ._frames import PathLike
+from ._laws import Law, law_overrides
 from ._process import Word, call
 from ._toml import document, overrides
 
@@ -28,6 +29,7 @@ def sweep(
     *,
     sampling: Mapping[str, Any] | None = None,
     set: Mapping[str, Any] | None = None,
+    laws: Sequence[Law] | None = None,
     duration_s: float | None = None,
     out: PathLike | None = None,
     resume: bool = False,
@@ -39,6 +41,7 @@ def sweep(
     ``[[vary]]`` takes, ``{"from": 0.05, "to": 0.3}`` or ``{"mean": 0.1, "sd": 0.01}``, for a ``sampling`` such as
     ``{"method": "sobol", "count": 128, "seed": 1}``.
     ``measure``: figures of each run by the name of their column: ``{"range_deg": "range(angle_deg)"}``.
+    ``laws``: as in :func:`run`; a parameter can be varied, ``{"law.NAME.PARAMETER": [0.1, 0.2]}``.
     ``out``: keep tables, page and journal in this folder; ``resume`` goes on with what is there.
     Without ``vary`` and ``measure``, ``scene`` is a sweep file. A point that failed has NaN for its measures and the
     reason in the column ``error``.
@@ -48,10 +51,10 @@ def sweep(
         given = vary is not None or measure is not None
         file = Path(scratch, "sweep.toml") if given else Path(scene)
         if given:
-            text = document(_sweep_file(scene, vary or {}, measure or {}, sampling, set, duration_s))
+            text = document(_sweep_file(scene, vary or {}, measure or {}, sampling, [*law_overrides(laws), *overrides(set)], duration_s))
             file.write_text(text, encoding="utf-8")
-        elif sampling is not None or set is not None or duration_s is not None:
-            raise ValueError("sampling, set and duration_s need vary and measure\n  remedy: a sweep file holds its own")
+        elif any(of is not None for of in (sampling, set, laws, duration_s)):
+            raise ValueError("sampling, set, laws and duration_s need vary and measure\n  remedy: a sweep file holds its own")
         words: list[Word] = ["sweep", file, "--out", folder]
         if resume:
             words.append("--resume")
@@ -68,7 +71,7 @@ def _sweep_file(
     vary: Mapping[str, Range],
     measure: Mapping[str, str],
     sampling: Mapping[str, Any] | None,
-    set: Mapping[str, Any] | None,
+    changes: list[str],
     duration_s: float | None,
 ) -> dict[str, Any]:
     path = Path(scene)
@@ -80,8 +83,8 @@ def _sweep_file(
     }
     if duration_s is not None:
         file["duration_s"] = float(duration_s)
-    if set is not None:
-        file["set"] = overrides(set)
+    if changes:
+        file["set"] = changes
     if sampling is not None:
         file["sampling"] = dict(sampling)
     file["vary"] = [{"key": key, **_range(over)} for key, over in vary.items()]

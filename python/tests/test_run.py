@@ -47,6 +47,36 @@ def test_keys_numbers_lists_and_words_can_be_set() -> None:
     assert slower["plunger_mm"].iloc[-1] == pytest.approx(1.0)
 
 
+def test_laws_of_your_own_act() -> None:
+    usual = smam.run("muscle_bench", duration_s=5.0)
+    short = smam.run("muscle_bench", duration_s=5.0, laws=["muscle.pull adds 20.0*elongation_m"])
+    table = {"name": "stiffer", "port": "muscle.pull", "adds": "k_n_m*elongation_m", "parameter": {"k_n_m": {"value": 20.0}}}
+    as_table = smam.run("muscle_bench", duration_s=5.0, laws=[table])
+    pd.testing.assert_frame_equal(short, as_table)
+    assert short["pressure_kpa"].max() > 1.05 * usual["pressure_kpa"].max()
+    twice = smam.run("muscle_bench", duration_s=5.0, laws=[table], set={"law.stiffer.k_n_m": 40.0})
+    assert twice["pressure_kpa"].max() > 1.05 * short["pressure_kpa"].max()
+
+
+def test_a_wrong_law_is_refused_with_the_remedy() -> None:
+    with pytest.raises(smam.SmamError, match="muscle.friction scales 1 \\+ speed_m_s") as raised:
+        smam.run("muscle_bench", laws=["muscle.friction scales 1 + speed_m_s"])
+    assert raised.value.exit_code == 2
+    for wrong in (["muscle.friction 1.5"], [{"port": "muscle.friction", "scales": "1.5"}]):
+        with pytest.raises(ValueError, match="remedy: write 'PORT adds EXPRESSION'"):
+            smam.run("muscle_bench", laws=wrong)
+    with pytest.raises(TypeError, match="not a list"):
+        smam.run("muscle_bench", laws="muscle.friction scales 1.5")
+
+
+def test_a_law_s_parameter_can_be_swept() -> None:
+    law = {"name": "mine", "port": "muscle.friction", "scales": "1 + a", "parameter": {"a": {"value": 0.0}}}
+    table = smam.sweep(
+        "muscle_bench", {"law.mine.a": [0.0, 1.0]}, {"top_kpa": "max(pressure_kpa)"}, laws=[law], duration_s=6.0
+    )
+    assert table["top_kpa"].is_monotonic_increasing
+
+
 def test_an_unknown_key_is_named_with_the_remedy(capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(smam.SmamError) as raised:
         smam.run("muscle_bench", set={"muscles.friktion.m0_n": 0.1})

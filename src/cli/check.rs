@@ -3,10 +3,11 @@
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::scene::{Override, Scene};
+use smam::scene::Scene;
 use smam::system::{Schedule, Simulation, record};
 
 use super::CliError;
+use super::changes::Changes;
 
 /// Arguments of `smam check`.
 #[derive(Args)]
@@ -16,9 +17,8 @@ use super::CliError;
 pub struct CheckArguments {
     /// Path of a scene file, or a name that `smam scenes` lists
     scene: String,
-    /// Change a key of the scene before checking
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// List every key that --set can change, with its value
     #[arg(long)]
     keys: bool,
@@ -26,7 +26,7 @@ pub struct CheckArguments {
 
 /// Reads, validates and builds the scene without running it.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
-    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let overrides = arguments.changes.overrides()?;
     let scene = Scene::load(&arguments.scene, &overrides)?;
     if arguments.keys {
         let lines: String = scene.keys().iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
@@ -40,12 +40,27 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, CliError> {
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
     let file = &simulation.scene().file;
     say!(
-        "{path}: right; {} muscles, {} cables, {} inputs, {} outputs, {} checks",
+        "{path}: right; {} muscles, {} cables, {} inputs, {} outputs, {} checks{}",
         file.muscle.len(),
         file.cable.len(),
         file.input.len(),
         file.output.len(),
-        file.expect.len()
+        file.expect.len(),
+        count_of_laws(file.law.len())
     );
+    for law in &simulation.scene().laws {
+        say!("  law {}: {}", law.name, law.text());
+    }
+    for law in file.law.iter().filter(|law| law.candidate) {
+        say!("  law {}: a candidate, left to a diagnosis", law.name);
+    }
     Ok(ExitCode::SUCCESS)
+}
+
+fn count_of_laws(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", 1 law".to_owned(),
+        n => format!(", {n} laws"),
+    }
 }

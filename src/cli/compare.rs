@@ -12,6 +12,7 @@ use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
+use super::changes::Changes;
 use super::files::{make_folder, write};
 
 /// Arguments of `smam compare`.
@@ -25,9 +26,8 @@ pub struct CompareArguments {
     /// Compare with this scene instead of the one that recordings.toml names
     #[arg(long)]
     scene: Option<String>,
-    /// Change a key of the scene, or a calibrated parameter; may be given several times
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Compare this file instead of the declared runs; looked for in DIR, then as a path
     #[arg(long, value_name = "FILE.csv")]
     run: Option<String>,
@@ -38,7 +38,7 @@ pub struct CompareArguments {
 
 /// Runs the command.
 pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
-    let mut overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let mut overrides = arguments.changes.overrides()?;
     let set = RecordingSet::load(&arguments.dir)?;
     let scene_name = arguments.scene.clone().unwrap_or_else(|| set.scene_path());
     let scene = Scene::load(&scene_name, &overrides)?;

@@ -7,9 +7,9 @@ use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer_with};
 use smam::report::diagnosis_page;
-use smam::scene::Override;
 
 use super::CliError;
+use super::changes::Changes;
 use super::diagnose_view::Shown;
 use super::files::take_folder;
 
@@ -26,9 +26,8 @@ pub struct DiagnoseArguments {
     /// Use this scene instead of the one that recordings.toml names
     #[arg(long)]
     scene: Option<String>,
-    /// Change a key of the scene; may be given several times
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Where to write diagnosis.json, report.html, scene.toml and baseline.toml [default: out/diagnose_DIR]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -79,7 +78,7 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     let shown = Shown { in_file: arguments.rrd, in_window: arguments.view };
     shown.check()?;
     use_threads(arguments.threads)?;
-    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let overrides = arguments.changes.overrides()?;
     let folders: Vec<&Path> = arguments.dirs.iter().map(PathBuf::as_path).collect();
     let mut case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
     if let Some(step) = arguments.without {

@@ -9,6 +9,7 @@ macro_rules! say {
 mod angles;
 mod bench;
 mod ceiling;
+mod changes;
 mod check;
 mod compare;
 mod conceal;
@@ -22,6 +23,7 @@ mod identify;
 mod identify_page;
 mod interrupt;
 mod junit;
+mod laws;
 mod model;
 mod observers;
 mod proof;
@@ -72,6 +74,8 @@ enum Command {
     Identify(identify::IdentifyArguments),
     /// List the physics that a scene may leave out, or show one
     Effects(effects::EffectsArguments),
+    /// List the places at which a law of your own can act, or show one
+    Laws(laws::LawsArguments),
     /// Read a scene and say whether it is right
     Check(check::CheckArguments),
     /// List the scenes that come with the program, or copy one
@@ -140,6 +144,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),
         Some(Command::Identify(arguments)) => identify::identify(&arguments),
         Some(Command::Effects(arguments)) => effects::effects(&arguments),
+        Some(Command::Laws(arguments)) => laws::laws(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
         Some(Command::Schema(arguments)) => schema::schema(&arguments),

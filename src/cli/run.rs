@@ -8,12 +8,13 @@ use clap::Args;
 use smam::files::write_whole;
 use smam::identify::LeadIn;
 use smam::recording::{Recording, read_recording, survey};
-use smam::scene::{Override, Scene, ViewSpec};
+use smam::scene::{Scene, ViewSpec};
 use smam::system::{
     InputSource, RunError, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps,
 };
 
 use super::angles::Angles;
+use super::changes::Changes;
 use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
@@ -25,6 +26,7 @@ use super::{CliError, junit};
 #[command(after_help = "Examples:
   smam run bending_catheter                                    writes out/bending_catheter.csv and .rrd
   smam run muscle_bench --set hydraulics.line.length_m=2       one key changed for this run
+  smam run muscle_bench --law 'line.outflow adds 1e-16*pressure_pa'   a law of your own (smam laws)
   smam run muscle_bench --input measured.csv --output sim.csv  driven by a recording
   smam run bending_catheter --angles --output c.csv            prints every notch's angle and the tip's place
   smam run muscle_bench --check --junit checks.xml             the scene's own expectations, for CI")]
@@ -49,9 +51,8 @@ pub struct RunArguments {
     /// Go no faster than the clock: for watching with --view or --serve
     #[arg(long)]
     real_time: bool,
-    /// Change a key of the scene; may be given several times
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Length of the run, s, instead of the scene's
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
@@ -74,7 +75,7 @@ pub struct RunArguments {
 
 /// Runs the command.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
-    let overrides: Vec<Override> = arguments.set.iter().map(|s| Override::parse(s)).collect::<Result<_, _>>()?;
+    let overrides = arguments.changes.overrides()?;
     refuse_folder(arguments.junit.as_deref())?;
     let scene = Scene::load(&arguments.scene, &overrides)?;
     let name = scene.file.name.clone();
@@ -322,6 +323,13 @@ fn print_energy(book: &smam::system::EnergyBook) {
     }
     let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
     say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
+    for (line, joule) in book.supplying_laws() {
+        let name = line.strip_prefix("law_").unwrap_or(line);
+        eprintln!(
+            "warning: [[law]] \"{name}\" supplies {:.6} mJ at a port that only takes energy; remedy: look at its sign",
+            joule * 1e3
+        );
+    }
     if share > MOST_UNACCOUNTED {
         eprintln!(
             "warning: more than {MOST_UNACCOUNTED} % of the turnover is unaccounted for: the steps are too long; remedy: see --check-steps"

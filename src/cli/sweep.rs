@@ -5,12 +5,14 @@ use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
+use smam::scene::Override;
 use smam::sweep::{
     Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepFile, Table, VarySpec, Watch, check_shard, sensitivity,
     write_best,
 };
 
 use super::CliError;
+use super::changes::laws;
 use super::diagnose::{threads, use_threads};
 use super::interrupt::stop_flag;
 use super::sweep_page::write_page;
@@ -65,6 +67,9 @@ struct RunSweep {
     /// Measure of each run: max(angle_deg) - min(angle_deg), or NAME=...
     #[arg(long, value_name = "FIGURES")]
     measure: Vec<String>,
+    /// Add a law of your own to the scene of --vary: 'PORT adds|scales EXPRESSION'; may be given several times
+    #[arg(long, value_name = "LAW")]
+    law: Vec<String>,
     /// Length of each run, s, instead of the scene's
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
@@ -172,9 +177,11 @@ fn plot(sweep: &Path, folder: &Path) -> Result<ExitCode, CliError> {
 fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
     let what = arguments.what.as_deref().unwrap_or_default();
     if arguments.vary.is_empty() {
-        if !arguments.measure.is_empty() || arguments.duration.is_some() {
-            let message = "--measure and --duration need --vary and the name of a scene";
-            return Err(CliError::Usage(format!("{message}\n  remedy: a sweep file holds its own measures")));
+        if !arguments.measure.is_empty() || arguments.duration.is_some() || !arguments.law.is_empty() {
+            let message = "--measure, --law and --duration need --vary and the name of a scene";
+            let remedy =
+                "a sweep file holds its own measures, and laws as set = ['law.NAME={port=\"...\", adds=\"...\"}']";
+            return Err(CliError::Usage(format!("{message}\n  remedy: {remedy}")));
         }
         if !Path::new(what).is_file() {
             let remedy = "give a sweep file (docs/sweeps.md), or a scene with --vary KEY=FROM:TO:COUNT and --measure";
@@ -195,7 +202,7 @@ fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
         objective: Vec::new(),
         limit: Vec::new(),
         output: Vec::new(),
-        set: Vec::new(),
+        set: laws(&arguments.law)?.iter().map(Override::text).collect(),
     })
 }
 

@@ -17,6 +17,7 @@
 //! ```
 
 mod dimension;
+mod example;
 mod law;
 mod port;
 mod program;

@@ -254,7 +254,10 @@ impl<'a> Reader<'a> {
                 self.address,
                 said(*unit)
             ),
-            format!("multiply by a parameter whose unit is missing, so that {wanted} comes out"),
+            format!(
+                "multiply by a parameter whose unit is missing, so that {wanted} comes out; a number with a point may carry a \
+                 unit (50.0), a whole one does not (50)"
+            ),
         ))
     }
 

@@ -14,6 +14,9 @@ pub struct SyntaxError {
     pub remedy: String,
 }
 
+/// The place of a name, or what is wrong with it and the remedy.
+pub type Resolved = Result<usize, (String, String)>;
+
 /// Brackets and signs within each other, at most: a text of brackets alone must not exhaust the stack.
 const DEEPEST: usize = 60;
 /// Greatest size of an expression, in nodes.
@@ -23,7 +26,7 @@ const GREATEST: usize = 400;
 ///
 /// # Errors
 /// Words, signs and brackets that do not make an expression; what `symbol` refuses.
-pub fn parse(text: &str, symbol: &mut dyn FnMut(&str) -> Result<usize, (String, String)>) -> Result<Node, SyntaxError> {
+pub fn parse(text: &str, symbol: &mut dyn FnMut(&str) -> Resolved) -> Result<Node, SyntaxError> {
     let mut reader = Reader { text, at: 0, depth: 0, symbol };
     let node = reader.comparison()?;
     reader.skip_space();
@@ -41,7 +44,7 @@ struct Reader<'a, 'b> {
     text: &'a str,
     at: usize,
     depth: usize,
-    symbol: &'b mut dyn FnMut(&str) -> Result<usize, (String, String)>,
+    symbol: &'b mut dyn FnMut(&str) -> Resolved,
 }
 
 impl<'a> Reader<'a, '_> {

@@ -9,39 +9,43 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawTable {
-    /// Shown in answers, in the energy balance and in keys (`law.NAME.parameter.a.value`).
+    /// A word: shown in answers, in the energy balance and in keys (`law.NAME.PARAMETER`).
     pub name: String,
-    /// Where it acts: `muscle_1.friction` (`smam laws` lists the ports).
+    /// Where it acts: `muscle.friction` for all muscles, `muscle_1.friction` for one (`smam laws` lists the ports).
     pub port: String,
-    /// Expression that is added to the port, in the port's unit.
+    /// Expression that is added to the port, in the port's unit: `stiffness_n_m * elongation_m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adds: Option<String>,
-    /// Expression that the port is multiplied by.
+    /// Expression that the port is multiplied by, without a unit: `1 + a * exp(-abs(speed_m_s) / scale_m_s)`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,
     /// The law acts where this expression is not zero: `time_s > 10.0`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub when: Option<String>,
-    /// The law is not part of the scene: a diagnosis weighs it against everything else.
+    /// The scene leaves the law out; a diagnosis considers it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub candidate: bool,
+    /// Parameters of the expressions by name; the name ends in the unit: `parameter.scale_m_s = { value = 2e-3 }`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameter: BTreeMap<String, ParameterTable>,
+    /// Memory of the law by name: `state.s = { rate = "(elongation_m - s) / tau_s" }`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub state: BTreeMap<String, StateTable>,
 }
 
-/// A number of a law; its name ends in its unit.
+/// A parameter of a law; its name ends in its unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterTable {
+    /// In SI units.
     pub value: f64,
-    /// Outside of it nothing physical is meant.
+    /// Least value that is physical.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
+    /// Greatest value that is physical.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
-    /// Where the name does not end in it: `N s/m`.
+    /// Unit, where the name does not end in it: `N s/m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }
@@ -59,18 +63,19 @@ pub struct StateTable {
     /// Follows this expression with a dead zone of `width` in all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub play_of: Option<String>,
+    /// Width of the dead zone of `play_of`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<String>,
     /// Where it starts; 0 for a rate, the expression's first value for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<String>,
-    /// Where neither its name nor `start` tells it.
+    /// Unit, where neither its name nor `start` tells it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }
 
 impl LawTable {
-    /// Reads the short form: `muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)`.
+    /// Reads the short form: `muscle.damping adds 0.05*tanh(speed_m_s/2e-3)`.
     ///
     /// ```
     /// use smam::laws::LawTable;
@@ -95,7 +100,7 @@ impl LawTable {
                 return Err((
                     format!("\"{text}\" is no law"),
                     "write PORT adds EXPRESSION or PORT scales EXPRESSION, for example \
-                     'muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)'"
+                     'muscle.damping adds 0.05*tanh(speed_m_s/2e-3)'"
                         .to_owned(),
                 ));
             }

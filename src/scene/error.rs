@@ -20,6 +20,8 @@ pub enum SceneError {
     Value { file: PathBuf, table: String, message: String, remedy: String },
     #[error("--set {key}: {message}\n  remedy: {remedy}")]
     Override { key: String, message: String, remedy: String },
+    #[error("--law '{text}': {message}\n  remedy: {remedy}")]
+    Law { text: String, message: String, remedy: String },
     #[error("{}: {source}", file.display())]
     Mechanism { file: PathBuf, source: MechanismError },
     #[error("{}: [muscles]: {source}\n  remedy: give a number in that range, in SI units", file.display())]

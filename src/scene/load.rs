@@ -77,7 +77,7 @@ impl Scene {
                 })?
             }
         };
-        Self::from_file(file, path)
+        Self::from_file(file, path).map_err(|e| of_added_law(e, overrides))
     }
 
     /// Validates a scene file; `path` is where its relative paths start.
@@ -147,6 +147,20 @@ impl Scene {
     /// Folder that relative paths of the scene start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new("."))
+    }
+}
+
+/// What is wrong with a law that did not come from the file is said of where it came from.
+fn of_added_law(error: SceneError, overrides: &[Override]) -> SceneError {
+    let SceneError::Value { file, table, message, remedy } = error else { return error };
+    let is_meant = |name: &str| table.starts_with("[[law]]") && table.ends_with(&format!("\"{name}\""));
+    let added = overrides.iter().filter_map(Override::added_law).find(|(name, _)| is_meant(name));
+    let Some((name, law)) = added else { return SceneError::Value { file, table, message, remedy } };
+    let word = |key: &str| law.get(key).and_then(toml::Value::as_str);
+    let short = ["adds", "scales"].iter().find_map(|key| Some(format!("{} {key} {}", word("port")?, word(key)?)));
+    match short.filter(|_| law.len() == 2) {
+        Some(text) => SceneError::Law { text, message, remedy },
+        None => SceneError::Override { key: format!("law.{name}"), message, remedy },
     }
 }
 

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use toml::{Table, Value};
 
 use super::SceneError;
+use crate::laws::LawTable;
 
 /// Short names of the calibrated parameters and the scene keys they stand for.
 const CALIBRATION_NAMES: [(&str, &str); 5] = [
@@ -88,8 +89,48 @@ impl Override {
         Self { key: key.into(), value: Value::Float(value) }
     }
 
-    /// Puts the value into the scene's table. In lists of tables a segment is an index, a `name`, or a `channel`.
+    /// A law more, by its short form `PORT adds|scales EXPRESSION`.
+    ///
+    /// ```
+    /// use smam::scene::{Override, Scene};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let leak = Override::law("line.outflow adds 1e-16 * pressure_pa", "law_1")?;
+    /// assert_eq!(Scene::load("muscle_bench", &[leak])?.laws[0].address.to_string(), "line.outflow");
+    /// // As a text it is what `--set` and `set = [...]` of a sweep take.
+    /// let same = Override::parse("law.law_1={port=\"line.outflow\", adds=\"1e-16 * pressure_pa\"}")?;
+    /// assert_eq!(Scene::load("muscle_bench", &[same])?.laws.len(), 1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// A text that is no law, with what to write.
+    pub fn law(text: &str, name: &str) -> Result<Self, SceneError> {
+        let refuse = |message, remedy| SceneError::Law { text: text.to_owned(), message, remedy };
+        let law = LawTable::parse(text, name).map_err(|(_, remedy)| refuse("this is no law".to_owned(), remedy))?;
+        let texts = [("port", Some(law.port)), ("adds", law.adds), ("scales", law.scales)];
+        let table = texts.into_iter().filter_map(|(key, text)| Some((key.to_owned(), Value::String(text?))));
+        Ok(Self { key: format!("law.{name}"), value: Value::Table(table.collect()) })
+    }
+
+    /// `KEY=VALUE`, as [`Self::parse`] reads it.
+    pub fn text(&self) -> String {
+        format!("{}={}", self.key, self.value)
+    }
+
+    /// Name and table of the law that it adds to a scene, if it does.
+    pub(super) fn added_law(&self) -> Option<(&str, &Table)> {
+        let name = self.key.strip_prefix("law.").filter(|name| !name.contains('.'))?;
+        Some((name, self.value.as_table()?))
+    }
+
+    /// Puts the value into the scene's table. In lists of tables a segment is an index, a `name`, or a `channel`; a table under
+    /// `law.NAME` is a law more.
     pub fn apply(&self, scene: &mut Table) -> Result<(), SceneError> {
+        if let Some((name, law)) = self.added_law() {
+            return add_law(scene, name, law);
+        }
         let mut root = Value::Table(std::mem::take(scene));
         let result = self.put(&mut root);
         if let Value::Table(table) = root {
@@ -119,6 +160,22 @@ impl Override {
         let table = here.as_table_mut().ok_or_else(|| missing(last))?;
         table.insert(path[last].to_owned(), self.value.clone());
         Ok(())
+    }
+}
+
+fn add_law(scene: &mut Table, name: &str, law: &Table) -> Result<(), SceneError> {
+    let mut law = law.clone();
+    law.insert("name".to_owned(), Value::String(name.to_owned()));
+    match scene.entry("law").or_insert_with(|| Value::Array(Vec::new())) {
+        Value::Array(laws) => {
+            laws.push(Value::Table(law));
+            Ok(())
+        }
+        _ => Err(SceneError::Override {
+            key: format!("law.{name}"),
+            message: "`law` is no list of tables in the scene".to_owned(),
+            remedy: "write the scene's laws as [[law]]".to_owned(),
+        }),
     }
 }
 
@@ -163,6 +220,20 @@ mod tests {
         assert_eq!(scene["cable"][0]["k"], Value::Float(3.0));
         assert_eq!(scene["input"][0]["k"], Value::Float(4.0));
         assert_eq!(scene["a"]["word"].as_str(), Some("held"));
+    }
+
+    #[test]
+    fn a_law_is_added_whatever_the_scene_has() {
+        let mut scene: Table = "[[law]]\nname = 'own'\nport = 'line.outflow'\nadds = '0'".parse().expect("test TOML");
+        let short = Override::law("muscle.friction scales 1.5", "law_1").expect("a law");
+        assert_eq!(Override::parse(&short.text()).expect("its own text"), short);
+        short.apply(&mut scene).expect("a list of laws");
+        assert_eq!(scene["law"][1]["name"].as_str(), Some("law_1"));
+        let changed = Override::parse("law.law_1.scales='2'").expect("a key");
+        changed.apply(&mut scene).expect("the law is there");
+        assert_eq!(scene["law"][1]["scales"].as_str(), Some("2"));
+        let error = Override::law("muscle.friction 1.5", "law_1").expect_err("no law").to_string();
+        assert!(error.starts_with("--law 'muscle.friction 1.5': this is no law\n  remedy: write PORT adds"), "{error}");
     }
 
     #[test]

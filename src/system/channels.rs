@@ -32,12 +32,15 @@ enum Reader {
     Displacement(usize),
 }
 
+/// How an output is read: its factor to the column's unit, and what effects and laws do to what it shows.
+type OutputReader = (Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>);
+
 /// The columns of a scene with their units.
 #[derive(Clone, Debug)]
 pub(super) struct Channels {
     /// Of each input: SI units in one of its unit.
     input_factors: Vec<f64>,
-    readers: Vec<(Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>)>,
+    readers: Vec<OutputReader>,
     pub names: Vec<String>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::channels::Channels;
-use super::observe::{CableFrame, Frame, JointGraph, MuscleFrame, MuscleGraph, SceneGraph};
+use super::observe::{CableFrame, Frame, JointGraph, LawFrame, MuscleFrame, MuscleGraph, SceneGraph};
 use crate::mechanism::{CoordinateKind, Mechanism};
 
 impl Simulation {
@@ -21,6 +21,7 @@ impl Simulation {
             joints: self.mechanism.as_ref().map_or(Vec::new(), joint_graphs),
             cables: file.cable.iter().map(|c| c.name.clone()).collect(),
             muscles: self.muscle_graphs(),
+            laws: self.built.plant.laws.as_ref().map_or(Vec::new(), |laws| laws.graphs()),
             loops: file.view.loops.iter().filter_map(|(x, y)| Some((find(x)?, find(y)?))).collect(),
             camera_target_m: file.view.camera_target_m,
             camera_position_m: file.view.camera_position_m,
@@ -52,6 +53,7 @@ impl Simulation {
             link_poses: self.mechanism.as_ref().map_or(Vec::new(), |m| m.link_poses()),
             cables: self.cable_frames(),
             muscles: self.muscle_frames(),
+            laws: self.law_frames(),
             contacts: self.mechanism.as_ref().map_or(Vec::new(), |m| m.contacts()),
             joint_positions: self.built.state.y()[..joints].to_vec(),
             events,
@@ -80,6 +82,11 @@ impl Simulation {
         let make = self.scene.file.muscles.as_ref()?;
         let length = make.rest_length_m + self.muscle_frames().get(index)?.elongation_m;
         Some([0, 1, 2].map(|k| spec.anchor_m[k] + spec.direction[k] * length))
+    }
+
+    fn law_frames(&self) -> Vec<LawFrame> {
+        let plant = &self.built.plant;
+        plant.laws.as_ref().map_or(Vec::new(), |laws| laws.frames(plant, &self.built.state, &self.end_spans()))
     }
 
     fn muscle_frames(&self) -> Vec<MuscleFrame> {

@@ -20,6 +20,8 @@ pub struct SceneGraph {
     pub cables: Vec<String>,
     /// One per muscle: how to draw it.
     pub muscles: Vec<MuscleGraph>,
+    /// One per law and element on which it acts; `Frame::laws` follows this order. Laws of sensors are not among them.
+    pub laws: Vec<LawGraph>,
     /// Horizontal and vertical channel of the scene's hysteresis loops (indices into `channels`).
     pub loops: Vec<(usize, usize)>,
     /// Where a camera should look and from where, m.
@@ -79,6 +81,17 @@ pub struct MuscleGraph {
     pub direction: [f64; 3],
 }
 
+/// What of a law on one element stays the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawGraph {
+    /// Its name in the scene; with a number where it acts on several elements.
+    pub name: String,
+    /// `muscle_1.friction scales 1 + a * x`.
+    pub text: String,
+    /// The first variable of its expression, if it has one (`speed_m_s`).
+    pub variable: Option<String>,
+}
+
 /// One instant of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
@@ -89,6 +102,7 @@ pub struct Frame {
     pub cables: Vec<CableFrame>,
     pub muscles: Vec<MuscleFrame>,
     pub contacts: Vec<Contact>,
+    pub laws: Vec<LawFrame>,
     /// Angle of each joint coordinate, rad (m for sliders), in the mechanism's order.
     pub joint_positions: Vec<f64>,
     /// What happened since the last frame, in words (`muscle_1: cavitation begins`).
@@ -111,6 +125,15 @@ pub struct MuscleFrame {
     pub elongation_m: f64,
     pub pressure_pa: f64,
     pub pull_n: f64,
+}
+
+/// A law on one element at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LawFrame {
+    /// What it adds, or scales by; SI.
+    pub value: f64,
+    /// Value of its first variable, SI; NaN where it has none.
+    pub variable: f64,
 }
 
 /// A recorded run beside two simulations of it, at the recorded times.

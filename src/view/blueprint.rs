@@ -16,6 +16,7 @@ use super::layer::{TIMELINE, WORLD, path};
 use super::layout::{Kind, Pane, View, Writer};
 use super::legend::{SPACING, strip_count};
 use super::loops::FRAME;
+use super::scalars::law_entity;
 use crate::system::observe::{Frame, SceneGraph};
 
 /// Plots beyond these go into tabs.
@@ -95,7 +96,7 @@ fn below(graph: &SceneGraph) -> Vec<(f32, Pane)> {
 fn plots(graph: &SceneGraph, first: &Frame) -> Pane {
     let mut plots: Vec<Pane> = groups(&graph.channels).into_iter().map(|group| channel_plot(&group)).collect();
     let rest = plots.split_off(plots.len().min(PLOTS_IN_SIGHT));
-    let mut tabs = Vec::new();
+    let mut tabs = law_views(graph);
     if !graph.joints.is_empty() {
         tabs.push(series("Joints (°; sliders mm)", path(["joints"])));
         tabs.push(view(Kind::Document, "Angles", path(["angles"]), Vec::new()));
@@ -153,9 +154,24 @@ fn eye_up(graph: &SceneGraph) -> [f64; 3] {
 fn loop_view(graph: &SceneGraph, number: usize) -> Pane {
     let (x, y) = graph.loops[number];
     let title = format!("Loop: {} over {}", label(&graph.channels[y]), axis_title(&graph.channels[x]));
+    plane(&title, path(["loops", &(number + 1).to_string()]), frame_bounds())
+}
+
+/// Of each law its value over its first variable, and over time.
+fn law_views(graph: &SceneGraph) -> Vec<Pane> {
+    let views = graph.laws.iter().map(|law| {
+        let over_time = series(&format!("Law: {}", law.text), law_entity(law));
+        let Some(variable) = &law.variable else { return over_time };
+        let title = format!("{} over {}", law.name, axis_title(variable));
+        let curve = plane(&title, path(["law_curves", &law.name]), frame_bounds());
+        Pane::Row(vec![(0.4, curve), (0.6, over_time)])
+    });
+    views.collect()
+}
+
+fn frame_bounds() -> Range2D {
     let [width, height] = FRAME;
-    let bounds = bounds([-0.2, width + 0.08], [-height - 0.22, 0.3]);
-    plane(&title, path(["loops", &(number + 1).to_string()]), bounds)
+    bounds([-0.2, width + 0.08], [-height - 0.22, 0.3])
 }
 
 fn legend_view(graph: &SceneGraph) -> Option<(f32, Pane)> {

@@ -1,4 +1,4 @@
-//! Hysteresis loops: a curve in a drawn frame with ticks, and a point where the run is now.
+//! Hysteresis loops, and laws over their variable: a curve in a drawn frame with ticks, and a point where the run is now.
 //!
 //! Rerun has no x-y plot. The points are logged in their own units (vertical axis negated, since
 //! the view's points down) under a transform that fits them into the frame, logged when it settles.
@@ -20,35 +20,52 @@ const TICK: f64 = 0.02;
 /// The curve is cut into this many pieces, dark (early) to bright (late).
 const PIECES: usize = 24;
 
-/// One channel over another.
+/// What is drawn, by its index in the graph.
+#[derive(Clone, Copy)]
+enum Shown {
+    /// Horizontal and vertical channel.
+    Channels(usize, usize),
+    /// A law's value over its first variable.
+    Law(usize),
+}
+
+/// One quantity over another.
 pub(super) struct Loop {
-    number: usize,
-    channels: (usize, usize),
+    /// Entity under which it stands.
+    root: [String; 2],
+    shown: Shown,
     titles: [String; 2],
     trace: Trace<2>,
 }
 
 impl Loop {
     pub(super) fn all(graph: &SceneGraph, options: &ViewOptions) -> Vec<Self> {
-        let new = |(number, &(x, y)): (usize, &(usize, usize))| Loop {
-            number,
-            channels: (x, y),
-            titles: [axis_title(&graph.channels[x]), axis_title(&graph.channels[y])],
-            trace: Trace::new(options.loop_points),
-        };
-        graph.loops.iter().enumerate().map(new).collect()
+        let new =
+            |root: [String; 2], shown, titles| Loop { root, shown, titles, trace: Trace::new(options.loop_points) };
+        let of_channels = graph.loops.iter().enumerate().map(|(i, &(x, y))| {
+            let titles = [axis_title(&graph.channels[x]), axis_title(&graph.channels[y])];
+            new(["loops".to_owned(), (i + 1).to_string()], Shown::Channels(x, y), titles)
+        });
+        let of_laws = graph.laws.iter().enumerate().filter_map(|(i, law)| {
+            let titles = [axis_title(law.variable.as_ref()?), law.name.clone()];
+            Some(new(["law_curves".to_owned(), law.name.clone()], Shown::Law(i), titles))
+        });
+        of_channels.chain(of_laws).collect()
     }
 
     fn entity(&self, part: &str) -> EntityPath {
-        path(["loops", &(self.number + 1).to_string(), part])
+        path([&self.root[0], &self.root[1], part])
     }
 
     fn data_entity(&self, part: &str) -> EntityPath {
-        path(["loops", &(self.number + 1).to_string(), "data", part])
+        path([&self.root[0], &self.root[1], "data", part])
     }
 
     fn point(&self, frame: &Frame) -> [f64; 2] {
-        [frame.channels[self.channels.0], frame.channels[self.channels.1]]
+        match self.shown {
+            Shown::Channels(x, y) => [frame.channels[x], frame.channels[y]],
+            Shown::Law(i) => [frame.laws[i].variable, frame.laws[i].value],
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Channels, joint coordinates and energies over time.
+//! Channels, joint coordinates, laws and energies over time.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::channels::{groups, label};
 use super::colour::{Rgb, opaque, series};
 use super::error::ViewError;
 use super::layer::{Layer, path, time_column, times};
-use crate::system::observe::{Frame, JointGraph, SceneGraph};
+use crate::system::observe::{Frame, JointGraph, LawGraph, SceneGraph};
 
 /// One line of a plot.
 struct Line {
@@ -86,6 +86,40 @@ impl Layer for Joints {
             let values = frames.iter().map(|frame| joint.shown(frame.joint_positions[i]));
             let columns = Scalars::new(values).columns_of_unit_batches()?;
             out.send_columns(joint_entity(i), [times(frames)], columns)?;
+        }
+        Ok(())
+    }
+}
+
+/// Laws under `laws/<name>`, in the SI unit of their port.
+pub(super) struct Laws {
+    laws: Vec<LawGraph>,
+}
+
+impl Laws {
+    pub(super) fn new(graph: &SceneGraph) -> Self {
+        Self { laws: graph.laws.clone() }
+    }
+}
+
+/// Entity of a law's value over time.
+pub(super) fn law_entity(law: &LawGraph) -> EntityPath {
+    path(["laws", &law.name])
+}
+
+impl Layer for Laws {
+    fn begin(&mut self, out: &RecordingStream) -> Result<(), ViewError> {
+        for (i, law) in self.laws.iter().enumerate() {
+            style(out, &law_entity(law), &law.text, i)?;
+        }
+        Ok(())
+    }
+
+    fn stretch(&mut self, out: &RecordingStream, frames: &[Frame]) -> Result<(), ViewError> {
+        for (i, law) in self.laws.iter().enumerate() {
+            let values = frames.iter().map(|frame| frame.laws[i].value);
+            let columns = Scalars::new(values).columns_of_unit_batches()?;
+            out.send_columns(law_entity(law), [times(frames)], columns)?;
         }
         Ok(())
     }

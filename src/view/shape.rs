@@ -27,6 +27,7 @@ pub(super) fn check_frame(graph: &SceneGraph, frame: &Frame) -> Result<(), ViewE
         ("cables", graph.cables.len(), frame.cables.len()),
         ("muscles", graph.muscles.len(), frame.muscles.len()),
         ("joints", graph.joints.len(), joints),
+        ("laws", graph.laws.len(), frame.laws.len()),
     ];
     let time_s = frame.time_s;
     match counts.into_iter().find(|(_, expected, found)| expected != found) {

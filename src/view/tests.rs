@@ -12,7 +12,8 @@ use super::sink::Connection;
 use super::viewer::Viewer;
 use crate::mechanism::geometry::{Contact, Pose, Shape, Visual};
 use crate::system::observe::{
-    CableFrame, Frame, JointGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph, SideBySide,
+    CableFrame, Frame, JointGraph, LawFrame, LawGraph, MeasuredChannel, MuscleFrame, MuscleGraph, Observer, SceneGraph,
+    SideBySide,
 };
 
 const FRAMES: usize = 250;
@@ -59,6 +60,19 @@ fn the_loop_is_drawn_with_axes_that_name_their_units() {
     let texts = component::<rerun::Text>(&chunks, "/loops/1/labels", "Points2D:labels");
     let texts: Vec<&str> = texts.iter().map(|text| text.as_str()).collect();
     assert!(texts.contains(&"pressure 1 (kPa)") && texts.contains(&"bending angle (°)"), "{texts:?}");
+}
+
+#[test]
+fn a_law_is_drawn_over_time_and_over_its_variable() {
+    let chunks = run(64);
+    let values = component::<Scalar>(&chunks, "/laws/stiffer", "Scalars:scalars");
+    assert_eq!(
+        values.iter().map(|v| v.0.0).collect::<Vec<_>>(),
+        (0..FRAMES).map(|n| frame(n).laws[0].value).collect::<Vec<_>>()
+    );
+    let texts = component::<rerun::Text>(&chunks, "/law_curves/stiffer/labels", "Points2D:labels");
+    let texts: Vec<&str> = texts.iter().map(|text| text.as_str()).collect();
+    assert!(texts.contains(&"elongation (m)") && texts.contains(&"stiffer"), "{texts:?}");
 }
 
 #[test]
@@ -195,6 +209,11 @@ fn graph() -> SceneGraph {
             anchor_m: [0.0; 3],
             direction: [1.0, 0.0, 0.0],
         }],
+        laws: vec![LawGraph {
+            name: "stiffer".into(),
+            text: "muscle_1.pull adds k_n_m * elongation_m".into(),
+            variable: Some("elongation_m".into()),
+        }],
         loops: vec![(0, 1)],
         camera_position_m: [0.3, 0.0, 0.0],
         ..SceneGraph::default()
@@ -211,6 +230,7 @@ fn frame(n: usize) -> Frame {
         link_poses: vec![Pose { translation_m: [phase, 0.0, 0.0], ..Pose::IDENTITY }],
         cables: vec![CableFrame { points_m: vec![[0.0; 3], [phase, 0.0, 0.0]], tension_n: phase }],
         muscles: vec![MuscleFrame::default()],
+        laws: vec![LawFrame { value: phase, variable: phase.sin() }],
         contacts: if (100..110).contains(&n) { vec![contact] } else { Vec::new() },
         joint_positions: vec![phase],
         events: if n == 42 { vec!["m: cavitation begins".into()] } else { Vec::new() },

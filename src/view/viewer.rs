@@ -17,7 +17,7 @@ use super::links::Links;
 use super::loops::Loop;
 use super::muscles::Muscles;
 use super::options::{Pace, ViewOptions};
-use super::scalars::{Channels, Energies, Joints};
+use super::scalars::{Channels, Energies, Joints, Laws};
 use super::scale_bar::ScaleBar;
 use super::shape;
 use super::sink::{Connection, ViewSink};
@@ -215,6 +215,7 @@ fn layers(graph: &SceneGraph, options: &ViewOptions) -> Vec<Box<dyn Layer>> {
         Box::new(Channels::new(graph)),
         Box::new(Hinges::new(WORLD, graph)),
         Box::new(Joints::new(graph)),
+        Box::new(Laws::new(graph)),
         Box::new(Energies::default()),
         Box::new(Events),
         Box::new(Legend::new(graph, options)),

@@ -10,6 +10,7 @@ mod memory;
 mod place;
 mod power;
 mod sensor;
+mod shown;
 mod slopes;
 mod tangents;
 mod visited;

@@ -1,0 +1,30 @@
+//! Contract: what `smam laws` prints as an example runs as it stands on a stock scene, and its energy is accounted for.
+
+use smam::laws::{LawTable, PORTS};
+use smam::scene::Scene;
+use smam::system::Simulation;
+
+const SCENES: [&str; 2] = ["antagonistic_pulley", "muscle_bench"];
+
+/// The first stock scene that has the port, with the law.
+fn simulation(law: &LawTable) -> Simulation {
+    let with_law = |name: &&str| {
+        let mut scene = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+        scene.file.law.push(law.clone());
+        Simulation::new(Scene::from_file(scene.file, &scene.path).ok()?).ok()
+    };
+    SCENES.iter().find_map(with_law).unwrap_or_else(|| panic!("{}: no stock scene has it", law.port))
+}
+
+#[test]
+fn every_printed_example_runs_on_a_stock_scene() {
+    for spec in &PORTS {
+        let mut simulation = simulation(&spec.example_table());
+        simulation.keep_energy_book();
+        simulation.advance_to(3.0).unwrap_or_else(|e| panic!("{}: {e}", spec.name()));
+        let book = simulation.energy_book().expect("it was kept");
+        let share = book.unaccounted_j().abs() / book.turnover_j();
+        println!("{}: {share:.1e} of the turnover unaccounted", spec.name());
+        assert!(share < 1e-3, "{}: {share}", spec.name());
+    }
+}
