@@ -49,7 +49,7 @@ pub enum Symbol {
 }
 
 /// Quantities to which a law's slopes are taken for the implicit step: those of its own element.
-pub const SLOPES: [Quantity; 8] = [
+pub const SLOPES: [Quantity; 9] = [
     Quantity::Elongation,
     Quantity::Speed,
     Quantity::Pressure,
@@ -58,6 +58,7 @@ pub const SLOPES: [Quantity; 8] = [
     Quantity::Position,
     Quantity::Plunger,
     Quantity::Time,
+    Quantity::Flow,
 ];
 
 /// A law at a port. Cheap to clone: what it is made of is shared.

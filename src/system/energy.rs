@@ -67,6 +67,8 @@ pub struct EnergyBook {
     laws: Vec<LawLine>,
     /// Of each muscle, before the step: pressure at its syringe, Pa, and how far its piston is ahead, m.
     pistons_before: Vec<(f64, f64)>,
+    /// Where laws of plungers have put the pistons: law, muscle, m.
+    pistons_by_laws: Vec<(usize, usize, f64)>,
 }
 
 /// A law's line of the book.
@@ -96,6 +98,7 @@ impl EnergyBook {
             held,
             laws: law_lines(plant),
             pistons_before: Vec::new(),
+            pistons_by_laws: pistons_by_laws(plant, state, inputs, 0.0),
         }
     }
 
@@ -129,6 +132,7 @@ impl EnergyBook {
         self.effects.integrate(&self.effects_before, &effects, h);
         let laws = law_powers(plant, state, inputs, h);
         self.laws.iter_mut().zip(laws).for_each(|(line, power)| line.brought_j += mean(line.before_w, power));
+        self.move_pistons_by_laws(plant, state, inputs, h);
         self.stored = stored(plant, state, inputs, h);
         self.held = effect_stores(plant, state, inputs, h);
     }
@@ -142,6 +146,18 @@ impl EnergyBook {
             }
         }
         work_j
+    }
+
+    /// Work of pistons on the way that laws of their plungers make them go.
+    fn move_pistons_by_laws(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
+        let now = pistons_by_laws(plant, state, inputs, h);
+        for ((law, muscle, after), (_, _, before)) in now.iter().zip(&self.pistons_by_laws) {
+            if let Drive::Hydraulic { syringe_area_m2, .. } = &plant.muscles[*muscle].drive {
+                let pressure_pa = (self.pistons_before[*muscle].0 + state.line(*muscle).pressure_pa[0]) / 2.0;
+                self.laws[*law].brought_j += pressure_pa * syringe_area_m2 * (after - before);
+            }
+        }
+        self.pistons_by_laws = now;
     }
 
     /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
@@ -237,6 +253,16 @@ fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
 /// Pressure at each syringe, Pa, and how far its piston is ahead of the plunger, m.
 fn pistons(state: &PlantState<f64>) -> impl Iterator<Item = (f64, f64)> {
     state.piston_ahead_m.iter().enumerate().map(|(i, ahead)| (state.line(i).pressure_pa[0], *ahead))
+}
+
+fn pistons_by_laws(
+    plant: &Plant<f64>,
+    state: &PlantState<f64>,
+    inputs: &[InputSpan],
+    elapsed_s: f64,
+) -> Vec<(usize, usize, f64)> {
+    let laws = plant.laws.as_ref().filter(|laws| laws.moves_pistons());
+    laws.map_or_else(Vec::new, |laws| laws.pistons(plant, &Instant::of(state, inputs, elapsed_s)))
 }
 
 fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Powers {

@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use super::build::{Built, Displacement, build};
 use super::contact::foreseen;
 use super::energy::EnergyBook;
+use super::laws::PlantLaws;
 use super::plant::{InputSpan, Instant, Plant};
 use super::rosenbrock::Stepper;
 use super::state::PlantState;
@@ -203,6 +204,7 @@ impl Simulation {
         if self.has_stepped {
             return;
         }
+        PlantLaws::begin(&self.built.plant, &mut self.built.state, &self.spans);
         if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) {
             for (d, state) in self.built.displacements.iter().zip(&mut self.hysteresis) {
                 *state = model.rest(self.spans[d.plunger].value * 1e3);

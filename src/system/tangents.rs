@@ -170,6 +170,12 @@ impl<D: Scalar> Tangents<D> {
         let (laws, acts, own) = (plant.laws.as_ref()?, seen.acts.as_mut()?, self.laws.as_mut()?);
         let slopes = laws.muscle_slopes(i, plant, now, (&seen.forces[i], acts), (g, &mut own.states));
         self.lines[i].set_conductance(slopes.conductance_m3_s_pa);
+        // A slope that would make the line pump is left to the rates alone.
+        let zero = D::constant(0.0);
+        if let Some(Some(under)) = seen.chains.get_mut(i) {
+            let resistance = under.resistance_pa_s_m3 + slopes.drop_pa_s_m3 / under.segments() as f64;
+            under.resistance_pa_s_m3 = resistance.select_above(zero, resistance, zero);
+        }
         Some(slopes)
     }
 
@@ -220,6 +226,9 @@ impl<D: Scalar> Tangents<D> {
         let mut tangent =
             MuscleTangent { pull_per_rho: D::constant(0.0), area: forces.area_m2, friction: FrictionTangent::none() };
         let mut pull_per_pressure = forces.area_m2;
+        if let Some(acts) = acts {
+            pull_per_pressure *= acts.at(Port::Pull).scale;
+        }
         if let Some(friction) = &muscle.friction {
             let slopes = friction.rate_jacobian(z, forces.speed_m_s);
             let mut level = friction.level_n(forces.pressure_pa);

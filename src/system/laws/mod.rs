@@ -7,6 +7,7 @@ mod acts;
 mod apply;
 mod fault;
 mod memory;
+mod pistons;
 mod place;
 mod power;
 mod sensor;
@@ -17,7 +18,7 @@ use crate::laws::{Carrier, Law, Port};
 use crate::scalar::Scalar;
 
 use super::install::Site;
-use super::plant::{Instant, Plant, dot};
+use super::plant::{InputSpan, Instant, Plant, dot};
 use super::state::PlantState;
 
 pub use acts::{Act, Acts, CableActs, JointActs, MuscleActs};
@@ -54,6 +55,8 @@ pub struct PlantLaws<D> {
     joints: usize,
     /// Where the extra travels of the cables begin among the states, if a law changes a lever.
     travel_at: Option<usize>,
+    /// Whether a law moves a piston.
+    on_plungers: bool,
     states: usize,
 }
 
@@ -68,6 +71,7 @@ impl<D: Scalar> PlantLaws<D> {
             instances: Vec::new(),
             joints: site.joints,
             travel_at: None,
+            on_plungers: false,
             states: 0,
         }
     }
@@ -87,6 +91,7 @@ impl<D: Scalar> PlantLaws<D> {
             self.travel_at = Some(self.states);
             self.states += cables;
         }
+        self.on_plungers |= law.address.port == Port::Plunger;
         self.laws.push(law.clone());
         self.values.push(values);
         Ok(())
@@ -111,13 +116,24 @@ impl<D: Scalar> PlantLaws<D> {
             instances: self.instances.clone(),
             joints: self.joints,
             travel_at: self.travel_at,
+            on_plungers: self.on_plungers,
             states: self.states,
         }
     }
 
     /// Room for what they do.
     pub fn room(&self, plant: &Plant<D>) -> Acts<D> {
-        Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len())
+        let mut acts = Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len());
+        for instance in &self.instances {
+            let (port, at) = (self.port(instance), instance.at);
+            match port.spec().carrier {
+                Carrier::Muscle => acts.muscles[at].note(port),
+                Carrier::Cable => acts.cables[at].note(port),
+                Carrier::Joint => acts.joints[at].note(port),
+                Carrier::Sensor => {}
+            }
+        }
+        acts
     }
 
     /// The joints of a direction.
@@ -256,11 +272,19 @@ impl<D: Scalar> PlantLaws<D> {
         acts
     }
 
-    /// Gives a state the memory that they need, as it starts; time and inputs are those of the beginning.
+    /// Gives a state the memory that they need, as it starts with all inputs at zero.
     pub fn settle(plant: &Plant<D>, state: &mut PlantState<D>) {
         if let Some(laws) = &plant.laws {
             state.set_law_states(&vec![D::constant(0.0); laws.states]);
-            memory::start(laws, plant, state);
+            Self::begin(plant, state, &vec![InputSpan::default(); plant.inputs()]);
+        }
+    }
+
+    /// Starts the memory at a run's first instant: where inputs and clock are there.
+    pub fn begin(plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan]) {
+        if let Some(laws) = &plant.laws {
+            memory::start(laws, plant, state, inputs);
+            laws.place_pistons(plant, state, inputs);
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::laws::{Acts as Sense, Carrier, Memory, Port, SLOPES};
 use crate::scalar::Scalar;
-use crate::system::plant::{Instant, MuscleForces, Plant};
+use crate::system::plant::{Drive, Instant, MuscleForces, Plant};
 
 use super::apply::Terms;
 use super::{Act, Acts, Instance, PlantLaws};
@@ -17,6 +17,7 @@ const PRESSURE: usize = 2;
 const ANGLE: usize = 3;
 const ANGULAR_SPEED: usize = 4;
 const POSITION: usize = 5;
+const FLOW: usize = 8;
 
 /// How a muscle's pull and the flows out of its line change with the muscle's own quantities because of laws alone.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,8 @@ pub(in crate::system) struct MuscleSlopes<D> {
     pub pull_n_pa: D,
     /// Flow lost per pressure before and after the line, m³/(s Pa).
     pub conductance_m3_s_pa: [D; 2],
+    /// Pressure drop per flow that the line's laws add by changing with the flow, Pa s/m³.
+    pub drop_pa_s_m3: D,
 }
 
 /// How the torque on a site changes with its position and its speed because of laws.
@@ -51,6 +54,25 @@ impl<D: Scalar> StateTangent<D> {
         let zero = D::constant(0.0);
         Self { damper: D::constant(1.0), by_elongation: zero, by_speed: zero, pull: zero, muscle: None }
     }
+}
+
+/// Pressure drop per flow through the change of what acts at a port with the flow, Pa s/m³.
+fn line_slope<D: Scalar, const N: usize>(
+    port: Port,
+    acts: &super::MuscleActs<D>,
+    plant: &Plant<D>,
+    i: usize,
+    now: &Instant<D, N>,
+    change: &Act<D>,
+) -> D {
+    let Drive::Hydraulic { chain, .. } = &plant.muscles[i].drive else { return D::constant(0.0) };
+    let n = chain.segments();
+    let flow = now.at.line(i)[n + 1];
+    let resistance = chain.resistance_pa_s_m3 * n as f64;
+    if port == Port::Resistance {
+        return (resistance * change.scale + change.add) * flow * acts.at(Port::PressureDrop).scale;
+    }
+    acts.at(Port::Resistance).on(resistance) * flow * change.scale + change.add
 }
 
 /// What a muscle's pull depends on at one instant.
@@ -112,7 +134,7 @@ impl<D: Scalar> PlantLaws<D> {
         let muscle = &plant.muscles[i];
         let seen = forces.elongation_m - acts.at(Port::RestLength).add;
         let law = muscle.seen(seen, forces.pressure_pa, slow, greatest_j);
-        let terms = Terms::new(muscle, &law, seen, forces.speed_m_s, forces.pressure_pa);
+        let terms = Terms::new(muscle, &law, seen - muscle.extras.set_m(slow), forces.speed_m_s, forces.pressure_pa);
         let whole = acts.at(Port::Pull);
         let sum = forces.elastic_n + forces.friction_n + forces.damping_n - whole.add;
         let sum_n = if whole.scale.is_at(0.0) { sum } else { sum / whole.scale };
@@ -129,8 +151,13 @@ impl<D: Scalar> PlantLaws<D> {
         (g, states): (f64, &mut [StateTangent<D>]),
     ) -> MuscleSlopes<D> {
         let zero = D::constant(0.0);
-        let mut slopes =
-            MuscleSlopes { pull_n_m: zero, pull_n_s_m: zero, pull_n_pa: zero, conductance_m3_s_pa: [zero; 2] };
+        let mut slopes = MuscleSlopes {
+            pull_n_m: zero,
+            pull_n_s_m: zero,
+            pull_n_pa: zero,
+            conductance_m3_s_pa: [zero; 2],
+            drop_pa_s_m3: zero,
+        };
         let own = acts.muscles[i];
         let memory = (plant.muscles[i].slow(&now.at), now.state.greatest_j[i]);
         let muscle = self.muscle(i, plant, forces, now.at.z(i), &own, memory);
@@ -146,6 +173,9 @@ impl<D: Scalar> PlantLaws<D> {
             match port {
                 Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change(PRESSURE).add,
                 Port::Outflow => slopes.conductance_m3_s_pa[1] += change(PRESSURE).add,
+                Port::Resistance | Port::PressureDrop => {
+                    slopes.drop_pa_s_m3 += line_slope(port, &own, plant, i, now, &change(FLOW));
+                }
                 _ => {}
             }
             let pulls: Vec<D> =
