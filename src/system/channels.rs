@@ -83,7 +83,7 @@ impl Reader {
         let (plant, state) = (&simulation.built.plant, &simulation.built.state);
         let spans = &simulation.end_spans();
         match self {
-            Self::Elongation(m) => plant.muscle_forces(*m, state, spans, 0.0).elongation_m,
+            Self::Elongation(m) => plant.muscles[*m].elongation_m::<0>(state.y()),
             Self::Pull(m) => plant.muscle_forces(*m, state, spans, 0.0).pull_n(),
             Self::MusclePressure(m) => plant.muscle_pressure(*m, state, spans, 0.0),
             Self::SyringePressure(m) => match plant.muscles[*m].drive {

@@ -145,10 +145,13 @@ impl<D: Scalar> Tangents<D> {
         let Some(own) = &mut self.laws else { return };
         own.levers_at(laws, plant, acts);
         laws.other_states(plant, now, acts, (g, &mut own.states));
-        for (i, cable) in plant.cables.iter().enumerate().filter(|(i, _)| acts.tension_n[*i].is_above(0.0)) {
-            let stiffness = cable.stiffness_n_m * acts.cables[i].at(Port::CableStiffness).scale;
+        for i in 0..plant.cables.len() {
+            if !acts.tension_n[i].is_above(0.0) {
+                continue;
+            }
+            let (stiffness, damping) = laws.cable_slopes(i, plant, now, acts);
             add_outer_of(&mut self.springs, &own.levers[i], stiffness * g);
-            add_outer_of(&mut self.matrix, &own.levers[i], cable.damping_n_s_m * g);
+            add_outer_of(&mut self.matrix, &own.levers[i], damping * g);
         }
         for site in laws.joint_sites() {
             let slopes = laws.joint_slopes(site, plant, now, acts);

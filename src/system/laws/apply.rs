@@ -7,7 +7,7 @@ use crate::system::elastic::{Elastic, ElasticPoint};
 use crate::system::plant::{CablePlant, Drive, Instant, MuscleForces, MusclePlant, Plant, dot};
 use crate::system::state::PartsMut;
 
-use super::{Act, Acts, CableActs, Instance, MuscleActs, PlantLaws};
+use super::{Act, Acts, CableActs, MuscleActs, PlantLaws};
 
 /// The parts of a muscle's pull that have a port each, at one state: wall, coil, friction, damper, and the pressure's part.
 #[derive(Clone, Copy, Debug)]
@@ -80,10 +80,12 @@ impl<D: Scalar> MusclePlant<D> {
                 .map_or(D::constant(0.0), |s| -s.push(forces.elongation_m, forces.speed_m_s).dpush_de);
             forces.stiffness_n_m = (forces.stiffness_n_m - stop_n_m) * whole.scale + stop_n_m;
         }
-        forces.port.outflow_m3_s += acts.at(Port::Outflow).add;
-        if let Drive::Hydraulic { chain, .. } = &self.drive {
-            let last = chain.compliance_m3_pa[chain.segments()] - chain.end_share_m3_pa;
-            forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
+        if acts.stand_at(&[Port::Outflow, Port::LineCompliance]) {
+            forces.port.outflow_m3_s += acts.at(Port::Outflow).add;
+            if let Drive::Hydraulic { chain, .. } = &self.drive {
+                let last = chain.compliance_m3_pa[chain.segments()] - chain.end_share_m3_pa;
+                forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
+            }
         }
         forces
     }
@@ -229,9 +231,8 @@ impl<D: Scalar> PlantLaws<D> {
     }
 
     /// Directions on which laws act, each once.
-    pub(in crate::system) fn joint_sites(&self) -> impl Iterator<Item = usize> {
-        let is_joint = |i: &&Instance| self.port(i).spec().carrier == crate::laws::Carrier::Joint;
-        (0..self.rig.directions.len()).filter(move |d| self.instances.iter().filter(is_joint).any(|i| i.at == *d))
+    pub(in crate::system) fn joint_sites(&self) -> impl Iterator<Item = usize> + '_ {
+        self.joint_sites.iter().copied()
     }
 }
 

@@ -33,8 +33,9 @@ pub(super) use tangents::LawTangents;
 /// A law at one element.
 #[derive(Clone, Debug, PartialEq)]
 struct Instance {
-    /// Index of the law.
+    /// Index of the law, and its port.
     law: usize,
+    port: Port,
     /// Muscle, cable or direction.
     at: usize,
     /// Where each symbol of the law is read.
@@ -55,8 +56,10 @@ pub struct PlantLaws<D> {
     joints: usize,
     /// Where the extra travels of the cables begin among the states, if a law changes a lever.
     travel_at: Option<usize>,
-    /// Whether a law moves a piston.
+    /// Whether a law moves a piston, whether one acts on a cable, and the directions on which some act.
     on_plungers: bool,
+    on_cables: bool,
+    joint_sites: Vec<usize>,
     states: usize,
 }
 
@@ -72,6 +75,8 @@ impl<D: Scalar> PlantLaws<D> {
             joints: site.joints,
             travel_at: None,
             on_plungers: false,
+            on_cables: false,
+            joint_sites: Vec::new(),
             states: 0,
         }
     }
@@ -83,8 +88,11 @@ impl<D: Scalar> PlantLaws<D> {
     pub fn add(&mut self, law: &Law, values: Vec<D>, cables: usize) -> Result<(), Wrong> {
         let index = self.laws.len();
         for at in self.rig.places(&law.address)? {
+            if law.address.port.spec().carrier == Carrier::Joint && !self.joint_sites.contains(&at) {
+                self.joint_sites.push(at);
+            }
             let sources = self.rig.sources(law, at)?;
-            self.instances.push(Instance { law: index, at, sources, state_at: self.states });
+            self.instances.push(Instance { law: index, port: law.address.port, at, sources, state_at: self.states });
             self.states += law.states.len();
         }
         if law.address.port == Port::Lever && self.travel_at.is_none() {
@@ -92,6 +100,7 @@ impl<D: Scalar> PlantLaws<D> {
             self.states += cables;
         }
         self.on_plungers |= law.address.port == Port::Plunger;
+        self.on_cables |= law.address.port.spec().carrier == Carrier::Cable;
         self.laws.push(law.clone());
         self.values.push(values);
         Ok(())
@@ -117,6 +126,8 @@ impl<D: Scalar> PlantLaws<D> {
             joints: self.joints,
             travel_at: self.travel_at,
             on_plungers: self.on_plungers,
+            on_cables: self.on_cables,
+            joint_sites: self.joint_sites.clone(),
             states: self.states,
         }
     }
@@ -141,13 +152,14 @@ impl<D: Scalar> PlantLaws<D> {
         &self.rig.directions[site].direction
     }
 
+    #[inline]
     fn port(&self, instance: &Instance) -> Port {
-        self.laws[instance.law].address.port
+        instance.port
     }
 
     /// Whether some law acts on a cable.
     fn on_cables(&self) -> bool {
-        self.laws.iter().any(|law| law.address.port.spec().carrier == Carrier::Cable)
+        self.on_cables
     }
 
     /// Evaluates all laws at an instant.

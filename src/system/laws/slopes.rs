@@ -18,6 +18,7 @@ const ANGLE: usize = 3;
 const ANGULAR_SPEED: usize = 4;
 const POSITION: usize = 5;
 const FLOW: usize = 8;
+const STRETCH: usize = 9;
 
 /// How a muscle's pull and the flows out of its line change with the muscle's own quantities because of laws alone.
 #[derive(Clone, Copy, Debug)]
@@ -230,6 +231,36 @@ impl<D: Scalar> PlantLaws<D> {
                 tangent.muscle = None;
             }
         }
+    }
+
+    /// Stiffness (N/m) and damping (N s/m) of a taut cable under its laws, at its near end.
+    pub(in crate::system) fn cable_slopes<const N: usize>(
+        &self,
+        i: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) -> (D, D) {
+        let (cable, own) = (&plant.cables[i], acts.cables[i]);
+        let (elastic, whole) = (own.at(Port::CableStiffness), own.at(Port::Tension));
+        let mut stiffness = cable.stiffness_n_m * elastic.scale * whole.scale;
+        if own.stand_at(&[Port::CableStiffness, Port::Tension]) {
+            let pull = self.cable(i, plant, now, acts);
+            let stretched = cable.stiffness_n_m * pull.stretch_m;
+            let sum = elastic.on(stretched) + cable.damping_n_s_m * pull.rate_m_s;
+            for instance in self.at(Carrier::Cable, i) {
+                let (port, law) = (self.port(instance), &self.laws[instance.law]);
+                let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+                self.run(&law.programs.slopes, instance, plant, now, acts);
+                let change = self.change(instance, value, acts, STRETCH, own.at(port).scale);
+                stiffness += match port {
+                    Port::CableStiffness => (stretched * change.scale + change.add) * whole.scale,
+                    Port::Tension => sum * change.scale + change.add,
+                    _ => D::constant(0.0),
+                };
+            }
+        }
+        (stiffness, cable.damping_n_s_m * whole.scale)
     }
 
     /// Slopes of the laws on a site.

@@ -42,7 +42,7 @@ impl TwinOutput {
     /// The value in the channel's unit.
     pub fn read<D: Scalar>(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> D {
         let value = match &self.reader {
-            Reader::Elongation(m) => plant.muscle_forces(*m, state, inputs, 0.0).elongation_m,
+            Reader::Elongation(m) => plant.muscles[*m].elongation_m::<0>(state.y()),
             Reader::Pull(m) => plant.muscle_forces(*m, state, inputs, 0.0).pull_n(),
             Reader::MusclePressure(m) => plant.muscle_pressure(*m, state, inputs, 0.0),
             Reader::SyringePressure(m) => match plant.muscles[*m].drive {
