@@ -78,6 +78,24 @@ impl Channels {
     }
 }
 
+impl Channels {
+    /// Stops a run whose sensors' laws show what is no number.
+    pub(super) fn check(&self, simulation: &Simulation, values: &[f64]) -> Result<(), SystemError> {
+        let outputs = self.readers.iter().zip(values.iter().skip(self.input_factors.len()));
+        for ((.., laws), value) in outputs.filter(|(_, value)| !value.is_finite()) {
+            if let Some(law) = laws.last() {
+                return Err(SystemError::Law {
+                    file: simulation.scene.path.clone(),
+                    time_s: simulation.time_s,
+                    law: law.title(),
+                    what: format!("its channel shows {value}"),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Reader {
     fn value_si(&mut self, simulation: &Simulation) -> f64 {
         let (plant, state) = (&simulation.built.plant, &simulation.built.state);

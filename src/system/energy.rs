@@ -4,6 +4,8 @@
 //! is left between the two is the integrator's own error and stands in the book as a line of its own. Effects have
 //! lines of their own (`effect_energy.rs`), which a book without them does not show.
 
+use crate::laws::Port;
+
 use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
 use super::laws::law_powers;
@@ -62,7 +64,7 @@ pub struct EnergyBook {
     effects_before: EffectFlows,
     held_0: EffectStores,
     held: EffectStores,
-    /// Of each law of the scene: its name, whether it is meant to take energy, what it has brought so far (J), and its power before
+    /// Of each law of the scene: its name, its port, what it has brought so far (J), and its power before
     /// the step (W).
     laws: Vec<LawLine>,
     /// Of each muscle, before the step: pressure at its syringe, Pa, and how far its piston is ahead, m.
@@ -75,7 +77,7 @@ pub struct EnergyBook {
 #[derive(Clone, Debug)]
 struct LawLine {
     name: String,
-    dissipates: bool,
+    port: Port,
     brought_j: f64,
     before_w: f64,
 }
@@ -189,10 +191,19 @@ impl EnergyBook {
         stock + self.effects.net() + laws - (self.held.total() - self.held_0.total())
     }
 
-    /// Laws that stand where energy is lost and have brought some, each with how much, J.
+    /// Laws that stand where energy is lost and have brought more than is lost there without them, each with how much, J.
     pub fn supplying_laws(&self) -> impl Iterator<Item = (&str, f64)> {
         let least = LEAST_SUPPLY * self.turnover;
-        let supplying = self.laws.iter().filter(move |line| line.dissipates && line.brought_j > least);
+        let lost_j = |port: Port| match port {
+            Port::Friction => self.sums.muscle_friction,
+            Port::Damping => self.sums.muscle_damping,
+            Port::Resistance | Port::PressureDrop => self.sums.line_viscosity,
+            Port::JointDamping => self.sums.joint_damping,
+            _ => 0.0,
+        };
+        let is_supplying =
+            move |line: &&LawLine| line.port.spec().dissipates && line.brought_j > lost_j(line.port) + least;
+        let supplying = self.laws.iter().filter(is_supplying);
         supplying.map(|line| (line.name.as_str(), line.brought_j))
     }
 
@@ -243,7 +254,7 @@ fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
     let laws = plant.laws.iter().flat_map(|laws| laws.laws());
     let line = |law: &crate::laws::Law| LawLine {
         name: format!("law_{}", law.name),
-        dissipates: law.address.port.spec().dissipates,
+        port: law.address.port,
         brought_j: 0.0,
         before_w: 0.0,
     };

@@ -109,7 +109,8 @@ impl<D: Scalar> Stepper<D> {
         self.move_pistons(plant, state, inputs, h);
         let now = Instant::<D, N>::of(state, inputs, 0.0);
         let switches = rates(plant, &now, &self.piston_m_s, &mut self.seen, layout.parts_mut(&mut self.r));
-        if switches != self.switches || h != self.tangent_step_s || self.are_tangents_old(h) {
+        let turns = plant.laws.as_ref().is_some_and(|laws| laws.rubs());
+        if switches != self.switches || h != self.tangent_step_s || turns || self.are_tangents_old(h) {
             self.tangents.take(plant, &now, &mut self.seen, g);
             (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
         }

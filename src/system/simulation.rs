@@ -225,7 +225,7 @@ impl Simulation {
     }
 
     /// Stops where a law has left the range in which its port means anything.
-    fn check_laws(&self) -> Result<(), SystemError> {
+    pub(super) fn check_laws(&self) -> Result<(), SystemError> {
         let Built { plant, state, .. } = &self.built;
         let fault = plant.laws.as_ref().and_then(|laws| laws.fault(plant, state, &self.spans));
         fault.map_or(Ok(()), |fault| {
@@ -357,7 +357,11 @@ impl Simulation {
 
     fn check_finite(&self) -> Result<(), SystemError> {
         let state = &self.built.state;
-        let diverged = |what: String| Err(SystemError::Diverged { time_s: self.time_s, what });
+        let laws: Vec<String> = self.scene.laws.iter().map(|law| format!("{} ({})", law.name, law.address)).collect();
+        // A law can be stiffer than any step.
+        let under = if laws.is_empty() { String::new() } else { format!(" under the laws {}", laws.join(", ")) };
+        let diverged =
+            |what: String| Err(SystemError::Diverged { time_s: self.time_s, what: format!("{what}{under}") });
         if let Some(i) = state.y().iter().chain(state.w()).position(|x| !x.is_finite()) {
             let names = self.mechanism.iter().flat_map(|m| m.coordinates()).map(|c| c.name.clone());
             let ends = self.scene.file.muscle.iter().map(|m| format!("end of {}", m.name));

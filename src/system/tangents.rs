@@ -156,6 +156,16 @@ impl<D: Scalar> Tangents<D> {
         for site in laws.joint_sites() {
             let slopes = laws.joint_slopes(site, plant, now, acts);
             let direction = laws.direction(site);
+            let own = &acts.joints[site];
+            let whole = own.at(Port::Torque).scale;
+            let [spring, damper] =
+                [Port::JointStiffness, Port::JointDamping].map(|port| own.at(port).scale * whole - 1.0);
+            // Springs and dampers are each joint's own; what depends on the angle depends on that of all.
+            let (n, c) = (plant.dim(), &plant.coordinates);
+            for i in (0..n).filter(|i| direction[*i] != 0.0) {
+                self.springs[i * (n + 1)] += c.stiffness[i] * spring * g;
+                self.matrix[i * (n + 1)] += c.damping[i] * damper * g;
+            }
             add_outer::<_, N>(&mut self.springs, direction, -slopes.by_position * g);
             add_outer::<_, N>(&mut self.matrix, direction, -slopes.by_speed * g);
         }

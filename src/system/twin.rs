@@ -188,7 +188,7 @@ impl Twin {
                 series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans)));
             }
         })?;
-        Some(series)
+        output::are_shown(&self.outputs, &series).then_some(series)
     }
 
     /// Simulates and shows plant, state and inputs at every sample. `None` when it diverges.

@@ -119,7 +119,7 @@ pub const CASES: &[Case] = &[
     ),
     same(
         Port::Inertance,
-        ("muscle_bench", &["hydraulics.line.segments=3"]),
+        ("muscle_bench", &["hydraulics.line.segments=3", "hydraulics.line.compliance_m3_pa=1e-15"]),
         &["line.inertance scales 30.0"],
         &["hydraulics.line.momentum_factor=40.0"],
     ),

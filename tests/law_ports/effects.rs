@@ -74,7 +74,7 @@ const PAIRS: &[Pair] = &[
     bench(
         "gravity_load",
         "{name=\"gravity_load\",element=\"muscle\",weight_n=0.02}",
-        &["muscle.pull adds -0.02"],
+        &["joint.torque adds 0.02"],
         ROUNDING,
     ),
     pulley(

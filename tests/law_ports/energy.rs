@@ -97,15 +97,17 @@ fn val_the_balance_closes_with_a_law_at_every_port() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// What stands where energy is lost and brings some is named.
+/// What stands where energy is lost and brings more than is lost there is named; what only takes less is not.
 #[test]
 fn laws_that_supply_energy_are_named() {
-    for text in ["line.outflow adds -1e-17 * pressure_pa", "muscle.damping adds -0.05 * speed_m_s"] {
+    for text in ["line.outflow adds -1e-17 * pressure_pa", "muscle.damping adds -0.2 * speed_m_s"] {
         let law = LawTable::parse(text, "odd").expect("a law");
         let (share, supplying) = balance(with("muscle_bench", &[law]).expect("builds"));
         assert!(share < GREATEST_SHARE, "{text}: {share:.1e}");
         assert_eq!(supplying, ["law_odd"], "{text}");
     }
+    let law = LawTable::parse("muscle.friction scales 0.5", "less").expect("a law");
+    assert!(balance(with("muscle_bench", &[law]).expect("builds")).1.is_empty());
 }
 
 /// A piston that laws make jump: a play taken up, a step in time.
@@ -114,10 +116,11 @@ fn val_the_balance_closes_where_pistons_jump() {
     let play =
         "name = 'play'\nport = 'plunger'\nadds = 's - plunger_m'\nstate.s = { play_of = 'plunger_m', width = '1e-4' }";
     let step = "name = 'step'\nport = 'plunger'\nadds = '1e-5'\nwhen = 'time_s > 3.0'";
-    for text in [play, step] {
+    // Within the step of a jump the pressure is not straight: there the trapezoids are off by their own error.
+    for (text, greatest) in [(play, GREATEST_SHARE), (step, 1e-4)] {
         let law: LawTable = toml::from_str(text).expect("TOML");
         let (share, _) = balance(with("muscle_bench", &[law]).expect("builds"));
         println!("{text}: {share:.1e}");
-        assert!(share < GREATEST_SHARE, "{text}: {share:.1e}");
+        assert!(share < greatest, "{text}: {share:.1e}");
     }
 }

@@ -74,7 +74,10 @@ pub fn run_by(model: Model, scene: &Scene, until_s: f64, steps: u16) -> Series {
             let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
             let mut run = TwinRun::of_programs(scene, &schedule);
             run.plan = Some(vec![steps; run.times_s.len() - 1].into());
-            let values = twin.simulate(&run, &TwinSetting::<f64>::default()).expect("it does not diverge");
+            // The fast model takes effects from its setting.
+            let effects = scene.file.effect.iter().map(|e| e.effect().expect("checked")).collect();
+            let setting = TwinSetting::<f64> { parameters: Vec::new(), effects };
+            let values = twin.simulate(&run, &setting).expect("it does not diverge");
             Series(twin.columns().map(str::to_owned).zip(values).collect())
         }
     }

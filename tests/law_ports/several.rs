@@ -84,7 +84,8 @@ fn conditions_switch_laws_on() {
     for model in BOTH {
         let [stock, late] = [&[][..], &[when][..]].map(|laws| run(model, &scene(PULLEY, &[], laws), UNTIL_S));
         let switched = (1.0 / SAMPLE_S) as usize;
-        let pairs: Vec<bool> = stock.of("angle_deg").iter().zip(late.of("angle_deg")).map(|(a, b)| a == b).collect();
+        let pairs: Vec<bool> =
+            stock.of("angle_deg").iter().zip(late.of("angle_deg")).map(|(a, b)| (a - b).abs() < 1e-9).collect();
         assert!(pairs[..switched].iter().all(|same| *same) && !pairs[switched + 5], "{model:?}");
     }
 }

@@ -14,7 +14,7 @@ mod sensor;
 mod slopes;
 mod tangents;
 
-use crate::laws::{Carrier, Law, Port};
+use crate::laws::{Carrier, Law, Port, Quantity};
 use crate::scalar::Scalar;
 
 use super::install::Site;
@@ -59,6 +59,7 @@ pub struct PlantLaws<D> {
     /// Whether a law moves a piston, whether one acts on a cable, and the directions on which some act.
     on_plungers: bool,
     on_cables: bool,
+    rubs: bool,
     joint_sites: Vec<usize>,
     states: usize,
 }
@@ -76,6 +77,7 @@ impl<D: Scalar> PlantLaws<D> {
             travel_at: None,
             on_plungers: false,
             on_cables: false,
+            rubs: false,
             joint_sites: Vec::new(),
             states: 0,
         }
@@ -100,6 +102,7 @@ impl<D: Scalar> PlantLaws<D> {
             self.states += cables;
         }
         self.on_plungers |= law.address.port == Port::Plunger;
+        self.rubs |= makes_force_of_speed(law);
         self.on_cables |= law.address.port.spec().carrier == Carrier::Cable;
         self.laws.push(law.clone());
         self.values.push(values);
@@ -127,6 +130,7 @@ impl<D: Scalar> PlantLaws<D> {
             travel_at: self.travel_at,
             on_plungers: self.on_plungers,
             on_cables: self.on_cables,
+            rubs: self.rubs,
             joint_sites: self.joint_sites.clone(),
             states: self.states,
         }
@@ -158,7 +162,8 @@ impl<D: Scalar> PlantLaws<D> {
     }
 
     /// Whether some law acts on a cable.
-    fn on_cables(&self) -> bool {
+    #[inline]
+    pub(super) fn on_cables(&self) -> bool {
         self.on_cables
     }
 
@@ -277,6 +282,19 @@ impl<D: Scalar> PlantLaws<D> {
         }
     }
 
+    /// Tensions of all cables under their laws. Kept apart: a stock scene has none.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn tensions<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Vec<D> {
+        self.afresh(plant, now).tension_n
+    }
+
+    /// Whether a law makes forces of speeds: its slope can turn within a step, and tangents must not be kept.
+    #[inline]
+    pub(super) fn rubs(&self) -> bool {
+        self.rubs
+    }
+
     /// What laws do to the state's plant, evaluated afresh.
     pub(super) fn afresh<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Acts<D> {
         let mut acts = self.room(plant);
@@ -299,6 +317,12 @@ impl<D: Scalar> PlantLaws<D> {
             laws.place_pistons(plant, state, inputs);
         }
     }
+}
+
+fn makes_force_of_speed(law: &Law) -> bool {
+    let is_force = matches!(law.address.port, Port::Torque | Port::JointDamping | Port::Pull | Port::Damping);
+    let is_speed = |v: &crate::laws::Variable| matches!(v.quantity, Quantity::Speed | Quantity::AngularSpeed);
+    is_force && law.variables().iter().any(is_speed)
 }
 
 /// The play operator: `before` moved by as little as keeps it within half a width of `followed`.

@@ -25,6 +25,11 @@ impl<D: Scalar> LawSensor<D> {
         Self { law: law.clone(), values, factor, states, last: None, registers: Vec::new() }
     }
 
+    /// Name and port.
+    pub fn title(&self) -> String {
+        format!("{} ({})", self.law.name, self.law.address)
+    }
+
     /// What is shown when the quantity is `value`, in the channel's unit; times must increase.
     pub fn show(&mut self, time_s: f64, value: D) -> D {
         let reading = value * self.factor;

@@ -276,23 +276,23 @@ impl<D: Scalar> PlantLaws<D> {
         let Some(i) = direction.direction.iter().position(|d| *d != 0.0) else {
             return JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
         };
-        let count = direction.direction.iter().filter(|d| **d != 0.0).count() as f64;
         let (c, own) = (&plant.coordinates, acts.joints[site]);
         let spring = c.stiffness[i] * (now.at.y()[i] - c.rest[i]);
         let damper = c.damping[i] * now.at.w()[i];
-        let mut slopes = JointSlopes {
-            by_position: -(c.stiffness[i] * (own.at(Port::JointStiffness).scale - 1.0)) / count,
-            by_speed: -(c.damping[i] * (own.at(Port::JointDamping).scale - 1.0)) / count,
-        };
+        let mut slopes = JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
+        let whole = own.at(Port::Torque).scale;
         for instance in self.at(Carrier::Joint, site) {
             let (port, law) = (self.port(instance), &self.laws[instance.law]);
             let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
             self.run(&law.programs.slopes, instance, plant, now, acts);
             let change = |output: usize| self.change(instance, value, acts, output, own.at(port).scale);
             let torque = |act: Act<D>| match port {
-                Port::JointStiffness => -(spring * act.scale + act.add),
-                Port::JointDamping => -(damper * act.scale + act.add),
-                _ => -((spring + damper) * act.scale) + act.add,
+                Port::JointStiffness => -((spring * act.scale + act.add) * whole),
+                Port::JointDamping => -((damper * act.scale + act.add) * whole),
+                _ => {
+                    let sum = own.at(Port::JointStiffness).on(spring) + own.at(Port::JointDamping).on(damper);
+                    -(sum * act.scale) + act.add
+                }
             };
             slopes.by_position += torque(change(position));
             slopes.by_speed += torque(change(speed));

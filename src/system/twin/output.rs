@@ -97,6 +97,12 @@ fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
     lumped.names.iter().enumerate().filter_map(part).collect()
 }
 
+/// Whether all channels with laws on them show numbers.
+pub(super) fn are_shown<D: Scalar>(outputs: &[TwinOutput], series: &[Vec<D>]) -> bool {
+    let lawful = outputs.iter().zip(series).filter(|(output, _)| !output.laws.is_empty());
+    lawful.flat_map(|(_, values)| values).all(Scalar::is_finite)
+}
+
 /// Sensor effects and laws on the channels.
 pub(super) struct Sensors<D> {
     effects: Vec<(String, SensorHistory<D>)>,
