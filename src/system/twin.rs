@@ -151,7 +151,7 @@ impl Twin {
         let joints = (lumped.names.clone(), lumped.slides.clone());
         let site = Site::of(&lumped.plant, joints, lumped.hinges.clone(), wraps);
         install_laws(&mut lumped.plant, &site, &laws).map_err(|wrong| wrong_law(scene, wrong))?;
-        let outputs = bare.file.output.iter().map(|o| output::resolve(&bare, o, &lumped)).collect::<Result<_, _>>()?;
+        let outputs = bare.file.output.iter().map(|o| output::resolve(scene, o, &lumped)).collect::<Result<_, _>>()?;
         Ok(Self {
             site,
             outputs,

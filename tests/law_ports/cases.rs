@@ -120,8 +120,8 @@ pub const CASES: &[Case] = &[
     same(
         Port::Inertance,
         ("muscle_bench", &["hydraulics.line.segments=3", "hydraulics.line.compliance_m3_pa=1e-15"]),
-        &["line.inertance scales 30.0"],
-        &["hydraulics.line.momentum_factor=40.0"],
+        &["line.inertance scales 0.75"],
+        &["hydraulics.line.momentum_factor=1.0"],
     ),
     holds(Port::Outflow, HELD_RIG, &["line.outflow adds 1e-15 * pressure_pa"], |law, _| decays(law, 1.06e-14 / 1e-15)),
     same(
@@ -159,7 +159,11 @@ pub const CASES: &[Case] = &[
     ),
     same(Port::Friction, BENCH_RIG, &["muscle.friction adds 0.053"], &["muscles.friction.m0_n=0.159"]),
     same(Port::Damping, BENCH_RIG, &["muscle.damping scales 50"], &["muscles.damping_n_s_m=5.0"]),
-    same(Port::Damping, BENCH_RIG, &["muscle.damping adds 4.9 * speed_m_s"], &["muscles.damping_n_s_m=5.0"]),
+    // Where a law makes force of speed, tangents are taken at every step: no longer the same steps to rounding.
+    Case {
+        within: 2e-6,
+        ..same(Port::Damping, BENCH_RIG, &["muscle.damping adds 4.9 * speed_m_s"], &["muscles.damping_n_s_m=5.0"])
+    },
     same(Port::Area, BENCH_RIG, &["muscle.area scales 1 + 2.0 * elongation_m"], &["muscles.tube.area_growth_1_m=1.0"]),
     // 0.866 mm2 of 7.2 MPa, and a tenth of it.
     holds(Port::Area, HELD_RIG, &["muscle.area scales 1.1"], |law, stock| {
@@ -248,24 +252,31 @@ pub const CASES: &[Case] = &[
         &["joint.stiffness scales 2.0"],
         &["mechanism.joint.0.stiffness_n_m_rad=0.1"],
     ),
-    same(
-        Port::JointStiffness,
-        CATHETER_RIG,
-        &["joint.stiffness scales 1.5"],
-        &["mechanism.joint.0.stiffness_n_m_rad=12.6e-3"],
-    ),
+    // Its cables begin with no tension at all: rounding decides in which step they first pull.
+    Case {
+        within: 1e-5,
+        ..same(
+            Port::JointStiffness,
+            CATHETER_RIG,
+            &["joint.stiffness scales 1.5"],
+            &["mechanism.joint.0.stiffness_n_m_rad=12.6e-3"],
+        )
+    },
     same(
         Port::JointDamping,
         SHEATH_RIG,
         &["joint.damping scales 5.0"],
         &["mechanism.joint.0.damping_n_m_s_rad=5.0e-3"],
     ),
-    same(
-        Port::JointDamping,
-        CATHETER_RIG,
-        &["joint.damping scales 5.0"],
-        &["mechanism.joint.0.damping_n_m_s_rad=8.0e-4"],
-    ),
+    Case {
+        within: 1e-5,
+        ..same(
+            Port::JointDamping,
+            CATHETER_RIG,
+            &["joint.damping scales 5.0"],
+            &["mechanism.joint.0.damping_n_m_s_rad=8.0e-4"],
+        )
+    },
     holds(Port::Sensor, SHEATH_RIG, &["sensor.tip_deg scales 1.1", "sensor.tip_deg adds 0.1"], |law, stock| {
         let pairs = law.of("tip_deg").iter().zip(stock.of("tip_deg"));
         let offset_deg = 0.1_f64.to_degrees();
