@@ -19,11 +19,14 @@ const DEEPEST: usize = 60;
 /// Greatest size of an expression, in nodes.
 const GREATEST: usize = 400;
 
+/// Tells the place of a name, or message and remedy.
+pub type Resolve<'a> = dyn FnMut(&str) -> Result<usize, (String, String)> + 'a;
+
 /// Reads an expression; `symbol` tells the place of a name, or why there is none.
 ///
 /// # Errors
 /// Words, signs and brackets that do not make an expression; what `symbol` refuses.
-pub fn parse(text: &str, symbol: &mut dyn FnMut(&str) -> Result<usize, (String, String)>) -> Result<Node, SyntaxError> {
+pub fn parse(text: &str, symbol: &mut Resolve<'_>) -> Result<Node, SyntaxError> {
     let mut reader = Reader { text, at: 0, depth: 0, symbol };
     let node = reader.comparison()?;
     reader.skip_space();
@@ -37,14 +40,14 @@ pub fn parse(text: &str, symbol: &mut dyn FnMut(&str) -> Result<usize, (String, 
     Ok(node)
 }
 
-struct Reader<'a, 'b> {
+struct Reader<'a, 'b, 'c> {
     text: &'a str,
     at: usize,
     depth: usize,
-    symbol: &'b mut dyn FnMut(&str) -> Result<usize, (String, String)>,
+    symbol: &'b mut Resolve<'c>,
 }
 
-impl<'a> Reader<'a, '_> {
+impl<'a> Reader<'a, '_, '_> {
     fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }

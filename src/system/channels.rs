@@ -32,12 +32,15 @@ enum Reader {
     Displacement(usize),
 }
 
+/// What a column reads, SI units in one of its unit, its sensors' effects and their laws.
+type Shown = (Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>);
+
 /// The columns of a scene with their units.
 #[derive(Clone, Debug)]
 pub(super) struct Channels {
     /// Of each input: SI units in one of its unit.
     input_factors: Vec<f64>,
-    readers: Vec<(Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>)>,
+    readers: Vec<Shown>,
     pub names: Vec<String>,
 }
 
