@@ -41,7 +41,7 @@ mod practice_laws {
         let letters: Vec<char> = law.chars().collect();
         let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
         let spelled = letters.iter().enumerate().map(|(i, c)| match c {
-            'x' if !is_word(i + 1) && !(i > 0 && is_word(i - 1)) => x.clone(),
+            'x' if !is_word(i + 1) && !i.checked_sub(1).is_some_and(is_word) => x.clone(),
             c => c.to_string(),
         });
         spelled.collect()
