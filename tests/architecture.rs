@@ -46,7 +46,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("sweep", &["columns", "files", "mechanism", "muscle", "nearest", "recording", "scene", "stock", "system"]),
     ("trial", &["diagnose", "effects", "files", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
-    ("bench", &["files", "recording", "scene", "stock", "system"]),
+    ("bench", &["files", "laws", "recording", "scene", "stock", "system"]),
     (
         "reproduce",
         &["effects", "feedforward", "hysteresis", "identify", "muscle", "recording", "report", "scene", "system"],

@@ -19,7 +19,7 @@ use crate::system::{Simulation, SystemError};
 
 pub use growth::{Growth, grow};
 pub use scenes::{CASES, SceneCase, SceneSpeed, worst_errors};
-pub use twin::{TWINS, TwinSpeed};
+pub use twin::{LAW, TWINS, TwinSpeed};
 
 /// What can keep a figure from being taken.
 #[derive(Debug, thiserror::Error)]

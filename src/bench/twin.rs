@@ -1,12 +1,16 @@
 //! The fast model: one setting after the other, and side by side.
 
 use super::{BenchError, cpu_time, median_cpu_s};
+use crate::laws::LawTable;
 use crate::scene::Scene;
 use crate::system::{Schedule, Twin, TwinRun, TwinSetting};
 
 /// Stock scenes with a fast model, and what is asked of it, times real time.
 pub const TWINS: [(&str, f64); 3] =
     [("muscle_bench", 10_000.0), ("antagonistic_pulley", 2_000.0), ("bending_catheter", 2_000.0)];
+
+/// A law without memory that the bench's fast model must carry at no more than 1.5 times the cost.
+pub const LAW: &str = "muscle.friction scales 1 + 0.4*exp(-abs(speed_m_s)/2e-3)";
 
 /// Length of the run, s, and parameter sets that are compared.
 const LENGTH_S: f64 = 60.0;
@@ -28,9 +32,22 @@ impl TwinSpeed {
     /// # Errors
     /// Scenes without a fast model.
     pub fn of(scene: &str, times: usize) -> Result<Self, BenchError> {
-        let scene = Scene::load(scene, &[])?;
-        let twin = Twin::new(&scene)?;
-        let run = TwinRun::of_programs(&scene, &Schedule::even(LENGTH_S, 0.01));
+        Self::of_scene(&Scene::load(scene, &[])?, times)
+    }
+
+    /// The same with [`LAW`] in the scene.
+    ///
+    /// # Errors
+    /// As for [`TwinSpeed::of`].
+    pub fn with_law(scene: &str, times: usize) -> Result<Self, BenchError> {
+        let mut scene = Scene::load(scene, &[])?;
+        scene.file.law.extend(LawTable::parse(LAW, "law"));
+        Self::of_scene(&Scene::from_file(scene.file, &scene.path)?, times)
+    }
+
+    fn of_scene(scene: &Scene, times: usize) -> Result<Self, BenchError> {
+        let twin = Twin::new(scene)?;
+        let run = TwinRun::of_programs(scene, &Schedule::even(LENGTH_S, 0.01));
         let c1 = twin.parameter("tube_c1_pa").into_iter();
         let set = |i: usize| TwinSetting {
             parameters: c1.clone().map(|c1| (c1, 0.255e6 * (1.0 + 1e-3 * i as f64))).collect(),

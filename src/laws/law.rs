@@ -49,7 +49,7 @@ pub enum Symbol {
 }
 
 /// Quantities to which a law's slopes are taken for the implicit step: those of its own element.
-pub const SLOPES: [Quantity; 8] = [
+pub const SLOPES: [Quantity; 10] = [
     Quantity::Elongation,
     Quantity::Speed,
     Quantity::Pressure,
@@ -58,6 +58,8 @@ pub const SLOPES: [Quantity; 8] = [
     Quantity::Position,
     Quantity::Plunger,
     Quantity::Time,
+    Quantity::Flow,
+    Quantity::Stretch,
 ];
 
 /// A law at a port. Cheap to clone: what it is made of is shared.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::law::{Law, Memory, Parameter, Programs, State, StateTrees, Symbol};
 use super::port::{Address, Port, PortSpec};
-use super::quantity::{QUANTITIES, Variable};
+use super::quantity::{QUANTITIES, Quantity, Variable};
 use super::syntax::{SyntaxError, parse};
 use super::table::{LawTable, ParameterTable, StateTable};
 use super::tree::{Function, Node, Operator};
@@ -189,13 +189,38 @@ impl<'a> Reader<'a> {
         }
         let parameter = || self.parameters.iter().position(|p| p.name == name).map(Symbol::Parameter);
         let state = || self.states.iter().position(|(s, _)| *s == name).map(Symbol::State);
-        let variable = || Variable::parse(name, self.spec.variables()).map(Symbol::Variable);
+        let variable = || Variable::parse(name, self.spec.variables()).map(|v| Symbol::Variable(self.own(v)));
         let condition = || self.around.conditions.iter().find(|(c, _)| c == name).map(|(_, x)| Symbol::Constant(*x));
         let found = parameter().or_else(state).or_else(variable).or_else(condition);
         let symbol = found.ok_or_else(|| self.unknown(name))?;
+        self.check_piston(name, symbol)?;
         used.names.push(name.to_owned());
         used.symbols.push(symbol);
         Ok(used.names.len() - 1)
+    }
+
+    /// A variable that names the law's own element by its number is the element's own: slopes are taken to those.
+    fn own(&self, variable: Variable) -> Variable {
+        let is_before_line = self.address.port <= Port::SyringeCompliance;
+        let is_same = match variable.quantity {
+            // Without a number it is that before the line there.
+            Quantity::Pressure => !is_before_line,
+            Quantity::SyringePressure => is_before_line && self.spec.variables().contains(&Quantity::SyringePressure),
+            quantity => self.spec.variables().contains(&quantity),
+        };
+        let is_own = variable.of.is_some() && variable.of == self.address.number && is_same;
+        if is_own { Variable { of: None, ..variable } } else { variable }
+    }
+
+    /// A piston goes with what has a slope here: anything else would leave it where it is.
+    fn check_piston(&self, name: &str, symbol: Symbol) -> Result<(), (String, String)> {
+        let Symbol::Variable(variable) = symbol else { return Ok(()) };
+        if self.address.port != Port::Plunger || variable.of.is_none() {
+            return Ok(());
+        }
+        let known: Vec<String> = self.spec.variables().iter().map(|q| q.spec().name()).collect();
+        let message = format!("a piston cannot follow {name}");
+        Err((message, format!("use what its own syringe has: {}", known.join(", "))))
     }
 
     fn unknown(&self, name: &str) -> (String, String) {
@@ -218,7 +243,7 @@ impl<'a> Reader<'a> {
 
     fn unit(&self, tree: &Node, used: &Used, states: &[Unit]) -> Result<Unit, String> {
         let of = |i: usize| match used.symbols[i] {
-            Symbol::Variable(v) if v.quantity == super::Quantity::Reading => {
+            Symbol::Variable(v) if v.quantity == Quantity::Reading => {
                 self.around.channel.map_or(Unit::Open, Unit::Known)
             }
             Symbol::Variable(v) => Unit::Known(v.quantity.dimension()),

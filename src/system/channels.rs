@@ -32,15 +32,15 @@ enum Reader {
     Displacement(usize),
 }
 
-/// How an output is read: its factor to the column's unit, and what effects and laws do to what it shows.
-type OutputReader = (Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>);
+/// What a column reads, SI units in one of its unit, its sensors' effects and their laws.
+type Shown = (Reader, f64, Vec<SensorHistory<f64>>, Vec<LawSensor<f64>>);
 
 /// The columns of a scene with their units.
 #[derive(Clone, Debug)]
 pub(super) struct Channels {
     /// Of each input: SI units in one of its unit.
     input_factors: Vec<f64>,
-    readers: Vec<OutputReader>,
+    readers: Vec<Shown>,
     pub names: Vec<String>,
 }
 
@@ -81,12 +81,30 @@ impl Channels {
     }
 }
 
+impl Channels {
+    /// Stops a run whose sensors' laws show what is no number.
+    pub(super) fn check(&self, simulation: &Simulation, values: &[f64]) -> Result<(), SystemError> {
+        let outputs = self.readers.iter().zip(values.iter().skip(self.input_factors.len()));
+        for ((.., laws), value) in outputs.filter(|(_, value)| !value.is_finite()) {
+            if let Some(law) = laws.last() {
+                return Err(SystemError::Law {
+                    file: simulation.scene.path.clone(),
+                    time_s: simulation.time_s,
+                    law: law.title(),
+                    what: format!("its channel shows {value}"),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Reader {
     fn value_si(&mut self, simulation: &Simulation) -> f64 {
         let (plant, state) = (&simulation.built.plant, &simulation.built.state);
         let spans = &simulation.end_spans();
         match self {
-            Self::Elongation(m) => plant.muscle_forces(*m, state, spans, 0.0).elongation_m,
+            Self::Elongation(m) => plant.muscles[*m].elongation_m::<0>(state.y()),
             Self::Pull(m) => plant.muscle_forces(*m, state, spans, 0.0).pull_n(),
             Self::MusclePressure(m) => plant.muscle_pressure(*m, state, spans, 0.0),
             Self::SyringePressure(m) => match plant.muscles[*m].drive {

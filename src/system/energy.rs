@@ -4,6 +4,8 @@
 //! is left between the two is the integrator's own error and stands in the book as a line of its own. Effects have
 //! lines of their own (`effect_energy.rs`), which a book without them does not show.
 
+use crate::laws::Port;
+
 use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
 use super::laws::law_powers;
@@ -62,18 +64,20 @@ pub struct EnergyBook {
     effects_before: EffectFlows,
     held_0: EffectStores,
     held: EffectStores,
-    /// Of each law of the scene: its name, whether it is meant to take energy, what it has brought so far (J), and its power before
+    /// Of each law of the scene: its name, its port, what it has brought so far (J), and its power before
     /// the step (W).
     laws: Vec<LawLine>,
     /// Of each muscle, before the step: pressure at its syringe, Pa, and how far its piston is ahead, m.
     pistons_before: Vec<(f64, f64)>,
+    /// Where laws of plungers have put the pistons: law, muscle, m.
+    pistons_by_laws: Vec<(usize, usize, f64)>,
 }
 
 /// A law's line of the book.
 #[derive(Clone, Debug)]
 struct LawLine {
     name: String,
-    dissipates: bool,
+    port: Port,
     brought_j: f64,
     before_w: f64,
 }
@@ -96,6 +100,7 @@ impl EnergyBook {
             held,
             laws: law_lines(plant),
             pistons_before: Vec::new(),
+            pistons_by_laws: pistons_by_laws(plant, state, inputs, 0.0),
         }
     }
 
@@ -129,6 +134,7 @@ impl EnergyBook {
         self.effects.integrate(&self.effects_before, &effects, h);
         let laws = law_powers(plant, state, inputs, h);
         self.laws.iter_mut().zip(laws).for_each(|(line, power)| line.brought_j += mean(line.before_w, power));
+        self.move_pistons_by_laws(plant, state, inputs, h);
         self.stored = stored(plant, state, inputs, h);
         self.held = effect_stores(plant, state, inputs, h);
     }
@@ -142,6 +148,18 @@ impl EnergyBook {
             }
         }
         work_j
+    }
+
+    /// Work of pistons on the way that laws of their plungers make them go.
+    fn move_pistons_by_laws(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
+        let now = pistons_by_laws(plant, state, inputs, h);
+        for ((law, muscle, after), (_, _, before)) in now.iter().zip(&self.pistons_by_laws) {
+            if let Drive::Hydraulic { syringe_area_m2, .. } = &plant.muscles[*muscle].drive {
+                let pressure_pa = (self.pistons_before[*muscle].0 + state.line(*muscle).pressure_pa[0]) / 2.0;
+                self.laws[*law].brought_j += pressure_pa * syringe_area_m2 * (after - before);
+            }
+        }
+        self.pistons_by_laws = now;
     }
 
     /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
@@ -173,10 +191,19 @@ impl EnergyBook {
         stock + self.effects.net() + laws - (self.held.total() - self.held_0.total())
     }
 
-    /// Laws that stand where energy is lost and have brought some, each with how much, J.
+    /// Laws that stand where energy is lost and have brought more than is lost there without them, each with how much, J.
     pub fn supplying_laws(&self) -> impl Iterator<Item = (&str, f64)> {
         let least = LEAST_SUPPLY * self.turnover;
-        let supplying = self.laws.iter().filter(move |line| line.dissipates && line.brought_j > least);
+        let lost_j = |port: Port| match port {
+            Port::Friction => self.sums.muscle_friction,
+            Port::Damping => self.sums.muscle_damping,
+            Port::Resistance | Port::PressureDrop => self.sums.line_viscosity,
+            Port::JointDamping => self.sums.joint_damping,
+            _ => 0.0,
+        };
+        let is_supplying =
+            move |line: &&LawLine| line.port.spec().dissipates && line.brought_j > lost_j(line.port) + least;
+        let supplying = self.laws.iter().filter(is_supplying);
         supplying.map(|line| (line.name.as_str(), line.brought_j))
     }
 
@@ -227,7 +254,7 @@ fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
     let laws = plant.laws.iter().flat_map(|laws| laws.laws());
     let line = |law: &crate::laws::Law| LawLine {
         name: format!("law_{}", law.name),
-        dissipates: law.address.port.spec().dissipates,
+        port: law.address.port,
         brought_j: 0.0,
         before_w: 0.0,
     };
@@ -237,6 +264,16 @@ fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
 /// Pressure at each syringe, Pa, and how far its piston is ahead of the plunger, m.
 fn pistons(state: &PlantState<f64>) -> impl Iterator<Item = (f64, f64)> {
     state.piston_ahead_m.iter().enumerate().map(|(i, ahead)| (state.line(i).pressure_pa[0], *ahead))
+}
+
+fn pistons_by_laws(
+    plant: &Plant<f64>,
+    state: &PlantState<f64>,
+    inputs: &[InputSpan],
+    elapsed_s: f64,
+) -> Vec<(usize, usize, f64)> {
+    let laws = plant.laws.as_ref().filter(|laws| laws.moves_pistons());
+    laws.map_or_else(Vec::new, |laws| laws.pistons(plant, &Instant::of(state, inputs, elapsed_s)))
 }
 
 fn powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Powers {

@@ -365,7 +365,10 @@ impl<D: Scalar> Plant<D> {
         let (y, w) = (now.at.y(), now.at.w());
         let mut bits = 0;
         let mut note = |acts: bool| bits = bits << 1 | u64::from(acts);
-        self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0)));
+        match self.laws.as_ref().filter(|laws| laws.on_cables()) {
+            None => self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0))),
+            Some(laws) => laws.tensions(self, now).iter().for_each(|tension| note(tension.is_above(0.0))),
+        }
         self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.is_above(0.0)));
         for muscle in self.muscles.iter().filter(|m| m.stop.is_some()) {
             note(muscle.elongation_m::<N>(y).is_below(0.0));
@@ -374,16 +377,7 @@ impl<D: Scalar> Plant<D> {
         for w in &self.mechanism.walls {
             note(!w.wall.stiffness_n_m_rad.is_at(0.0) && w.wall.is_met(dot::<_, N>(&w.direction, y)));
         }
-        if self.laws.is_some() { self.taut_under_laws(now, bits) } else { bits }
-    }
-
-    /// The same with the cables that pull under their laws. Kept apart: a stock scene has none.
-    #[cold]
-    #[inline(never)]
-    fn taut_under_laws<const N: usize>(&self, now: &Instant<D, N>, bits: u64) -> u64 {
-        let Some(laws) = self.laws.as_ref().filter(|_| !self.cables.is_empty()) else { return bits };
-        let tensions = laws.afresh(self, now).tension_n;
-        tensions.iter().fold(bits, |bits, tension| bits.rotate_left(1) ^ u64::from(tension.is_above(0.0)))
+        bits
     }
 
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.

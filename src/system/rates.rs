@@ -142,6 +142,10 @@ fn push_laws<D: Scalar, const N: usize>(
     }
 }
 
+/// Ports whose laws change the line's own equations.
+const FLUID: &[Port] =
+    &[Port::Plunger, Port::SyringeFlow, Port::SyringeCompliance, Port::PressureDrop, Port::Resistance, Port::Inertance];
+
 /// Rates of a muscle's line under laws.
 fn line_under_laws<D: Scalar, const N: usize>(
     chain: &Chain<D>,
@@ -153,6 +157,9 @@ fn line_under_laws<D: Scalar, const N: usize>(
 ) {
     let (Some(acts), Some(Some(under))) = (&seen.acts, seen.chains.get_mut(i)) else { return };
     let (own, at) = (&acts.muscles[i], now.at.line(i));
+    if !own.stand_at(FLUID) {
+        return chain.rates(at, now.state.boiling_of::<N>(i), inflow, port, out);
+    }
     chain_under(chain, own, under);
     let inflow = inflow + acts.piston_m_s[i] * syringe_area_m2 - own.at(Port::SyringeFlow).add;
     under.rates(at, now.state.boiling_of::<N>(i), inflow, port, out);

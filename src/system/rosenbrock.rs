@@ -44,6 +44,8 @@ pub struct Stepper<D> {
     /// Speed of each piston over the step, m/s, and how far it is ahead of its plunger at the end, m.
     piston_m_s: Vec<D>,
     piston_ahead_m: Vec<D>,
+    /// How far laws of the plunger move each piston in the step beyond what their rates tell, m.
+    piston_lead_m: Vec<D>,
     seen: Seen<D>,
     tangents: Tangents<D>,
     /// Everything one-sided where the tangents were taken, and how many steps ago and for which step that was.
@@ -64,6 +66,7 @@ impl<D: Scalar> Stepper<D> {
             ahead: row,
             piston_m_s: vec![D::constant(0.0); muscles.len()],
             piston_ahead_m: vec![D::constant(0.0); muscles.len()],
+            piston_lead_m: vec![D::constant(0.0); muscles.len()],
             seen: Seen::new(plant),
             tangents: Tangents::new(plant, state.segments(), state.parts().joint_z().len(), state.parts().slow().len()),
             switches: Switches::default(),
@@ -106,7 +109,8 @@ impl<D: Scalar> Stepper<D> {
         self.move_pistons(plant, state, inputs, h);
         let now = Instant::<D, N>::of(state, inputs, 0.0);
         let switches = rates(plant, &now, &self.piston_m_s, &mut self.seen, layout.parts_mut(&mut self.r));
-        if switches != self.switches || h != self.tangent_step_s || self.are_tangents_old(h) {
+        let turns = plant.laws.as_ref().is_some_and(|laws| laws.rubs());
+        if switches != self.switches || h != self.tangent_step_s || turns || self.are_tangents_old(h) {
             self.tangents.take(plant, &now, &mut self.seen, g);
             (self.switches, self.age, self.tangent_step_s) = (switches, 0, h);
         }
@@ -153,8 +157,12 @@ impl<D: Scalar> Stepper<D> {
             }
         }
         remember_greatest(plant, state);
-        if let Some(laws) = &plant.laws {
+        if let (Some(laws), Some(acts)) = (&plant.laws, &mut self.seen.acts) {
             laws.follow(plant, state, inputs, h);
+            if laws.moves_pistons() {
+                // The row of the beginning has been exchanged for that of the end.
+                laws.note_pistons(plant, &self.ahead, (state, inputs, h), (acts, &self.piston_lead_m));
+            }
         }
         state.time_s += h;
     }
@@ -172,6 +180,12 @@ impl<D: Scalar> Stepper<D> {
             let after = play.follow(before, h * span.slope);
             self.piston_m_s[i] = (after - before) / h + span.slope;
             self.piston_ahead_m[i] = after;
+        }
+        if let (Some(laws), Some(acts)) = (&plant.laws, &mut self.seen.acts)
+            && laws.moves_pistons()
+        {
+            let out = (&mut self.piston_m_s[..], &mut self.piston_lead_m[..]);
+            laws.lead_pistons(plant, (state, inputs, h), acts, out);
         }
     }
 }

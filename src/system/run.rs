@@ -72,6 +72,7 @@ where
     let mut warnings = Warnings::default();
     if let Some(first) = schedule.first_s() {
         simulation.start_at(first);
+        simulation.check_laws()?;
     }
     observer.begin(&simulation.graph(&channels)).map_err(RunError::Observer)?;
     for time in schedule.iter() {
@@ -82,7 +83,9 @@ where
             simulation.advance_to(time)?;
         }
         let events = warnings.look(simulation);
-        observer.frame(&simulation.frame(&mut channels, events)).map_err(RunError::Observer)?;
+        let frame = simulation.frame(&mut channels, events);
+        channels.check(simulation, &frame.channels)?;
+        observer.frame(&frame).map_err(RunError::Observer)?;
     }
     Ok(warnings)
 }
@@ -211,6 +214,7 @@ fn record_steps(
     let mut channels = Channels::new(simulation)?;
     if let Some(first) = schedule.first_s() {
         simulation.start_at(first);
+        simulation.check_laws()?;
     }
     let times_s = schedule.times();
     let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(times_s.len()); channels.names.len()];
@@ -221,6 +225,7 @@ fn record_steps(
             simulation.advance_to(time)?;
         }
         channels.read(simulation, &mut values);
+        channels.check(simulation, &values)?;
         columns.iter_mut().zip(&values).for_each(|(column, value)| column.push(*value));
     }
     let named = channels.names.iter().zip(columns).map(|(name, values)| Channel::new(name.clone(), values));

@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use super::build::{Built, Displacement, build};
 use super::contact::foreseen;
 use super::energy::EnergyBook;
+use super::laws::PlantLaws;
 use super::plant::{InputSpan, Instant, Plant};
 use super::rosenbrock::Stepper;
 use super::state::PlantState;
@@ -203,6 +204,7 @@ impl Simulation {
         if self.has_stepped {
             return;
         }
+        PlantLaws::begin(&self.built.plant, &mut self.built.state, &self.spans);
         if let Some(model) = self.scene.file.muscles.as_ref().and_then(|m| m.displacement.as_ref()) {
             for (d, state) in self.built.displacements.iter().zip(&mut self.hysteresis) {
                 *state = model.rest(self.spans[d.plunger].value * 1e3);
@@ -223,7 +225,7 @@ impl Simulation {
     }
 
     /// Stops where a law has left the range in which its port means anything.
-    fn check_laws(&self) -> Result<(), SystemError> {
+    pub(super) fn check_laws(&self) -> Result<(), SystemError> {
         let Built { plant, state, .. } = &self.built;
         let fault = plant.laws.as_ref().and_then(|laws| laws.fault(plant, state, &self.spans));
         fault.map_or(Ok(()), |fault| {
@@ -355,7 +357,11 @@ impl Simulation {
 
     fn check_finite(&self) -> Result<(), SystemError> {
         let state = &self.built.state;
-        let diverged = |what: String| Err(SystemError::Diverged { time_s: self.time_s, what });
+        let laws: Vec<String> = self.scene.laws.iter().map(|law| format!("{} ({})", law.name, law.address)).collect();
+        // A law can be stiffer than any step.
+        let under = if laws.is_empty() { String::new() } else { format!(" under the laws {}", laws.join(", ")) };
+        let diverged =
+            |what: String| Err(SystemError::Diverged { time_s: self.time_s, what: format!("{what}{under}") });
         if let Some(i) = state.y().iter().chain(state.w()).position(|x| !x.is_finite()) {
             let names = self.mechanism.iter().flat_map(|m| m.coordinates()).map(|c| c.name.clone());
             let ends = self.scene.file.muscle.iter().map(|m| format!("end of {}", m.name));

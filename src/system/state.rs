@@ -16,6 +16,8 @@ pub struct PlantState<D> {
     /// Of each muscle: the greatest energy of its wall so far, J, and how far its piston is ahead of the plunger, m.
     pub(super) greatest_j: Vec<D>,
     pub(super) piston_ahead_m: Vec<D>,
+    /// And how far laws of its plunger have put its piston, m.
+    pub(super) piston_law_m: Vec<D>,
     /// Time of the run's clock, s.
     pub(super) time_s: f64,
 }
@@ -237,6 +239,7 @@ impl<D: Scalar> PlantState<D> {
             boiling: vec![false; muscles * (segments + 1)],
             greatest_j: vec![D::constant(0.0); muscles],
             piston_ahead_m: vec![D::constant(0.0); muscles],
+            piston_law_m: vec![D::constant(0.0); muscles],
             time_s: 0.0,
         }
     }
@@ -259,6 +262,7 @@ impl<D: Scalar> PlantState<D> {
         self.layout.laws_at = self.row.len();
         self.greatest_j.fill(D::constant(0.0));
         self.piston_ahead_m.fill(D::constant(0.0));
+        self.piston_law_m.fill(D::constant(0.0));
     }
 
     /// Gives the laws their memory.
@@ -339,6 +343,7 @@ impl PlantState<f64> {
             boiling: self.boiling.clone(),
             greatest_j: all(&self.greatest_j),
             piston_ahead_m: all(&self.piston_ahead_m),
+            piston_law_m: all(&self.piston_law_m),
             time_s: self.time_s,
         }
     }

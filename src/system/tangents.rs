@@ -145,14 +145,27 @@ impl<D: Scalar> Tangents<D> {
         let Some(own) = &mut self.laws else { return };
         own.levers_at(laws, plant, acts);
         laws.other_states(plant, now, acts, (g, &mut own.states));
-        for (i, cable) in plant.cables.iter().enumerate().filter(|(i, _)| acts.tension_n[*i].is_above(0.0)) {
-            let stiffness = cable.stiffness_n_m * acts.cables[i].at(Port::CableStiffness).scale;
+        for i in 0..plant.cables.len() {
+            if !acts.tension_n[i].is_above(0.0) {
+                continue;
+            }
+            let (stiffness, damping) = laws.cable_slopes(i, plant, now, acts);
             add_outer_of(&mut self.springs, &own.levers[i], stiffness * g);
-            add_outer_of(&mut self.matrix, &own.levers[i], cable.damping_n_s_m * g);
+            add_outer_of(&mut self.matrix, &own.levers[i], damping * g);
         }
         for site in laws.joint_sites() {
             let slopes = laws.joint_slopes(site, plant, now, acts);
             let direction = laws.direction(site);
+            let own = &acts.joints[site];
+            let whole = own.at(Port::Torque).scale;
+            let [spring, damper] =
+                [Port::JointStiffness, Port::JointDamping].map(|port| own.at(port).scale * whole - 1.0);
+            // Springs and dampers are each joint's own; what depends on the angle depends on that of all.
+            let (n, c) = (plant.dim(), &plant.coordinates);
+            for i in (0..n).filter(|i| direction[*i] != 0.0) {
+                self.springs[i * (n + 1)] += c.stiffness[i] * spring * g;
+                self.matrix[i * (n + 1)] += c.damping[i] * damper * g;
+            }
             add_outer::<_, N>(&mut self.springs, direction, -slopes.by_position * g);
             add_outer::<_, N>(&mut self.matrix, direction, -slopes.by_speed * g);
         }
@@ -170,6 +183,12 @@ impl<D: Scalar> Tangents<D> {
         let (laws, acts, own) = (plant.laws.as_ref()?, seen.acts.as_mut()?, self.laws.as_mut()?);
         let slopes = laws.muscle_slopes(i, plant, now, (&seen.forces[i], acts), (g, &mut own.states));
         self.lines[i].set_conductance(slopes.conductance_m3_s_pa);
+        // A slope that would make the line pump is left to the rates alone.
+        let zero = D::constant(0.0);
+        if let Some(Some(under)) = seen.chains.get_mut(i) {
+            let resistance = under.resistance_pa_s_m3 + slopes.drop_pa_s_m3 / under.segments() as f64;
+            under.resistance_pa_s_m3 = resistance.select_above(zero, resistance, zero);
+        }
         Some(slopes)
     }
 
@@ -220,6 +239,9 @@ impl<D: Scalar> Tangents<D> {
         let mut tangent =
             MuscleTangent { pull_per_rho: D::constant(0.0), area: forces.area_m2, friction: FrictionTangent::none() };
         let mut pull_per_pressure = forces.area_m2;
+        if let Some(acts) = acts {
+            pull_per_pressure *= acts.at(Port::Pull).scale;
+        }
         if let Some(friction) = &muscle.friction {
             let slopes = friction.rate_jacobian(z, forces.speed_m_s);
             let mut level = friction.level_n(forces.pressure_pa);

@@ -154,7 +154,7 @@ impl Twin {
         let joints = (lumped.names.clone(), lumped.slides.clone());
         let site = Site::of(&lumped.plant, joints, lumped.hinges.clone(), wraps);
         install_laws(&mut lumped.plant, &site, &laws).map_err(|wrong| wrong_law(scene, wrong))?;
-        let outputs = bare.file.output.iter().map(|o| output::resolve(&bare, o, &lumped)).collect::<Result<_, _>>()?;
+        let outputs = bare.file.output.iter().map(|o| output::resolve(scene, o, &lumped)).collect::<Result<_, _>>()?;
         Ok(Self {
             site,
             outputs,
@@ -191,7 +191,7 @@ impl Twin {
                 series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans)));
             }
         })?;
-        Some(series)
+        output::are_shown(&self.outputs, &series).then_some(series)
     }
 
     /// Series of the first variable of each law over a run, SI; empty where the rig cannot have the law. `None` when the model

@@ -48,9 +48,9 @@ const MUSCLE: usize = Port::RestLength as usize + 1;
 const CABLE: usize = Port::Transmission as usize + 1 - MUSCLE;
 const JOINT: usize = Port::JointDamping as usize + 1 - MUSCLE - CABLE;
 
-/// Acts on the ports of one element.
+/// Acts on the ports of one element, and at which of them laws stand: a bit for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ports<D, const P: usize, const FIRST: usize>(pub [Act<D>; P]);
+pub struct Ports<D, const P: usize, const FIRST: usize>(pub [Act<D>; P], u32);
 
 pub type MuscleActs<D> = Ports<D, MUSCLE, 0>;
 pub type CableActs<D> = Ports<D, CABLE, MUSCLE>;
@@ -59,12 +59,23 @@ pub type JointActs<D> = Ports<D, JOINT, { MUSCLE + CABLE }>;
 impl<D: Scalar, const P: usize, const FIRST: usize> Ports<D, P, FIRST> {
     /// Nothing at any port.
     pub fn neutral() -> Self {
-        Self([Act::neutral(); P])
+        Self([Act::neutral(); P], 0)
     }
 
     /// The slopes of nothing.
     pub fn none() -> Self {
-        Self([Act::none(); P])
+        Self([Act::none(); P], 0)
+    }
+
+    /// Notes that laws stand at a port.
+    pub fn note(&mut self, port: Port) {
+        self.1 |= 1 << (port as usize - FIRST);
+    }
+
+    /// Whether laws stand at one of these ports.
+    #[inline]
+    pub fn stand_at(&self, ports: &[Port]) -> bool {
+        ports.iter().any(|port| self.1 & (1 << (*port as usize - FIRST)) != 0)
     }
 
     /// At a port, which must be one of this element's.

@@ -7,7 +7,7 @@ use crate::system::elastic::{Elastic, ElasticPoint};
 use crate::system::plant::{CablePlant, Drive, Instant, MuscleForces, MusclePlant, Plant, dot};
 use crate::system::state::PartsMut;
 
-use super::{Act, Acts, CableActs, Instance, MuscleActs, PlantLaws};
+use super::{Act, Acts, CableActs, MuscleActs, PlantLaws};
 
 /// The parts of a muscle's pull that have a port each, at one state: wall, coil, friction, damper, and the pressure's part.
 #[derive(Clone, Copy, Debug)]
@@ -60,35 +60,56 @@ impl<D: Scalar> MusclePlant<D> {
         slow: &[D],
         greatest_j: D,
     ) -> MuscleForces<D> {
-        let (e, v, p) = (stock.elongation_m, stock.speed_m_s, stock.pressure_pa);
-        let before = self.seen(e, p, slow, greatest_j);
-        let longer = acts.at(Port::RestLength).add;
-        let law = self.seen(e - longer, p, slow, greatest_j);
-        let terms = Terms::new(self, &law, e - longer, v, p);
-        let area = acts.at(Port::Area).on(terms.area_m2);
-        // What relaxation, preload and the like add has no port of its own.
-        let others = stock.elastic_n - before.pull_n;
-        let elastic = acts.at(Port::Wall).on(terms.wall_n) + acts.at(Port::Coil).on(terms.coil_n) - p * area + others;
-        let friction = acts.at(Port::Friction).on(terms.friction_level_n) * z;
-        let damping = acts.at(Port::Damping).on(terms.damping_n);
-        let whole = acts.at(Port::Pull);
-        let sum = elastic + friction + damping;
-        let stop_n_m = stock.stiffness_n_m - before.stiffness_n_m;
-        let stiffness = terms.wall_n_m * acts.at(Port::Wall).scale + terms.coil_n_m * acts.at(Port::Coil).scale;
         let mut forces = stock;
-        forces.elastic_n = elastic + (whole.on(sum) - sum);
-        forces.friction_n = friction;
-        forces.damping_n = damping;
-        forces.stiffness_n_m = stiffness * whole.scale + stop_n_m;
-        forces.area_m2 = area;
-        forces.port.outflow_m3_s += (area - before.area_m2) * v + acts.at(Port::Outflow).add;
-        if let Drive::Hydraulic { chain, .. } = &self.drive {
-            let last = chain.compliance_m3_pa[chain.segments()] - chain.end_share_m3_pa;
-            forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
+        if acts.stand_at(ELASTIC) {
+            self.elastic_under(&mut forces, acts, slow, greatest_j);
+        }
+        if acts.stand_at(DRY) {
+            let level = self.friction.as_ref().map_or(D::constant(0.0), |f| f.level_n(stock.pressure_pa));
+            forces.friction_n = acts.at(Port::Friction).on(level) * z;
+            forces.damping_n = acts.at(Port::Damping).on(stock.damping_n);
+        }
+        if acts.stand_at(&[Port::Pull]) {
+            let whole = acts.at(Port::Pull);
+            let sum = forces.elastic_n + forces.friction_n + forces.damping_n;
+            forces.elastic_n += whole.on(sum) - sum;
+            // The stop's stiffness stays.
+            let stop_n_m = self
+                .stop
+                .as_ref()
+                .map_or(D::constant(0.0), |s| -s.push(forces.elongation_m, forces.speed_m_s).dpush_de);
+            forces.stiffness_n_m = (forces.stiffness_n_m - stop_n_m) * whole.scale + stop_n_m;
+        }
+        if acts.stand_at(&[Port::Outflow, Port::LineCompliance]) {
+            forces.port.outflow_m3_s += acts.at(Port::Outflow).add;
+            if let Drive::Hydraulic { chain, .. } = &self.drive {
+                let last = chain.compliance_m3_pa[chain.segments()] - chain.end_share_m3_pa;
+                forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
+            }
         }
         forces
     }
+
+    /// Wall, coil and pressure under their laws. What relaxation, preload and the like add has no port of its own and stays.
+    fn elastic_under(&self, forces: &mut MuscleForces<D>, acts: &MuscleActs<D>, slow: &[D], greatest_j: D) {
+        let (e, v, p) = (forces.elongation_m, forces.speed_m_s, forces.pressure_pa);
+        let before = self.seen(e, p, slow, greatest_j);
+        let longer = acts.at(Port::RestLength).add;
+        let law = if acts.stand_at(&[Port::RestLength]) { self.seen(e - longer, p, slow, greatest_j) } else { before };
+        let terms = Terms::new(self, &law, e - longer - self.extras.set_m(slow), v, p);
+        let area = acts.at(Port::Area).on(terms.area_m2);
+        let (wall, coil) = (acts.at(Port::Wall), acts.at(Port::Coil));
+        forces.elastic_n += wall.on(terms.wall_n) + coil.on(terms.coil_n) - p * area - before.pull_n;
+        forces.stiffness_n_m += terms.wall_n_m * wall.scale + terms.coil_n_m * coil.scale - before.stiffness_n_m;
+        forces.area_m2 = area;
+        forces.port.outflow_m3_s += (area - before.area_m2) * v;
+        forces.port.compliance_m3_pa += law.compliance_m3_pa - before.compliance_m3_pa;
+    }
 }
+
+/// Ports whose laws change the elastic pull, and those whose laws change what takes energy.
+const ELASTIC: &[Port] = &[Port::Wall, Port::Coil, Port::Area, Port::RestLength];
+const DRY: &[Port] = &[Port::Friction, Port::Damping];
 
 /// A cable under its laws.
 #[derive(Clone, Copy, Debug)]
@@ -210,38 +231,8 @@ impl<D: Scalar> PlantLaws<D> {
     }
 
     /// Directions on which laws act, each once.
-    pub(in crate::system) fn joint_sites(&self) -> impl Iterator<Item = usize> {
-        let is_joint = |i: &&Instance| self.port(i).spec().carrier == crate::laws::Carrier::Joint;
-        (0..self.rig.directions.len()).filter(move |d| self.instances.iter().filter(is_joint).any(|i| i.at == *d))
-    }
-
-    /// Speed of the piston against its plunger's, m/s, and what the drive's yielding adds to the syringe's compliance.
-    ///
-    /// The piston is at `x + f(t, x, p, s)`: its speed is `dx/dt + df/dt`, and the part that follows the pressure acts as a
-    /// compliance `-A df/dp`.
-    pub(super) fn move_piston<const N: usize>(
-        &self,
-        instance: &Instance,
-        plant: &Plant<D>,
-        now: &Instant<D, N>,
-        acts: &mut Acts<D>,
-    ) {
-        let (law, at) = (&self.laws[instance.law], instance.at);
-        let Drive::Hydraulic { syringe_area_m2, plunger, .. } = &plant.muscles[at].drive else { return };
-        let [by_pressure, by_plunger, by_time] = [2, 6, 7];
-        self.run(&law.programs.slopes, instance, plant, now, acts);
-        let slope = |i: usize, acts: &Acts<D>| law.programs.slopes.output(i, &acts.registers);
-        let (pressure, plunger_slope, time) = (slope(by_pressure, acts), slope(by_plunger, acts), slope(by_time, acts));
-        let states: Vec<D> = (0..law.states.len()).map(|i| slope(crate::laws::SLOPES.len() + i, acts)).collect();
-        let mut speed = time + plunger_slope * now.inputs[*plunger].slope;
-        if !states.is_empty() {
-            self.run(&law.programs.rates, instance, plant, now, acts);
-            for (i, by_state) in states.into_iter().enumerate() {
-                speed += by_state * law.programs.rates.output(i, &acts.registers);
-            }
-        }
-        acts.piston_m_s[at] += speed;
-        acts.muscles[at].at_mut(Port::Plunger).add -= pressure * *syringe_area_m2;
+    pub(in crate::system) fn joint_sites(&self) -> impl Iterator<Item = usize> + '_ {
+        self.joint_sites.iter().copied()
     }
 }
 

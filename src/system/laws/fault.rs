@@ -5,7 +5,7 @@ use crate::scalar::Scalar;
 use crate::system::plant::{Drive, InputSpan, Instant, Plant};
 use crate::system::state::PlantState;
 
-use super::{Acts, PlantLaws};
+use super::{Acts, Instance, PlantLaws};
 
 /// A law that has left the range in which its port has a meaning.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,11 +18,17 @@ pub struct LawFault {
 impl<D: Scalar> PlantLaws<D> {
     /// Whether every law can be followed at a state.
     pub fn is_sound(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> bool {
+        if !state.parts().law_states().iter().all(|s| s.is_finite()) {
+            return false;
+        }
+        // Evaluated only where there is a coefficient to look at: this is asked at every sample.
+        if !self.instances.iter().any(|i| must_stay_positive(self.port(i))) {
+            return true;
+        }
         let acts = self.afresh(plant, &Instant::<D>::of(state, inputs, 0.0));
         let is_positive =
             |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
         self.instances.iter().all(|i| is_positive(self.port(i), i.at))
-            && state.parts().law_states().iter().all(|s| s.is_finite())
     }
 
     /// What a port's coefficient has become, where it must stay above zero.
@@ -40,6 +46,12 @@ impl<D: Scalar> PlantLaws<D> {
     }
 }
 
+/// Whether a port's coefficient must stay above zero.
+fn must_stay_positive(port: Port) -> bool {
+    use Port as P;
+    matches!(port, P::Plunger | P::SyringeCompliance | P::LineCompliance | P::Inertance | P::Area)
+}
+
 /// What is said of a coefficient that is not above zero.
 fn turned_over(port: Port) -> &'static str {
     match port {
@@ -51,6 +63,13 @@ fn turned_over(port: Port) -> &'static str {
 }
 
 impl PlantLaws<f64> {
+    /// Whether a variable of a law is no number any more: then it is not the law's own fault.
+    fn is_given_nonsense(&self, instance: &Instance, plant: &Plant<f64>, now: &Instant<f64>, acts: &Acts<f64>) -> bool {
+        let variables = self.laws[instance.law].symbols.iter().zip(&instance.sources);
+        let mut of_variables = variables.filter(|(symbol, _)| matches!(symbol, Symbol::Variable(_)));
+        of_variables.any(|(_, source)| !self.read(*source, instance, plant, now, acts).is_finite())
+    }
+
     /// The first law that cannot be followed at a state.
     pub fn fault(&self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Option<LawFault> {
         let now: Instant<f64> = Instant::of(state, inputs, 0.0);
@@ -61,6 +80,9 @@ impl PlantLaws<f64> {
             let (at, port) = (instance.at, self.port(instance));
             let states = &now.at.law_states()[instance.state_at..][..law.states.len()];
             let is_turned = self.coefficient(plant, &acts, port, at).is_some_and(|c| c <= 0.0);
+            if !value.is_finite() && self.is_given_nonsense(instance, plant, &now, &acts) {
+                continue;
+            }
             let turned = is_turned.then(|| turned_over(port));
             let fault = match (value.is_finite(), states.iter().position(|s| !s.is_finite()), turned) {
                 (_, Some(i), _) => Some(format!("its state {} is {}", law.states[i].name, states[i])),

@@ -1,17 +1,16 @@
 //! Memory of laws: where it starts, its rates, and what follows an expression from step to step.
 
-use crate::laws::Memory;
+use crate::laws::{Memory, Port};
 use crate::scalar::Scalar;
 use crate::system::plant::{InputSpan, Instant, Plant};
 use crate::system::state::PlantState;
 
 use super::{Acts, PlantLaws};
 
-/// Puts every state where its law starts it. Inputs are at zero there, as the scene's start is.
-pub(super) fn start<D: Scalar>(laws: &PlantLaws<D>, plant: &Plant<D>, state: &mut PlantState<D>) {
-    let inputs = vec![InputSpan::default(); plant.inputs()];
+/// Puts every state where its law starts it.
+pub(super) fn start<D: Scalar>(laws: &PlantLaws<D>, plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan]) {
     let mut starts = vec![D::constant(0.0); laws.states];
-    let now: Instant<D> = Instant::of(state, &inputs, 0.0);
+    let now: Instant<D> = Instant::of(state, inputs, 0.0);
     let mut acts = laws.afresh(plant, &now);
     for instance in &laws.instances {
         let law = &laws.laws[instance.law];
@@ -55,20 +54,32 @@ impl<D: Scalar> PlantLaws<D> {
         }
         let now: Instant<D> = Instant::of(state, inputs, h);
         let mut acts = self.afresh(plant, &now);
+        let moved = self.followed(plant, &now, &mut acts, |_| true);
+        state.law_states_mut().copy_from_slice(&moved);
+    }
+
+    /// All states, those that follow an expression (at the `wanted` ports) gone with it to an instant.
+    pub(super) fn followed(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D>,
+        acts: &mut Acts<D>,
+        wanted: impl Fn(Port) -> bool,
+    ) -> Vec<D> {
         let mut moved = now.at.law_states().to_vec();
-        for instance in &self.instances {
+        for instance in self.instances.iter().filter(|i| wanted(self.port(i))) {
             let law = &self.laws[instance.law];
-            for (s, own) in law.states.iter().enumerate().filter(|(_, s)| follows(&s.memory)) {
+            for (s, own) in law.states.iter().enumerate().filter(|(_, s)| s.memory != Memory::Rate) {
                 let before = moved[instance.state_at + s];
-                let at = self.evaluate(&law.programs.follows, instance, plant, &now, &mut acts, s);
-                let half = self.evaluate(&law.programs.widths, instance, plant, &now, &mut acts, s) * 0.5;
+                let at = self.evaluate(&law.programs.follows, instance, plant, now, acts, s);
+                let half = self.evaluate(&law.programs.widths, instance, plant, now, acts, s) * 0.5;
                 moved[instance.state_at + s] = match own.memory {
                     Memory::Greatest => at.select_above(before, at, before),
                     _ => super::play(before, at, half),
                 };
             }
         }
-        state.law_states_mut().copy_from_slice(&moved);
+        moved
     }
 
     /// Takes over what the engine changed of the joints: cables go as much further or less.

@@ -7,6 +7,7 @@ mod acts;
 mod apply;
 mod fault;
 mod memory;
+mod pistons;
 mod place;
 mod power;
 mod sensor;
@@ -15,11 +16,11 @@ mod slopes;
 mod tangents;
 mod visited;
 
-use crate::laws::{Carrier, Law, Port};
+use crate::laws::{Carrier, Law, Port, Quantity};
 use crate::scalar::Scalar;
 
 use super::install::Site;
-use super::plant::{Instant, Plant, dot};
+use super::plant::{InputSpan, Instant, Plant, dot};
 use super::state::PlantState;
 
 pub use acts::{Act, Acts, CableActs, JointActs, MuscleActs};
@@ -35,8 +36,9 @@ pub(super) use visited::Visit;
 /// A law at one element.
 #[derive(Clone, Debug, PartialEq)]
 struct Instance {
-    /// Index of the law.
+    /// Index of the law, and its port.
     law: usize,
+    port: Port,
     /// Muscle, cable or direction.
     at: usize,
     /// Where each symbol of the law is read.
@@ -57,6 +59,11 @@ pub struct PlantLaws<D> {
     joints: usize,
     /// Where the extra travels of the cables begin among the states, if a law changes a lever.
     travel_at: Option<usize>,
+    /// Whether a law moves a piston, whether one acts on a cable, and the directions on which some act.
+    on_plungers: bool,
+    on_cables: bool,
+    rubs: bool,
+    joint_sites: Vec<usize>,
     states: usize,
 }
 
@@ -71,6 +78,10 @@ impl<D: Scalar> PlantLaws<D> {
             instances: Vec::new(),
             joints: site.joints,
             travel_at: None,
+            on_plungers: false,
+            on_cables: false,
+            rubs: false,
+            joint_sites: Vec::new(),
             states: 0,
         }
     }
@@ -82,14 +93,20 @@ impl<D: Scalar> PlantLaws<D> {
     pub fn add(&mut self, law: &Law, values: Vec<D>, cables: usize) -> Result<(), Wrong> {
         let index = self.laws.len();
         for at in self.rig.places(&law.address)? {
+            if law.address.port.spec().carrier == Carrier::Joint && !self.joint_sites.contains(&at) {
+                self.joint_sites.push(at);
+            }
             let sources = self.rig.sources(law, at)?;
-            self.instances.push(Instance { law: index, at, sources, state_at: self.states });
+            self.instances.push(Instance { law: index, port: law.address.port, at, sources, state_at: self.states });
             self.states += law.states.len();
         }
         if law.address.port == Port::Lever && self.travel_at.is_none() {
             self.travel_at = Some(self.states);
             self.states += cables;
         }
+        self.on_plungers |= law.address.port == Port::Plunger;
+        self.rubs |= makes_force_of_speed(law);
+        self.on_cables |= law.address.port.spec().carrier == Carrier::Cable;
         self.laws.push(law.clone());
         self.values.push(values);
         Ok(())
@@ -121,13 +138,27 @@ impl<D: Scalar> PlantLaws<D> {
             instances: self.instances.clone(),
             joints: self.joints,
             travel_at: self.travel_at,
+            on_plungers: self.on_plungers,
+            on_cables: self.on_cables,
+            rubs: self.rubs,
+            joint_sites: self.joint_sites.clone(),
             states: self.states,
         }
     }
 
     /// Room for what they do.
     pub fn room(&self, plant: &Plant<D>) -> Acts<D> {
-        Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len())
+        let mut acts = Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len());
+        for instance in &self.instances {
+            let (port, at) = (self.port(instance), instance.at);
+            match port.spec().carrier {
+                Carrier::Muscle => acts.muscles[at].note(port),
+                Carrier::Cable => acts.cables[at].note(port),
+                Carrier::Joint => acts.joints[at].note(port),
+                Carrier::Sensor => {}
+            }
+        }
+        acts
     }
 
     /// The joints of a direction.
@@ -135,13 +166,15 @@ impl<D: Scalar> PlantLaws<D> {
         &self.rig.directions[site].direction
     }
 
+    #[inline]
     fn port(&self, instance: &Instance) -> Port {
-        self.laws[instance.law].address.port
+        instance.port
     }
 
     /// Whether some law acts on a cable.
-    fn on_cables(&self) -> bool {
-        self.laws.iter().any(|law| law.address.port.spec().carrier == Carrier::Cable)
+    #[inline]
+    pub(super) fn on_cables(&self) -> bool {
+        self.on_cables
     }
 
     /// Evaluates all laws at an instant.
@@ -259,6 +292,19 @@ impl<D: Scalar> PlantLaws<D> {
         }
     }
 
+    /// Tensions of all cables under their laws. Kept apart: a stock scene has none.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn tensions<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Vec<D> {
+        self.afresh(plant, now).tension_n
+    }
+
+    /// Whether a law makes forces of speeds: its slope can turn within a step, and tangents must not be kept.
+    #[inline]
+    pub(super) fn rubs(&self) -> bool {
+        self.rubs
+    }
+
     /// What laws do to the state's plant, evaluated afresh.
     pub(super) fn afresh<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Acts<D> {
         let mut acts = self.room(plant);
@@ -266,13 +312,27 @@ impl<D: Scalar> PlantLaws<D> {
         acts
     }
 
-    /// Gives a state the memory that they need, as it starts; time and inputs are those of the beginning.
+    /// Gives a state the memory that they need, as it starts with all inputs at zero.
     pub fn settle(plant: &Plant<D>, state: &mut PlantState<D>) {
         if let Some(laws) = &plant.laws {
             state.set_law_states(&vec![D::constant(0.0); laws.states]);
-            memory::start(laws, plant, state);
+            Self::begin(plant, state, &vec![InputSpan::default(); plant.inputs()]);
         }
     }
+
+    /// Starts the memory at a run's first instant: where inputs and clock are there.
+    pub fn begin(plant: &Plant<D>, state: &mut PlantState<D>, inputs: &[InputSpan]) {
+        if let Some(laws) = &plant.laws {
+            memory::start(laws, plant, state, inputs);
+            laws.place_pistons(plant, state, inputs);
+        }
+    }
+}
+
+fn makes_force_of_speed(law: &Law) -> bool {
+    let is_force = matches!(law.address.port, Port::Torque | Port::JointDamping | Port::Pull | Port::Damping);
+    let is_speed = |v: &crate::laws::Variable| matches!(v.quantity, Quantity::Speed | Quantity::AngularSpeed);
+    is_force && law.variables().iter().any(is_speed)
 }
 
 /// The play operator: `before` moved by as little as keeps it within half a width of `followed`.

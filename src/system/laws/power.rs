@@ -8,7 +8,8 @@ use crate::system::state::PlantState;
 use super::apply::{along, joint_force};
 use super::{Acts, PlantLaws};
 
-/// Power that each law brings in (> 0) or takes away, W. Laws on one element are counted in the order of the scene.
+/// Power that each law brings in (> 0) or takes away, W. Laws on one element are counted in the order of the scene; what
+/// pistons do is work over a way, not a power: see [`PlantLaws::pistons`].
 pub fn law_powers(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], elapsed_s: f64) -> Vec<f64> {
     let Some(laws) = &plant.laws else { return Vec::new() };
     let now: Instant<f64> = Instant::of(state, inputs, elapsed_s);
@@ -48,7 +49,7 @@ impl PlantLaws<f64> {
         let under = muscle.forces_under(stock, own, now.at.z(i), muscle.slow(&now.at), now.state.greatest_j[i]);
         let pressure = stock.pressure_pa;
         let mut power = -(under.pull_n() - stock.pull_n()) * stock.speed_m_s;
-        let Drive::Hydraulic { chain, syringe_area_m2, .. } = &muscle.drive else {
+        let Drive::Hydraulic { chain, .. } = &muscle.drive else {
             // The line of the input counts the stock volume alone: what more there is comes by the law.
             return power;
         };
@@ -57,9 +58,8 @@ impl PlantLaws<f64> {
         let (first, flows, flow_rates) = (line[0], &line[n + 1..2 * n + 1], &rates[n + 1..2 * n + 1]);
         power -= (under.port.outflow_m3_s - stock.port.outflow_m3_s) * pressure;
         power -= own.at(Port::SyringeFlow).add * first;
-        power += acts.piston_m_s[i] * syringe_area_m2 * first;
         let upstream = chain.compliance_m3_pa[0] - chain.end_share_m3_pa;
-        let before = own.at(Port::SyringeCompliance).on(upstream) - upstream + own.at(Port::Plunger).add;
+        let before = own.at(Port::SyringeCompliance).on(upstream) - upstream;
         let after = under.port.compliance_m3_pa - stock.port.compliance_m3_pa;
         for (added, node) in [(before, 0), (after, n)] {
             power -= if is_boiling[node] { 0.0 } else { added * line[node] * rates[node] };

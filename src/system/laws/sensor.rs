@@ -25,6 +25,11 @@ impl<D: Scalar> LawSensor<D> {
         Self { law: law.clone(), values, factor, states, last: None, registers: Vec::new() }
     }
 
+    /// Name and port.
+    pub fn title(&self) -> String {
+        format!("{} ({})", self.law.name, self.law.address)
+    }
+
     /// What is shown when the quantity is `value`, in the channel's unit; times must increase.
     pub fn show(&mut self, time_s: f64, value: D) -> D {
         let reading = value * self.factor;
@@ -50,7 +55,8 @@ impl<D: Scalar> LawSensor<D> {
         }
     }
 
-    /// Rates by the midpoint rule; what follows an expression follows it to the end.
+    /// Rates by exponential steps, exact for what is linear in state and reading, and never unstable; what follows an expression
+    /// follows it to the end.
     fn go_on(&mut self, (from_s, from): (f64, D), (to_s, to): (f64, D)) {
         if self.states.is_empty() {
             return;
@@ -59,15 +65,17 @@ impl<D: Scalar> LawSensor<D> {
         let h = (to_s - from_s) / STEPS as f64;
         for k in 0..STEPS {
             let at = |share: f64| ((from_s + share * h), from + (to - from) * (share / STEPS as f64));
-            let before = self.states.clone();
-            for (share, step) in [(k as f64, 0.5 * h), (k as f64 + 0.5, h)] {
-                let (time_s, reading) = at(share);
-                let rates: Vec<D> =
-                    (0..before.len()).map(|s| self.evaluate(&programs.rates, s, time_s, reading)).collect();
-                for ((state, &before), rate) in self.states.iter_mut().zip(&before).zip(rates) {
-                    *state = before + rate * step;
-                }
-            }
+            let moved: Vec<D> = (0..self.states.len())
+                .map(|s| {
+                    let [(from_s, from), (to_s, to)] = [at(k as f64), at(k as f64 + 1.0)];
+                    let first = self.evaluate(&programs.rates, s, from_s, from);
+                    let last = self.evaluate(&programs.rates, s, to_s, to);
+                    let slope = self.evaluate(&programs.rate_slopes, 3 * s, from_s, from) * h;
+                    let [phi_1, phi_2] = exponential(slope);
+                    self.states[s] + (phi_1 * first + phi_2 * (last - first)) * h
+                })
+                .collect();
+            self.states = moved;
         }
         for s in 0..self.states.len() {
             let before = self.states[s];
@@ -95,6 +103,21 @@ impl<D: Scalar> LawSensor<D> {
         self.registers = registers;
         value
     }
+}
+
+/// `(exp z - 1)/z` and `(exp z - 1 - z)/z²`.
+fn exponential<D: Scalar>(z: D) -> [D; 2] {
+    /// Below, the differences would lose digits.
+    const SMALL: f64 = 0.5;
+    const TERMS: u32 = 14;
+    if z.value().abs() > SMALL {
+        let first = z.exp_m1() / z;
+        return [first, (first - 1.0) / z];
+    }
+    let series = |from: u32| (0..TERMS).rev().fold(D::constant(0.0), |sum, k| (sum * z + 1.0) / f64::from(k + from));
+    let first = series(1);
+    // sum z^k/(k + 2)! = (1/2) (1 + z/3 (1 + z/4 (...))).
+    [first, series(2)]
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use crate::laws::{Acts as Sense, Carrier, Memory, Port, SLOPES};
 use crate::scalar::Scalar;
-use crate::system::plant::{Instant, MuscleForces, Plant};
+use crate::system::plant::{Drive, Instant, MuscleForces, Plant};
 
 use super::apply::Terms;
 use super::{Act, Acts, Instance, PlantLaws};
@@ -17,6 +17,8 @@ const PRESSURE: usize = 2;
 const ANGLE: usize = 3;
 const ANGULAR_SPEED: usize = 4;
 const POSITION: usize = 5;
+const FLOW: usize = 8;
+const STRETCH: usize = 9;
 
 /// How a muscle's pull and the flows out of its line change with the muscle's own quantities because of laws alone.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +28,8 @@ pub(in crate::system) struct MuscleSlopes<D> {
     pub pull_n_pa: D,
     /// Flow lost per pressure before and after the line, m³/(s Pa).
     pub conductance_m3_s_pa: [D; 2],
+    /// Pressure drop per flow that the line's laws add by changing with the flow, Pa s/m³.
+    pub drop_pa_s_m3: D,
 }
 
 /// How the torque on a site changes with its position and its speed because of laws.
@@ -51,6 +55,25 @@ impl<D: Scalar> StateTangent<D> {
         let zero = D::constant(0.0);
         Self { damper: D::constant(1.0), by_elongation: zero, by_speed: zero, pull: zero, muscle: None }
     }
+}
+
+/// Pressure drop per flow through the change of what acts at a port with the flow, Pa s/m³.
+fn line_slope<D: Scalar, const N: usize>(
+    port: Port,
+    acts: &super::MuscleActs<D>,
+    plant: &Plant<D>,
+    i: usize,
+    now: &Instant<D, N>,
+    change: &Act<D>,
+) -> D {
+    let Drive::Hydraulic { chain, .. } = &plant.muscles[i].drive else { return D::constant(0.0) };
+    let n = chain.segments();
+    let flow = now.at.line(i)[n + 1];
+    let resistance = chain.resistance_pa_s_m3 * n as f64;
+    if port == Port::Resistance {
+        return (resistance * change.scale + change.add) * flow * acts.at(Port::PressureDrop).scale;
+    }
+    acts.at(Port::Resistance).on(resistance) * flow * change.scale + change.add
 }
 
 /// What a muscle's pull depends on at one instant.
@@ -112,7 +135,7 @@ impl<D: Scalar> PlantLaws<D> {
         let muscle = &plant.muscles[i];
         let seen = forces.elongation_m - acts.at(Port::RestLength).add;
         let law = muscle.seen(seen, forces.pressure_pa, slow, greatest_j);
-        let terms = Terms::new(muscle, &law, seen, forces.speed_m_s, forces.pressure_pa);
+        let terms = Terms::new(muscle, &law, seen - muscle.extras.set_m(slow), forces.speed_m_s, forces.pressure_pa);
         let whole = acts.at(Port::Pull);
         let sum = forces.elastic_n + forces.friction_n + forces.damping_n - whole.add;
         let sum_n = if whole.scale.is_at(0.0) { sum } else { sum / whole.scale };
@@ -129,8 +152,13 @@ impl<D: Scalar> PlantLaws<D> {
         (g, states): (f64, &mut [StateTangent<D>]),
     ) -> MuscleSlopes<D> {
         let zero = D::constant(0.0);
-        let mut slopes =
-            MuscleSlopes { pull_n_m: zero, pull_n_s_m: zero, pull_n_pa: zero, conductance_m3_s_pa: [zero; 2] };
+        let mut slopes = MuscleSlopes {
+            pull_n_m: zero,
+            pull_n_s_m: zero,
+            pull_n_pa: zero,
+            conductance_m3_s_pa: [zero; 2],
+            drop_pa_s_m3: zero,
+        };
         let own = acts.muscles[i];
         let memory = (plant.muscles[i].slow(&now.at), now.state.greatest_j[i]);
         let muscle = self.muscle(i, plant, forces, now.at.z(i), &own, memory);
@@ -146,6 +174,9 @@ impl<D: Scalar> PlantLaws<D> {
             match port {
                 Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change(PRESSURE).add,
                 Port::Outflow => slopes.conductance_m3_s_pa[1] += change(PRESSURE).add,
+                Port::Resistance | Port::PressureDrop => {
+                    slopes.drop_pa_s_m3 += line_slope(port, &own, plant, i, now, &change(FLOW));
+                }
                 _ => {}
             }
             let pulls: Vec<D> =
@@ -202,6 +233,36 @@ impl<D: Scalar> PlantLaws<D> {
         }
     }
 
+    /// Stiffness (N/m) and damping (N s/m) of a taut cable under its laws, at its near end.
+    pub(in crate::system) fn cable_slopes<const N: usize>(
+        &self,
+        i: usize,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) -> (D, D) {
+        let (cable, own) = (&plant.cables[i], acts.cables[i]);
+        let (elastic, whole) = (own.at(Port::CableStiffness), own.at(Port::Tension));
+        let mut stiffness = cable.stiffness_n_m * elastic.scale * whole.scale;
+        if own.stand_at(&[Port::CableStiffness, Port::Tension]) {
+            let pull = self.cable(i, plant, now, acts);
+            let stretched = cable.stiffness_n_m * pull.stretch_m;
+            let sum = elastic.on(stretched) + cable.damping_n_s_m * pull.rate_m_s;
+            for instance in self.at(Carrier::Cable, i) {
+                let (port, law) = (self.port(instance), &self.laws[instance.law]);
+                let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+                self.run(&law.programs.slopes, instance, plant, now, acts);
+                let change = self.change(instance, value, acts, STRETCH, own.at(port).scale);
+                stiffness += match port {
+                    Port::CableStiffness => (stretched * change.scale + change.add) * whole.scale,
+                    Port::Tension => sum * change.scale + change.add,
+                    _ => D::constant(0.0),
+                };
+            }
+        }
+        (stiffness, cable.damping_n_s_m * whole.scale)
+    }
+
     /// Slopes of the laws on a site.
     pub(in crate::system) fn joint_slopes<const N: usize>(
         &self,
@@ -215,23 +276,23 @@ impl<D: Scalar> PlantLaws<D> {
         let Some(i) = direction.direction.iter().position(|d| *d != 0.0) else {
             return JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
         };
-        let count = direction.direction.iter().filter(|d| **d != 0.0).count() as f64;
         let (c, own) = (&plant.coordinates, acts.joints[site]);
         let spring = c.stiffness[i] * (now.at.y()[i] - c.rest[i]);
         let damper = c.damping[i] * now.at.w()[i];
-        let mut slopes = JointSlopes {
-            by_position: -(c.stiffness[i] * (own.at(Port::JointStiffness).scale - 1.0)) / count,
-            by_speed: -(c.damping[i] * (own.at(Port::JointDamping).scale - 1.0)) / count,
-        };
+        let mut slopes = JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
+        let whole = own.at(Port::Torque).scale;
         for instance in self.at(Carrier::Joint, site) {
             let (port, law) = (self.port(instance), &self.laws[instance.law]);
             let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
             self.run(&law.programs.slopes, instance, plant, now, acts);
             let change = |output: usize| self.change(instance, value, acts, output, own.at(port).scale);
             let torque = |act: Act<D>| match port {
-                Port::JointStiffness => -(spring * act.scale + act.add),
-                Port::JointDamping => -(damper * act.scale + act.add),
-                _ => -((spring + damper) * act.scale) + act.add,
+                Port::JointStiffness => -((spring * act.scale + act.add) * whole),
+                Port::JointDamping => -((damper * act.scale + act.add) * whole),
+                _ => {
+                    let sum = own.at(Port::JointStiffness).on(spring) + own.at(Port::JointDamping).on(damper);
+                    -(sum * act.scale) + act.add
+                }
             };
             slopes.by_position += torque(change(position));
             slopes.by_speed += torque(change(speed));

@@ -17,6 +17,7 @@ impl<const L: usize> PlantState<Lanes<L>> {
             put(&mut self.row, &state.row, lane);
             put(&mut self.greatest_j, &state.greatest_j, lane);
             put(&mut self.piston_ahead_m, &state.piston_ahead_m, lane);
+            put(&mut self.piston_law_m, &state.piston_law_m, lane);
         }
         true
     }
@@ -28,6 +29,7 @@ impl<const L: usize> PlantState<Lanes<L>> {
         take(&self.row, &mut state.row, lane);
         take(&self.greatest_j, &mut state.greatest_j, lane);
         take(&self.piston_ahead_m, &mut state.piston_ahead_m, lane);
+        take(&self.piston_law_m, &mut state.piston_law_m, lane);
     }
 }
 

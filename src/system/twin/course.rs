@@ -4,6 +4,7 @@ use super::TwinRun;
 use crate::scalar::Scalar;
 use crate::system::PlantState;
 use crate::system::Stepper;
+use crate::system::laws::PlantLaws;
 use crate::system::plant::{InputSpan, Instant, Plant};
 
 /// State and inputs at one instant, and the integrator that carries them on.
@@ -18,7 +19,8 @@ impl<D: Scalar> Course<D> {
     /// At a run's first sample.
     pub fn new(plant: &Plant<D>, mut state: PlantState<D>, run: &TwinRun) -> Self {
         state.time_s = run.times_s.first().copied().unwrap_or(0.0);
-        let spans = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        let spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
+        PlantLaws::begin(plant, &mut state, &spans);
         Self { stepper: Stepper::new(plant, &state), state, spans }
     }
 

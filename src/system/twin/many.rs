@@ -44,7 +44,8 @@ impl Twin {
         }
         let series = self.bodies(run, &bodies);
         let shown = |(setting, body): (&TwinSetting<f64>, &usize)| {
-            series[*body].as_ref().map(|series| self.through_sensors(run, setting, series))
+            let shown = self.through_sensors(run, setting, series[*body].as_ref()?);
+            super::output::are_shown(&self.outputs, &shown).then_some(shown)
         };
         settings.iter().zip(&body_of).map(shown).collect()
     }

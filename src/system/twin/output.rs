@@ -42,7 +42,7 @@ impl TwinOutput {
     /// The value in the channel's unit.
     pub fn read<D: Scalar>(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> D {
         let value = match &self.reader {
-            Reader::Elongation(m) => plant.muscle_forces(*m, state, inputs, 0.0).elongation_m,
+            Reader::Elongation(m) => plant.muscles[*m].elongation_m::<0>(state.y()),
             Reader::Pull(m) => plant.muscle_forces(*m, state, inputs, 0.0).pull_n(),
             Reader::MusclePressure(m) => plant.muscle_pressure(*m, state, inputs, 0.0),
             Reader::SyringePressure(m) => match plant.muscles[*m].drive {
@@ -95,6 +95,12 @@ fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
         (asked > 0).then(|| (i, asked as f64 / names.len() as f64))
     };
     lumped.names.iter().enumerate().filter_map(part).collect()
+}
+
+/// Whether all channels with laws on them show numbers.
+pub(super) fn are_shown<D: Scalar>(outputs: &[TwinOutput], series: &[Vec<D>]) -> bool {
+    let lawful = outputs.iter().zip(series).filter(|(output, _)| !output.laws.is_empty());
+    lawful.flat_map(|(_, values)| values).all(Scalar::is_finite)
 }
 
 /// Sensor effects and laws on the channels.
