@@ -97,6 +97,7 @@ mod tests {
             scene: String::new(),
             recordings: Vec::new(),
             verdict,
+            modelled: None,
             summary: String::new(),
             detection: crate::diagnose::Detection::default(),
             location: crate::diagnose::Location::default(),

@@ -167,7 +167,8 @@ impl<D: Scalar> Tangents<D> {
                 self.matrix[i * (n + 1)] += c.damping[i] * damper * g;
             }
             add_outer::<_, N>(&mut self.springs, direction, -slopes.by_position * g);
-            add_outer::<_, N>(&mut self.matrix, direction, -slopes.by_speed * g);
+            let (zero, resisting) = (D::constant(0.0), -slopes.by_speed);
+            add_outer::<_, N>(&mut self.matrix, direction, resisting.select_above(zero, resisting, zero) * g);
         }
     }
 
@@ -255,7 +256,9 @@ impl<D: Scalar> Tangents<D> {
             tangent.friction = FrictionTangent::new(level, slopes.drate_dz, slopes.drate_dv, g);
         }
         if let Some(slopes) = &slopes {
-            damping += slopes.pull_n_s_m;
+            // What falls with speed would make the matrix indefinite: it acts through the forces, which are evaluated in full.
+            let zero = D::constant(0.0);
+            damping += slopes.pull_n_s_m.select_above(zero, slopes.pull_n_s_m, zero);
             pull_per_pressure -= slopes.pull_n_pa;
         }
         let mut along = damping * g + tangent.friction.inertia();
