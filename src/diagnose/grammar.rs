@@ -262,7 +262,7 @@ fn spelled(shape: &str, x: &str) -> String {
     let letters: Vec<char> = shape.chars().collect();
     let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
     let each = letters.iter().enumerate().map(|(i, c)| match c {
-        'x' if !is_word(i + 1) && !(i > 0 && is_word(i - 1)) => x.to_owned(),
+        'x' if !(is_word(i + 1) || i > 0 && is_word(i - 1)) => x.to_owned(),
         c => c.to_string(),
     });
     each.collect()

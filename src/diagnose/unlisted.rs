@@ -4,8 +4,6 @@
 //! and what a curve made up of them could explain says how well the slot does, whatever the law's shape. Around the best slots all
 //! shapes are screened, the best are refitted jointly with the calibration.
 
-use std::borrow::Cow;
-
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -261,7 +259,7 @@ impl Shown<'_> {
     }
 
     /// The part of each signature that stands in one run.
-    fn in_run(&self, r: usize, run: &Cow<'_, CaseRun>, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
+    fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
         let problem = self.problem;
         let setting = self.from.model.setting(problem.case, &self.from.x);
         let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];

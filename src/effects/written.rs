@@ -37,14 +37,14 @@ impl LawId {
     /// One that was written before, with the same numbers, keeps its place.
     pub fn write(table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> Self {
         let mut written = WRITTEN.write().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let is_same = |known: &&WrittenLaw| {
+        let is_same = |known: &&'static WrittenLaw| {
             known.table == *table && known.order.first() == Some(&size) && {
                 known.order.iter().zip(known.spec.parameters).all(|(&i, p)| {
                     (p.typical, p.range, p.is_fitted) == (numbers[i].typical, numbers[i].range, numbers[i].is_fitted)
                 })
             }
         };
-        if let Some(at) = written.iter().position(|known| is_same(&known)) {
+        if let Some(at) = written.iter().position(is_same) {
             return Self(at as u32);
         }
         let id = Self(written.len() as u32);
