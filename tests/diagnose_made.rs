@@ -2,10 +2,15 @@
 
 use std::path::Path;
 
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use smam::conceal::{Decoy, Drawn, Hiding, Rig, draw, record_asked, write_case};
 use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
 use smam::effects::{Effect, EffectTable};
 use smam::recording::{Channel, Recording, read_csv};
+use smam::scene::{Override, Scene};
+use smam::system::{InputSource, Schedule, Simulation, record};
 use smam::trial::make_specimen;
 use tempfile::TempDir;
 
@@ -305,4 +310,46 @@ fn relaxation_over_decades_is_told_from_a_single_one() {
             assert!(low < *value && *value < high, "{key}: {low} to {high} for {value}");
         }
     }
+}
+
+/// Plays the runs of a folder again on another scene, with the noise that `sd` says.
+fn play_again(folder: &Path, scene: &Scene, sd: &[(&str, f64)]) {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    change(folder, |recorded| {
+        let mut simulation = Simulation::new(scene.clone()).expect("builds");
+        let line = recorded.piecewise_si("plunger_mm").expect("an input");
+        simulation.set_input("plunger_mm", InputSource::Recorded(line));
+        let played = record(&mut simulation, &Schedule::at(recorded.time_s().to_vec())).expect("runs");
+        let noisy = recorded.channels().iter().map(|channel| {
+            let Some((_, sd)) = sd.iter().find(|(column, _)| *column == channel.column) else { return channel.clone() };
+            let values = &played.channel(&channel.column).expect("an output").values;
+            let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+            Channel::new(channel.column.clone(), values.iter().map(|x| x + sd * noise()).collect())
+        });
+        Recording::new(recorded.time_s().to_vec(), noisy.collect()).expect("as before")
+    });
+}
+
+/// A law that the scene proposes is weighed like an effect of the catalogue, named, fitted, and written as a law of the scene.
+#[test]
+fn a_candidate_law_of_the_scene_is_named_and_fitted() {
+    let folder = specimen(None);
+    let law = |a: f64, ageing_s: f64, candidate: bool| {
+        let text = format!(
+            "law.ageing={{port=\"muscle.wall\", scales=\"1 - a*ln(1 + time_s/ageing_s)\", candidate={candidate}, \
+             parameter={{a={{value={a:?}}}, ageing_s={{value={ageing_s:?}}}}}}}"
+        );
+        Override::parse(&text).expect("a law")
+    };
+    let hidden = Scene::load("muscle_bench", &[law(0.05, 20.0, false)]).unwrap_or_else(|e| panic!("{e}"));
+    play_again(folder.path(), &hidden, &[("elongation_mm", 0.02), ("pressure_kpa", 5.0), ("force_n", 0.5)]);
+    let case = Case::load(&[folder.path()], None, &[law(0.1, 40.0, true)]).unwrap_or_else(|e| panic!("{e}"));
+    let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
+    let d = &outcome.diagnosis;
+    assert_eq!(d.verdict, Verdict::MissingPhysics, "{}", d.summary);
+    let [named] = &d.effects[..] else { panic!("{:?}", d.effects) };
+    assert_eq!((named.name.as_str(), named.port.as_str(), named.acts.as_str()), ("ageing", "muscle.wall", "scales"));
+    assert!(!named.hypothetical && (named.parameters["a"].value - 0.05).abs() < 0.01, "{:?}", named.parameters);
+    let text = outcome.scene_text().expect("a fit").unwrap_or_else(|e| panic!("{e}"));
+    assert!(text.contains("[[law]]") && !text.contains("candidate"), "{text}");
 }

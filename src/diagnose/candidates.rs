@@ -4,6 +4,7 @@ use crate::effects::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
 use crate::scene::Scene;
 
 use super::case::Case;
+use super::grammar;
 use super::model::Placed;
 
 /// An effect with numbers to start from; the size is the first of them.
@@ -22,6 +23,7 @@ pub fn variants(case: &Case) -> Vec<Variant> {
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
         }
     }
+    all.extend(case.scene.candidates.iter().map(|candidate| grammar::candidate(case, candidate)));
     all
 }
 
@@ -65,6 +67,7 @@ fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
         return false;
     }
     let mut file = case.scene.file.clone();
+    file.law.retain(|law| !law.candidate);
     let effect = placed.with(values);
     match effect.law_table() {
         Some(law) => file.law.push(law),

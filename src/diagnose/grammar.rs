@@ -7,6 +7,8 @@ use crate::laws::{
     Acts, Address, Carrier, Law, LawTable, PORTS, ParameterTable, Port, PortSpec, Quantity, Surroundings,
 };
 
+use crate::scene::Candidate;
+
 use super::candidates::Variant;
 use super::case::Case;
 use super::fit::Fit;
@@ -248,6 +250,21 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let placed = written(case, &table, &law, &numbers, size);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
+}
+
+/// A law that the scene proposes, tried from its own numbers. A parameter without a range has that of its scale.
+pub fn candidate(case: &Case, own: &Candidate) -> Variant {
+    let number = |(i, p): (usize, &crate::laws::Parameter)| {
+        let scale = p.value.abs().max(f64::MIN_POSITIVE);
+        let (low, high) = if i == own.size { (-1e3 * scale, 1e3 * scale) } else { (0.02 * p.value, 50.0 * p.value) };
+        let or = |bound: f64, other: f64| if bound.is_finite() { bound } else { other };
+        let range = Range { min: or(p.min, low.min(high)), max: or(p.max, low.max(high)) };
+        Fitted { typical: p.value, range, is_fitted: true }
+    };
+    let numbers: Vec<Fitted> = own.law.parameters.iter().enumerate().map(number).collect();
+    let placed = written(case, &own.table, &own.law, &numbers, own.size);
+    let values = placed.spec().typical();
+    Variant { placed, values }
 }
 
 /// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.

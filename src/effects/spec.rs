@@ -36,7 +36,12 @@ pub enum Kind {
 impl Kind {
     /// Whether it stands for physics nobody has named: never a candidate by itself.
     pub fn is_hypothetical(self) -> bool {
-        matches!(self, Self::HypotheticalForce | Self::HypotheticalFlow | Self::Law(_))
+        match self {
+            Self::HypotheticalForce | Self::HypotheticalFlow => true,
+            // What the scene declares as a candidate has been named by whoever wrote it.
+            Self::Law(id) => !id.law().table.candidate,
+            _ => false,
+        }
     }
 
     /// Whether one element may have it several times: relaxation has a spectrum, a polynomial several terms.

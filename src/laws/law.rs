@@ -136,6 +136,9 @@ impl Programs {
     }
 }
 
+/// Values of variables at which a law is looked at.
+const PROBES: [f64; 4] = [-0.7, 1e-3, 0.3, 41.0];
+
 impl Law {
     /// Values of its parameters as the scene has them.
     pub fn values(&self) -> Vec<f64> {
@@ -145,6 +148,24 @@ impl Law {
     /// The place of a parameter.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
+    }
+
+    /// The parameter at whose zero the law vanishes, whatever its variables are; none where there is no such.
+    pub fn size(&self) -> Option<usize> {
+        let neutral = if self.acts == Acts::Adds { 0.0 } else { 1.0 };
+        let vanishes = |size: usize| {
+            PROBES.iter().all(|probe| {
+                let read = |(i, symbol): (usize, &Symbol)| match symbol {
+                    Symbol::Parameter(p) if *p == size => 0.0,
+                    Symbol::Parameter(p) => self.parameters[*p].value,
+                    Symbol::Constant(x) => *x,
+                    Symbol::Variable(_) | Symbol::State(_) => probe * (1.0 + i as f64),
+                };
+                let by_symbol: Vec<f64> = self.symbols.iter().enumerate().map(read).collect();
+                self.programs.value.value(&by_symbol) == neutral
+            })
+        };
+        (0..self.parameters.len()).find(|&p| vanishes(p))
     }
 
     /// The variables that it depends on, each once.

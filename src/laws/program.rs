@@ -60,11 +60,20 @@ impl Program {
     /// Evaluates with the values of its symbols; afterwards [`Program::output`] reads the results from the registers.
     #[inline]
     pub fn run<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut Vec<D>) {
-        registers.clear();
-        registers.extend(values);
+        let count = self.symbols.len() + self.instructions.len();
+        if registers.len() < count {
+            registers.resize(count, D::constant(0.0));
+        }
+        // Results of numbers side by side are large: each is written where it belongs.
+        let registers = &mut registers[..count];
+        registers.iter_mut().zip(values).for_each(|(register, value)| *register = value);
+        let mut at = self.symbols.len();
         for instruction in &self.instructions {
-            let result = instruction.result(registers);
-            registers.push(result);
+            let (known, next) = registers.split_at_mut(at);
+            if let Some(next) = next.first_mut() {
+                *next = instruction.result(known);
+            }
+            at += 1;
         }
     }
 
@@ -149,7 +158,7 @@ fn collect(node: &Node, symbols: &mut Vec<usize>) {
 }
 
 impl Instruction {
-    #[inline]
+    #[inline(always)]
     fn result<D: Scalar>(&self, registers: &[D]) -> D {
         let at = |i: usize| registers[usize::from(self.operands[i])];
         let c = D::constant;
@@ -170,7 +179,7 @@ impl Instruction {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn of<D: Scalar>(function: Function, x: D) -> D {
     match function {
         Function::Negate => -x,
@@ -188,7 +197,7 @@ fn of<D: Scalar>(function: Function, x: D) -> D {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn two<D: Scalar>(operator: Operator, a: D, b: D) -> D {
     let [zero, one] = [0.0, 1.0].map(D::constant);
     match operator {

@@ -10,9 +10,9 @@ use crate::recording::parse_column;
 use super::overrides::child;
 use super::{SceneError, SceneFile, calibration_key};
 
-/// Reads every law, checks that the scene has its port, and returns those that are no candidates.
-pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Law>, SceneError> {
-    let mut laws = Vec::new();
+/// Reads every law and checks that the scene has its port.
+pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<SceneLaws, SceneError> {
+    let (mut laws, mut candidates) = (Vec::new(), Vec::new());
     for (i, table) in scene.law.iter().enumerate() {
         let refuse = |message: String, remedy: String| SceneError::Value {
             file: file.to_owned(),
@@ -27,9 +27,32 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Law>, SceneErr
         check_port(scene, &law.address).map_err(|(message, remedy)| refuse(message, remedy))?;
         if !table.candidate {
             laws.push(law);
+            continue;
         }
+        let size = law.size().ok_or_else(|| {
+            refuse(
+                "candidate = true: there is no parameter at whose zero the law vanishes".to_owned(),
+                "give it a size: adds = \"a_n * ...\", or scales = \"1 + a * ...\"".to_owned(),
+            )
+        })?;
+        candidates.push(Candidate { table: table.clone(), law, size });
     }
-    Ok(laws)
+    Ok(SceneLaws { laws, candidates })
+}
+
+/// The laws of a scene, and what it only proposes.
+pub(super) struct SceneLaws {
+    pub laws: Vec<Law>,
+    pub candidates: Vec<Candidate>,
+}
+
+/// A law that a diagnosis weighs against everything else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    pub table: LawTable,
+    pub law: Law,
+    /// The parameter at whose zero it vanishes.
+    pub size: usize,
 }
 
 /// A law of a scene, a candidate too.

@@ -8,6 +8,7 @@ use crate::laws::Law;
 use crate::nearest::did_you_mean;
 use crate::stock;
 
+use super::check_laws::{Candidate, SceneLaws};
 use super::overrides::{Override, calibration_key, calibration_names, child, entry_name};
 use super::{CalibrateSpec, Program, SceneError, SceneFile, check, check_laws};
 
@@ -21,6 +22,8 @@ pub struct Scene {
     pub programs: Vec<Program>,
     /// The laws of `file.law` that are part of the scene, ready for the equations; candidates are not.
     pub laws: Vec<Law>,
+    /// Those that are: a diagnosis weighs them.
+    pub candidates: Vec<Candidate>,
 }
 
 impl Scene {
@@ -83,8 +86,8 @@ impl Scene {
     /// Validates a scene file; `path` is where its relative paths start.
     pub fn from_file(file: SceneFile, path: &Path) -> Result<Self, SceneError> {
         let programs = check::check(&file, path)?;
-        let laws = check_laws::check(&file, path)?;
-        let scene = Self { path: path.to_owned(), file, programs, laws };
+        let SceneLaws { laws, candidates } = check_laws::check(&file, path)?;
+        let scene = Self { path: path.to_owned(), file, programs, laws, candidates };
         scene.check_calibrated()?;
         Ok(scene)
     }

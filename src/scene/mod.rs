@@ -30,6 +30,7 @@ mod overrides;
 mod program;
 mod schema;
 
+pub use check_laws::Candidate;
 pub use error::SceneError;
 pub use file::*;
 pub use file_channels::*;
