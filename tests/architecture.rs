@@ -20,8 +20,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("muscle", &["scalar"]),
     ("hysteresis", &["scalar"]),
     ("feedforward", &["hysteresis"]),
-    ("effects", &["laws", "scalar"]),
     ("laws", &["nearest", "scalar"]),
+    ("effects", &["laws", "scalar"]),
     (
         "scene",
         &[

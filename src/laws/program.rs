@@ -64,16 +64,10 @@ impl Program {
         if registers.len() < count {
             registers.resize(count, D::constant(0.0));
         }
-        // Results of numbers side by side are large: each is written where it belongs.
         let registers = &mut registers[..count];
         registers.iter_mut().zip(values).for_each(|(register, value)| *register = value);
-        let mut at = self.symbols.len();
-        for instruction in &self.instructions {
-            let (known, next) = registers.split_at_mut(at);
-            if let Some(next) = next.first_mut() {
-                *next = instruction.result(known);
-            }
-            at += 1;
+        for (i, instruction) in self.instructions.iter().enumerate() {
+            registers[self.symbols.len() + i] = instruction.result(registers);
         }
     }
 
