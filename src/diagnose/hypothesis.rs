@@ -7,7 +7,7 @@ use crate::effects::{Kind, port_of};
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
-use super::refits::foretells;
+use super::refits::{foretells, foretells_runs};
 use super::search::{Found, least_gain};
 use super::unlisted::{self, Located, propose};
 use super::verdict::Excess;
@@ -58,8 +58,12 @@ pub(super) fn weigh_laws(
     let best =
         [alone, beside].into_iter().flatten().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
     let against = if is_open { &found.baseline } else { &found.best };
-    if criterion.at(&best.best) > criterion.at(&found.best) - CLEARLY || !foretells(&open, &found.baseline, &best.best)
-    {
+    // Beside what the catalogue explains a law must predict whole runs left out better than that does by itself.
+    let predicts = match is_null {
+        true => foretells(&open, &found.baseline, &best.best),
+        false => foretells_runs(&open, &found.best, &best.best),
+    };
+    if criterion.at(&best.best) > criterion.at(&found.best) - CLEARLY || !predicts {
         say(format!("{} is no better than {}", best.best.model.title(), against.model.title()));
         return None;
     }
