@@ -8,7 +8,7 @@ use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::Noise;
 use super::refits::{foretells, foretells_runs};
-use super::search::{Found, least_gain};
+use super::search::{Found, MOST_EFFECTS, least_gain};
 use super::unlisted::{self, Located, propose};
 use super::verdict::Excess;
 use super::without::Step;
@@ -133,7 +133,8 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
     let mut lawful: Option<Lawful> = None;
     let mut here = from.clone();
     for _ in 0..MOST_LAWS {
-        if here.cost - noise < EXPLAINED * (baseline.cost - noise) {
+        let is_explained = here.cost - noise < EXPLAINED * (baseline.cost - noise);
+        if is_explained || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
         let Some(proposals) = propose(open, &here, say) else { break };

@@ -8,7 +8,7 @@ use super::screening::{Screened, Screening, screen};
 use super::swaps::{Settled, Stage, Swaps, is_same};
 
 /// At most this many effects in one answer.
-const MOST_EFFECTS: usize = 4;
+pub(super) const MOST_EFFECTS: usize = 4;
 /// Share of an effect in chi² per sample below which it is not called missing physics.
 const LEAST_SHARE: f64 = 2e-3;
 /// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
