@@ -30,7 +30,10 @@ const fn shape(text: &'static str, at: fn(f64) -> f64, has_scale: bool, is_basis
     Shape { text, at, has_scale, is_basis }
 }
 
-/// Shapes, the simplest first.
+/// What a law is in that depends on nothing: a number of the rig that is another than the scene says.
+pub const CONSTANT: Shape = shape("1", |_| 1.0, false, false);
+
+/// Shapes over a variable, the simplest first.
 pub const SHAPES: [Shape; 14] = [
     shape("x", |x| x, false, true),
     shape("x^2", |x| x * x, false, true),
@@ -84,6 +87,7 @@ fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
 pub struct Slot {
     pub address: String,
     pub port: Port,
+    /// Empty where the law depends on nothing.
     pub variable: String,
     /// Unit scale of the variable: half of the greatest that it reaches.
     pub scale: f64,
@@ -95,6 +99,22 @@ pub struct Slot {
 }
 
 impl Slot {
+    /// Whether its law depends on nothing.
+    pub fn is_constant(&self) -> bool {
+        self.variable.is_empty()
+    }
+
+    /// The shapes that its law may have.
+    pub fn shapes(&self) -> &'static [Shape] {
+        if self.is_constant() { std::slice::from_ref(&CONSTANT) } else { &SHAPES }
+    }
+
+    /// Those of which its curve is made up when slots are screened.
+    pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
+        let is_constant = self.is_constant();
+        self.shapes().iter().filter(move |s| s.is_basis || is_constant)
+    }
+
     /// Name of the element that it belongs to, as answers have it.
     pub fn element(&self) -> String {
         Address::parse(&self.address).map_or_else(|_| self.address.clone(), |a| a.element())
@@ -107,8 +127,29 @@ impl PartialEq for Slot {
     }
 }
 
-/// All slots of a case's scene whose variable moves in its open runs.
+/// All slots of a case's scene: those whose variable moves in its open runs, and those that depend on nothing.
 pub fn slots(case: &Case, from: &Fit) -> Vec<Slot> {
+    let mut slots = over_variables(case, from);
+    slots.extend(constants(case));
+    slots
+}
+
+/// Slots of laws that depend on nothing. What acts in the fluid as it did before adds no number of its own: a steady flow or pressure
+/// is physics, not a number.
+fn constants(case: &Case) -> Vec<Slot> {
+    let open = || case.runs.iter().filter(|run| !run.is_sealed);
+    let is_number = |spec: &&PortSpec| action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength;
+    let each = PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
+    let slot = |(port, address): (Port, String)| {
+        let (injected, typical) = injected(case, &address, port)?;
+        let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();
+        Some(Slot { address, port, variable: String::new(), scale: 1.0, series, injected, typical })
+    };
+    each.filter_map(slot).collect()
+}
+
+/// Slots whose variable moves in the open runs.
+fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
     let mut asked = Vec::new();
     for spec in PORTS.iter().filter(|spec| action(spec.port).is_some()) {
         for address in addresses(case, spec) {
@@ -212,7 +253,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
     let name = format!("scale{ending}");
     let x = format!("({}/{name})", slot.variable);
-    let own: String = spelled(shape.text, &x);
+    let own = if slot.is_constant() { "a".to_owned() } else { format!("a * {}", spelled(shape.text, &x)) };
     let mut parameter = BTreeMap::new();
     let number = |value: f64, unit: Option<&str>| ParameterTable {
         value,
@@ -220,10 +261,12 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
         ..ParameterTable::default()
     };
     parameter.insert("a".to_owned(), number(typical, Some(unit)));
-    parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
+    if !slot.is_constant() {
+        parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
+    }
     let (adds, scales) = match acts {
-        Acts::Adds => (Some(format!("a * {own}")), None),
-        Acts::Scales => (None, Some(format!("1 + a * {own}"))),
+        Acts::Adds => (Some(own), None),
+        Acts::Scales => (None, Some(format!("1 + {own}"))),
     };
     let table = LawTable {
         name: slot.address.replace('.', "_"),

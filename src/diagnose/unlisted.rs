@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::case::CaseRun;
 use super::fit::{Fit, Problem};
-use super::grammar::{SHAPES, Shape, Slot, slots, variant};
+use super::grammar::{Shape, Slot, slots, variant};
 use super::model::{Model, Sides};
 use super::normal::Number;
 use super::screening::orthogonal;
@@ -18,6 +18,8 @@ use super::screening::orthogonal;
 const SLOTS: usize = 12;
 const SLOTS_OF_PORT: usize = 3;
 const WIDENED: usize = 4;
+/// Mere numbers that are refitted beside them.
+const NUMBERS: usize = 4;
 /// Shapes of one slot that are refitted there, and refits that are fitted to the end.
 const SHAPES_OF_SLOT: usize = 6;
 const FINISHED: usize = 6;
@@ -75,7 +77,7 @@ pub(super) fn propose(problem: &Problem, from: &Fit, say: &dyn Fn(String)) -> Op
     let mut fits = refits(shown.shapes(&all, &best, 1));
     let mut wide: Vec<&Slot> = Vec::new();
     for fit in &fits {
-        let own = best.iter().find(|slot| is_law_of(fit, slot)).filter(|slot| !wide.contains(*slot));
+        let own = best.iter().find(|slot| is_law_of(fit, slot)).filter(|slot| !slot.is_constant() && !wide.contains(*slot));
         wide.extend(own.filter(|_| wide.len() < WIDENED));
     }
     say(format!(
@@ -119,15 +121,16 @@ pub(super) fn alternatives(problem: &Problem, from: &Fit, best: &Fit, variables:
     fits
 }
 
-/// The best slots, few of them at ports of one kind.
+/// The best slots, few of them at ports of one kind, and the best mere numbers.
 fn several_ports(located: &[Located]) -> Vec<&Slot> {
     let mut best: Vec<&Slot> = Vec::new();
-    for Located { slot, .. } in located {
+    for Located { slot, .. } in located.iter().filter(|l| !l.slot.is_constant()) {
         let of_port = best.iter().filter(|b| b.port == slot.port).count();
         if of_port < SLOTS_OF_PORT && best.len() < SLOTS {
             best.push(slot);
         }
     }
+    best.extend(located.iter().map(|l| &l.slot).filter(|slot| slot.is_constant()).take(NUMBERS));
     best
 }
 
@@ -135,7 +138,12 @@ fn several_ports(located: &[Located]) -> Vec<&Slot> {
 fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
     let Some(crate::effects::Kind::Law(id)) = fit.model.effects.last().map(|e| e.kind) else { return false };
     let law = &id.law().law;
-    law.address.to_string() == slot.address && law.variables().iter().any(|v| v.name() == slot.variable)
+    let variables = law.variables();
+    let is_over = match slot.is_constant() {
+        true => variables.is_empty(),
+        false => variables.iter().any(|v| v.name() == slot.variable),
+    };
+    law.address.to_string() == slot.address && is_over
 }
 
 fn address(located: &[Located]) -> &str {
@@ -163,12 +171,15 @@ struct Shown<'a> {
 impl Shown<'_> {
     /// How much of the misfit a curve over each slot's variable could explain.
     fn locate(&self, all: &[Slot]) -> Vec<Located> {
-        let shapes: Vec<&Shape> = SHAPES.iter().filter(|s| s.is_basis).collect();
-        let wanted = |slot| shapes.iter().map(move |shape| Wanted { slot, shape, scale: slot.scale });
-        let every: Vec<Wanted> = all.iter().flat_map(wanted).collect();
+        let every: Vec<Wanted> = all
+            .iter()
+            .flat_map(|slot| slot.basis().map(move |shape| Wanted { slot, shape, scale: slot.scale }))
+            .collect();
         let signatures = self.signatures(all, &every);
-        let gains = all.iter().zip(signatures.chunks(shapes.len())).map(|(slot, own)| {
-            let own: Vec<&DVector<f64>> = own.iter().flatten().collect();
+        let mut signatures = signatures.iter();
+        let gains = all.iter().map(|slot| {
+            let own = signatures.by_ref().take(slot.basis().count());
+            let own: Vec<&DVector<f64>> = own.flatten().collect();
             Located { slot: slot.clone(), gain: explained(&own, self.left) }
         });
         let mut located: Vec<Located> = gains.collect();
@@ -181,7 +192,7 @@ impl Shown<'_> {
         let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
         let wanted: Vec<Wanted> = best
             .iter()
-            .flat_map(|&slot| SHAPES.iter().map(move |shape| (slot, shape)))
+            .flat_map(|&slot| slot.shapes().iter().map(move |shape| (slot, shape)))
             .flat_map(|(slot, shape)| scales(shape).iter().map(move |s| Wanted { slot, shape, scale: s * slot.scale }))
             .collect();
         let signatures = self.signatures(all, &wanted);
