@@ -4,7 +4,7 @@ use nalgebra::Const;
 use num_dual::DualSVec64;
 use smam::effects::{CATALOGUE, Effect, EffectTable, ElementKind};
 use smam::recording::Recording;
-use smam::scene::Scene;
+use smam::scene::{Override, Scene, SceneFile};
 use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
 
 /// The full scene over its stock programme, and the fast model driven by the same inputs.
@@ -208,4 +208,63 @@ fn a_joint_is_unheld_where_the_smallest_force_moves_it() {
     assert!(moved_deg(&held) < 0.03 && moved_deg(&free) > 0.2);
     assert!(with_a_taut_cable > 0 && free.len() < times_s.len() / 4);
     assert!(tensions.iter().all(|&c| unheld[c].iter().all(|u| !u)), "a cable's tension is no joint's");
+}
+
+/// A rig whose second muscle is of another make: other rubber, length, coil, friction, damping and mass of its end.
+fn unequal() -> Scene {
+    let differs = "muscle.muscle_2.differs={ tube = { material = { c1_pa = 3.0e5 }, coil = { stiffness_n_m = 60.0 } }, \
+                   rest_length_m = 0.06, friction = { m0_n = 0.2 }, damping_n_s_m = 0.3, end_mass_kg = 6e-3 }";
+    let differs = Override::parse(differs).expect("written rightly");
+    Scene::load("antagonistic_pulley", &[differs]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn unequal_muscles_answer_alike_in_both_models() {
+    let (full, fast, columns) = both(&unequal(), 8.0);
+    let stock = Scene::load("antagonistic_pulley", &[]).expect("stock");
+    let (equal, ..) = both(&stock, 8.0);
+    for (column, fast) in columns.iter().zip(&fast) {
+        let own = &full.find(column).expect("a channel").values;
+        let percent = difference(own, fast);
+        assert!(percent < 0.1, "{column} differs by {percent:.4} % of its range");
+        // The muscle that differs, and what it shares a pulley with, do not move as before.
+        assert!(difference(&equal.find(column).expect("a channel").values, own) > 0.1, "{column}");
+    }
+}
+
+#[test]
+fn muscles_that_all_differ_alike_are_the_bytes_of_another_make() {
+    let number = "tube.coil.stiffness_n_m=55.0";
+    let all: Override = Override::parse(&format!("muscles.{number}")).expect("written rightly");
+    let each =
+        [1, 2].map(|i| Override::parse(&format!("muscle.muscle_{i}.differs.{number}")).expect("written rightly"));
+    let of = |changes: &[Override]| both(&Scene::load("antagonistic_pulley", changes).expect("loads"), 3.0).1;
+    assert_eq!(of(&[all]), of(&each));
+}
+
+#[test]
+fn a_number_of_one_muscle_is_varied_alone() {
+    let scene = unequal();
+    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
+    let simulate = |twin: &Twin, key: &str, value: f64| {
+        let parameters = vec![(twin.parameter(key).expect("a number"), value)];
+        twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite")
+    };
+    let with = |key: &str, value: f64| {
+        let file = Scene::from_file(scene.file.clone(), &scene.path).expect("loads").file;
+        let mut table = toml::Table::try_from(&file).expect("a table");
+        Override::number(key, value).apply(&mut table).expect("a key");
+        let changed = Scene::from_file(table.try_into::<SceneFile>().expect("a scene"), &scene.path).expect("loads");
+        Twin::new(&changed).expect("builds").simulate(&run, &TwinSetting::<f64>::default()).expect("finite")
+    };
+    // One muscle's own, whether it stands in the scene already or not; what all share reaches those without their own alone.
+    for (key, value) in [
+        ("muscle.muscle_2.differs.tube.material.c1_pa", 2.0e5),
+        ("muscle.muscle_1.differs.tube.material.c1_pa", 2.0e5),
+        ("muscles.tube.material.c1_pa", 2.0e5),
+        ("muscle.muscle_2.differs.damping_n_s_m", 0.5),
+    ] {
+        assert_eq!(simulate(&twin, key, value), with(key, value), "{key}");
+    }
 }

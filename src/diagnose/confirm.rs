@@ -5,6 +5,7 @@ use super::candidates::Variant;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
 use super::prove;
+use super::refits::foretells;
 use super::search::{self, Found};
 use super::steady;
 use super::verdict;
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 pub enum Confirmed {
     /// It holds, or there is nothing to hold.
     Yes,
-    /// It explains the open runs for the most part, and not the sealed ones, or a run contradicts it: not the whole truth.
+    /// It explains open runs and not the sealed ones, or a run contradicts it: not the whole truth.
     InPart,
 }
 
@@ -28,33 +29,21 @@ impl Confirmed {
     }
 }
 
-/// Takes back what does not hold on the sealed runs; what explains most of the open ones is kept as the nearest known.
-pub(super) fn confirm(
-    sealed: &Problem,
-    mut found: Found,
-    mut proof: Proof,
-    warnings: &mut Vec<String>,
-) -> (Found, Proof, Confirmed) {
+/// What the held-out runs say to what the open ones have found. They choose nothing: where they gain nothing, the answer stays, as a part
+/// of the truth.
+pub(super) fn confirm(sealed: &Problem, found: &Found, proof: &Proof, warnings: &mut Vec<String>) -> Confirmed {
     let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
     let is_asked = !found.best.model.effects.is_empty() && !sealed.case.is_without(Step::CrossValidation);
     if !is_asked || !gains_nothing {
-        return (found, proof, Confirmed::Yes);
+        return Confirmed::Yes;
     }
     let title = found.best.model.title();
-    if let Some(sensor) = missing_sensor(sealed, &found) {
+    if let Some(sensor) = missing_sensor(sealed, found) {
         warnings.push(format!("the sealed runs lack {sensor}, which shows what {title} changes: it is unproven there"));
-        return (found, proof, Confirmed::Yes);
+        return Confirmed::Yes;
     }
-    if found.baseline.cost - found.best.cost > 0.5 * found.baseline.cost {
-        warnings.push(format!("{title} explains the open runs for the most part, but not the sealed ones"));
-        return (found, proof, Confirmed::InPart);
-    }
-    warnings.push(format!("{title} fitted the open runs but not the sealed ones, and was dropped"));
-    found.best = found.baseline.clone();
-    found.rivals.clear();
-    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
-    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
-    (found, proof, Confirmed::Yes)
+    warnings.push(format!("{title} explains open runs, but not the sealed ones"));
+    Confirmed::InPart
 }
 
 /// Distance between baseline and best on the sealed runs, standard errors, below which these can say nothing.
@@ -85,39 +74,19 @@ pub(super) fn take_back_unplayable(whole: &Problem, mut found: Found, warnings: 
     found
 }
 
-/// An effect is taken back when the sealed runs are left with this share less of what is not noise.
-const LEFT_LESS: f64 = 0.1;
-
-/// Takes back one by one the effects without which the sealed runs are foretold better: they only filled in for the
-/// others' laws on the open runs.
-pub(super) fn prune(
-    open: &Problem,
-    sealed: &Problem,
-    mut found: Found,
-    variants: &[Variant],
-    say: &dyn Fn(String),
-) -> Found {
-    if sealed.case.is_without(Step::CrossValidation) {
+/// Takes back one by one the effects without which open runs that no fit has seen are predicted as well: they only filled in for the
+/// others' laws.
+pub(super) fn prune(open: &Problem, mut found: Found, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    if open.case.is_without(Step::CrossValidation) {
         return found;
     }
-    let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x).unwrap_or(f64::INFINITY);
     while found.best.model.effects.len() > 1 {
         let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
         let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
-        let best = fewer.into_iter().flatten().map(|f| (cost(&f), f)).min_by(|a, b| a.0.total_cmp(&b.0));
-        let with_all = cost(&found.best);
-        let enough = match with_all.is_finite() {
-            true => with_all - LEFT_LESS * (with_all - sealed.noise_cost()).max(0.0),
-            // Whatever the fast model can follow is better than what it cannot.
-            false => f64::MAX,
-        };
-        let Some((_, fewer)) = best.filter(|(c, _)| *c <= enough) else { break };
-        say(format!(
-            "{} foretells the sealed runs better, chi2 {:.0} instead of {:.0}",
-            fewer.model.title(),
-            cost(&fewer),
-            cost(&found.best)
-        ));
+        let is_idle = |fewer: &Fit| !foretells(open, fewer, &found.best);
+        let idle = fewer.into_iter().flatten().filter(is_idle).min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let Some(fewer) = idle else { break };
+        say(format!("{} predicts runs left out as well", fewer.model.title()));
         found = search::settled(open, found, fewer, variants, say);
     }
     found

@@ -138,8 +138,11 @@ pub fn slots(case: &Case, from: &Fit) -> Vec<Slot> {
 /// is physics, not a number.
 fn constants(case: &Case) -> Vec<Slot> {
     let open = || case.runs.iter().filter(|run| !run.is_sealed);
-    let is_number = |spec: &&PortSpec| action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength;
-    let each = PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
+    let is_number = |spec: &&PortSpec| {
+        action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength
+    };
+    let each =
+        PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
     let slot = |(port, address): (Port, String)| {
         let (injected, typical) = injected(case, &address, port)?;
         let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();

@@ -6,7 +6,7 @@ use crate::effects::{Kind, port_of};
 
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
-use super::noise::Noise;
+use super::noise::{self, Noise};
 use super::refits::{foretells, foretells_runs};
 use super::search::{Found, MOST_EFFECTS, least_gain};
 use super::unlisted::{self, Located, propose};
@@ -20,6 +20,8 @@ const MOST_LAWS: usize = 2;
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
 const CLEARLY: f64 = 20.0;
+/// Standard errors from which what is left is more than noise.
+const SEEN: f64 = 3.0;
 /// Laws are called equally good within so much chi², in units of the dispersion, and within this share of what they explain.
 const SAME_CHI2: f64 = 10.0;
 const SAME_SHARE: f64 = 5e-4;
@@ -122,9 +124,12 @@ fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<F
     Some((best.clone(), others.map(|f| (*f).clone()).collect()))
 }
 
-/// Whether the best leaves more than its search would still take up.
+/// Whether the best leaves more than noise, and more than its search would still take up.
 fn leaves_something(open: &Problem, found: &Found) -> bool {
-    found.best.cost - open.noise_cost() > least_gain(open.samples())
+    open.residuals(&found.best.model, &found.best.x).is_none_or(|residuals| {
+        let (excess, error) = noise::structured_excess(&residuals, open.noise);
+        excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
+    })
 }
 
 /// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone.

@@ -242,14 +242,13 @@ fn explain(
     let mut warnings = [warnings, base.warnings, case.notes()].concat();
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
-    say("sealed runs".to_owned());
-    let mut found = confirm::prune(&open, &sealed, found, &variants, say);
+    let mut found = confirm::prune(&open, found, &variants, say);
     visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
     let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
     let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, &variants, &mut warnings);
+    say("sealed runs".to_owned());
     let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let (found, proof, confirmed) = confirm::confirm(&sealed, found, proof, &mut warnings);
-    let confirmed = confirmed.and(possible);
+    let confirmed = confirm::confirm(&sealed, &found, &proof, &mut warnings).and(possible);
     let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
 }

@@ -1,4 +1,4 @@
-//! Step 7: what the effects gain on runs that had no part in fitting them (`confirm` may take effects back by them).
+//! Step 7: what the effects gain on runs that had no part in finding and fitting them.
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! The verdict in plain words.
 
-use super::answer::{Diagnosis, Verdict};
+use super::answer::{Diagnosis, NamedEffect, Verdict};
 
 /// The verdict in two sentences.
 pub fn summary(d: &Diagnosis) -> String {
@@ -12,9 +12,18 @@ pub fn summary(d: &Diagnosis) -> String {
             None => format!("{} in {}", e.name, e.element),
         })
         .collect();
+    let said = said(d, &effects);
+    if d.calibration.is_empty() && d.verdict != Verdict::UnusableData {
+        return format!("{said} The scene names nothing to calibrate, so every number of it was taken as measured.");
+    }
+    said
+}
+
+fn said(d: &Diagnosis, effects: &[String]) -> String {
+    // Less than the noise can be left by chance: no more than all of a gap is closed.
     let closed = format!(
         "On the sealed runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
-        100.0 * d.fit.gap_closed
+        100.0 * d.fit.gap_closed.min(1.0)
     );
     match d.verdict {
         Verdict::Adequate => format!(
@@ -35,6 +44,11 @@ pub fn summary(d: &Diagnosis) -> String {
 
 /// What comes nearest, and what hypothesis takes it further.
 fn unknown(d: &Diagnosis, closed: &str) -> String {
+    if let [only] = &d.effects[..]
+        && let Some(number) = mere_number(only)
+    {
+        return format!("A number of the scene is another on the rig: {number} explains it. {closed}");
+    }
     let named = |hypothetical: bool| -> String {
         let own = d.effects.iter().filter(|e| e.hypothetical == hypothetical);
         own.map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ")
@@ -49,4 +63,14 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
             )
         }
     }
+}
+
+/// A law that depends on nothing, as a number: `muscle_2.wall times 1.08`.
+fn mere_number(effect: &NamedEffect) -> Option<String> {
+    let is_one = effect.hypothetical && effect.variables.is_empty() && !effect.port.is_empty();
+    let constant = effect.parameters.values().next().filter(|_| is_one)?.value;
+    Some(match effect.acts.as_str() {
+        "scales" => format!("{} times {:.4}", effect.port, 1.0 + constant),
+        _ => format!("{} of {constant:.4e} in SI units", effect.port),
+    })
 }

@@ -77,7 +77,8 @@ pub(super) fn propose(problem: &Problem, from: &Fit, say: &dyn Fn(String)) -> Op
     let mut fits = refits(shown.shapes(&all, &best, 1));
     let mut wide: Vec<&Slot> = Vec::new();
     for fit in &fits {
-        let own = best.iter().find(|slot| is_law_of(fit, slot)).filter(|slot| !slot.is_constant() && !wide.contains(*slot));
+        let own =
+            best.iter().find(|slot| is_law_of(fit, slot)).filter(|slot| !slot.is_constant() && !wide.contains(*slot));
         wide.extend(own.filter(|_| wide.len() < WIDENED));
     }
     say(format!(

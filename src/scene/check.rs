@@ -83,7 +83,7 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
         check_hydraulics(hydraulics, &at("[hydraulics]".to_owned()))?;
     }
     if let Some(muscles) = &scene.muscles {
-        check_make(muscles, file)?;
+        check_make(muscles, file, &str::to_owned)?;
     }
     at("[[muscle]]".to_owned()).unique("name", scene.muscle.iter().map(|m| m.name.as_str()))?;
     at("[[cable]]".to_owned()).unique("name", scene.cable.iter().map(|c| c.name.as_str()))?;

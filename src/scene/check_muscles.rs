@@ -7,9 +7,9 @@ use crate::muscle::{Coil, Friction, Stop};
 use super::check::Place;
 use super::{FrictionSpec, LinearSpec, MusclesSpec, SceneError, TubeSpec, WallSpec};
 
-/// Checks `[muscles]` and the tables in it.
-pub(super) fn check_make(m: &MusclesSpec, file: &Path) -> Result<(), SceneError> {
-    let at = |table: &str| Place { file, table: table.to_owned() };
+/// Checks `[muscles]` and the tables in it; `named` says how a table of it is called where it stands.
+pub(super) fn check_make(m: &MusclesSpec, file: &Path, named: &dyn Fn(&str) -> String) -> Result<(), SceneError> {
+    let at = |table: &str| Place { file, table: named(table) };
     let place = at("[muscles]");
     place.positive("rest_length_m", m.rest_length_m)?;
     place.not_negative("damping_n_s_m", m.damping_n_s_m)?;

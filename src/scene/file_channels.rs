@@ -72,6 +72,16 @@ pub struct CalibrateSpec {
     /// There is no stock value: the number belongs to the rig recorded, so a comparison fits it first.
     #[serde(default)]
     pub belongs_to_rig: bool,
+    /// Of a key under `muscles`: `each = "muscle"` gives every muscle a number of its own instead of one that all share.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub each: Option<Each>,
+}
+
+/// Of what a calibrated number is its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Each {
+    Muscle,
 }
 
 /// A check on a channel of the stock run.

@@ -143,6 +143,10 @@ pub struct MuscleSpec {
     pub anchor_m: [f64; 3],
     #[serde(default = "x_axis")]
     pub direction: [f64; 3],
+    /// What is other about this muscle than `[muscles]` says: any of its keys, `{ tube.material.c1_pa = 3.1e5 }`.
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
+    pub differs: toml::Table,
 }
 
 fn one() -> f64 {

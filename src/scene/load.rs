@@ -10,7 +10,7 @@ use crate::stock;
 
 use super::check_laws::{Candidate, SceneLaws};
 use super::overrides::{Override, calibration_key, calibration_names, child, entry_name};
-use super::{CalibrateSpec, Program, SceneError, SceneFile, check, check_laws};
+use super::{CalibrateSpec, MusclesSpec, Program, SceneError, SceneFile, check, check_laws, differs};
 
 /// A scene whose keys, numbers and names (within the file) are right.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct Scene {
     pub file: SceneFile,
     /// Programme of each input, in the order of `file.input`.
     pub programs: Vec<Program>,
+    /// What each muscle is made like: `[muscles]` with what differs.
+    pub makes: Vec<MusclesSpec>,
     /// The laws of `file.law` that are part of the scene, ready for the equations; candidates are not.
     pub laws: Vec<Law>,
     /// Those that are: a diagnosis weighs them.
@@ -84,10 +86,12 @@ impl Scene {
     }
 
     /// Validates a scene file; `path` is where its relative paths start.
-    pub fn from_file(file: SceneFile, path: &Path) -> Result<Self, SceneError> {
+    pub fn from_file(mut file: SceneFile, path: &Path) -> Result<Self, SceneError> {
         let programs = check::check(&file, path)?;
+        let makes = differs::makes(&file, path)?;
+        file.calibrate = differs::written_out(&file, path)?;
         let SceneLaws { laws, candidates } = check_laws::check(&file, path)?;
-        let scene = Self { path: path.to_owned(), file, programs, laws, candidates };
+        let scene = Self { path: path.to_owned(), file, programs, makes, laws, candidates };
         scene.check_calibrated()?;
         Ok(scene)
     }
@@ -144,7 +148,11 @@ impl Scene {
     /// # }
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        self.value(&calibration_key(key))?.parse().ok()
+        let key = calibration_key(key);
+        let own = self.value(&key);
+        // What does not differ is what all muscles have.
+        let common = || differs::parts(&key).and_then(|(_, common)| self.value(&format!("muscles.{common}")));
+        own.or_else(common)?.parse().ok()
     }
 
     /// Folder that relative paths of the scene start from.

@@ -21,6 +21,7 @@ mod check;
 mod check_effects;
 mod check_laws;
 mod check_muscles;
+mod differs;
 mod error;
 mod file;
 mod file_channels;
@@ -31,6 +32,7 @@ mod program;
 mod schema;
 
 pub use check_laws::Candidate;
+pub(crate) use differs::muscles_set_by;
 pub use error::SceneError;
 pub use file::*;
 pub use file_channels::*;

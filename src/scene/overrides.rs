@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use toml::{Table, Value};
 
 use super::SceneError;
+use super::differs::DIFFERS;
 use crate::laws::LawTable;
 
 /// Short names of the calibrated parameters and the scene keys they stand for.
@@ -149,7 +150,12 @@ impl Override {
         };
         let last = path.len() - 1;
         let mut here = root;
+        // What is one muscle's own need not stand there yet.
+        let own = path.iter().position(|segment| *segment == DIFFERS).filter(|_| path[0] == "muscle").unwrap_or(last);
         for (depth, segment) in path[..last].iter().enumerate() {
+            if let (true, Some(table)) = (depth >= own, here.as_table_mut()) {
+                table.entry(*segment).or_insert_with(|| Value::Table(Table::new()));
+            }
             here = child(here, segment).ok_or_else(|| missing(depth))?;
         }
         if let Some(slot) = child(here, path[last]) {
@@ -180,7 +186,7 @@ fn add_law(scene: &mut Table, name: &str, law: &Table) -> Result<(), SceneError>
 }
 
 /// An integer given where the scene has a float is that float.
-fn coerced(value: &Value, old: &Value) -> Value {
+pub(super) fn coerced(value: &Value, old: &Value) -> Value {
     match (value, old) {
         (Value::Integer(i), Value::Float(_)) => Value::Float(*i as f64),
         _ => value.clone(),

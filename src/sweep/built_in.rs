@@ -56,7 +56,8 @@ pub fn closed_time_s(ran: Ran, muscle: &str) -> Result<f64, SweepError> {
 
 /// Stretch that is left until the coil stays bent: 3.5 [paper] less the greatest length over the rest length.
 pub fn yield_margin_ratio(ran: Ran, muscle: &str) -> Result<f64, SweepError> {
-    let rest_m = ran.scene.file.muscles.as_ref().map_or(f64::NAN, |m| m.rest_length_m);
+    let own = ran.scene.file.muscle.iter().position(|m| m.name == muscle);
+    let rest_m = own.and_then(|i| ran.scene.makes.get(i)).map_or(f64::NAN, |m| m.rest_length_m);
     Ok(YIELD_STRETCH - 1.0 - greatest(series(ran, Quantity::Elongation, muscle)?) / rest_m)
 }
 

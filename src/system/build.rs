@@ -76,15 +76,12 @@ impl Builder<'_> {
             end_coordinate: Vec::new(),
             displacements: Vec::new(),
         };
-        if let Some(make) = &self.scene.file.muscles {
-            let elastic = self.elastic(make)?;
-            let mut next_end = self.joints;
-            for (index, spec) in self.scene.file.muscle.iter().enumerate() {
-                if displaced {
-                    self.add_displacement(index, spec, &mut built)?;
-                } else {
-                    self.add_muscle(spec, make, elastic.clone(), &mut next_end, &mut built)?;
-                }
+        let mut next_end = self.joints;
+        for (index, (spec, make)) in self.scene.file.muscle.iter().zip(&self.scene.makes).enumerate() {
+            if displaced {
+                self.add_displacement(index, spec, &mut built)?;
+            } else {
+                self.add_muscle(spec, make, &mut next_end, &mut built)?;
             }
         }
         self.settle_cables(&mut built);
@@ -133,9 +130,8 @@ impl Builder<'_> {
             c.rest[i] = joint.rest;
             c.stops.extend(stops(i, joint));
         }
-        let end_mass = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.end_mass_kg);
-        for i in self.joints..n {
-            c.inertia[i * n + i] = end_mass;
+        for (i, make) in (self.joints..n).zip(self.makes_on_cables()) {
+            c.inertia[i * n + i] = make.end_mass_kg;
         }
         Ok(c)
     }
@@ -145,11 +141,18 @@ impl Builder<'_> {
         for (y, joint) in y.iter_mut().zip(self.mechanism.iter().flat_map(|m| m.coordinates())) {
             *y = joint.initial;
         }
-        let pre = self.scene.file.muscles.as_ref().map_or(0.0, |m| m.pre_elongation_ratio * m.rest_length_m);
-        y[self.joints..].fill(pre);
+        for (y, make) in y[self.joints..].iter_mut().zip(self.makes_on_cables()) {
+            *y = make.pre_elongation_ratio * make.rest_length_m;
+        }
         let muscles = if displaced { 0 } else { self.scene.file.muscle.len() };
         let segments = self.scene.file.hydraulics.as_ref().map_or(0, |h| h.line.segments);
         PlantState::at_rest(&y, muscles, segments)
+    }
+
+    /// What the muscles are made like whose ends are coordinates of their own, in order.
+    fn makes_on_cables(&self) -> impl Iterator<Item = &MusclesSpec> {
+        let muscles = self.scene.file.muscle.iter().zip(&self.scene.makes);
+        muscles.filter(|(spec, _)| spec.cable.is_some()).map(|(_, make)| make)
     }
 
     fn cables(&self) -> Result<(Vec<CablePlant<f64>>, Vec<Route>), SystemError> {
@@ -215,10 +218,10 @@ impl Builder<'_> {
         &self,
         spec: &MuscleSpec,
         make: &MusclesSpec,
-        elastic: Elastic<f64>,
         next_end: &mut usize,
         built: &mut Built,
     ) -> Result<(), SystemError> {
+        let elastic = self.elastic(make)?;
         let pre = make.pre_elongation_ratio * make.rest_length_m;
         let table = format!("[[muscle]] \"{}\"", spec.name);
         let mut jacobian = vec![0.0; self.dim];

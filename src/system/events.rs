@@ -89,7 +89,7 @@ fn muscle_conditions(simulation: &Simulation) -> Vec<String> {
             present.push(format!("{}: the fluid cavitates", spec.name));
         }
         let elongation = simulation.built.plant.muscle_forces(m, state, &simulation.end_spans(), 0.0).elongation_m;
-        let tube = simulation.scene.file.muscles.as_ref().filter(|make| make.tube.is_some());
+        let tube = Some(&simulation.scene.makes[i]).filter(|make| make.tube.is_some());
         if tube.is_some_and(|make| 1.0 + elongation / make.rest_length_m > YIELD_STRETCH + 1e-9) {
             present.push(format!("{}: the coil is beyond its yield at 350 %", spec.name));
         }

@@ -29,15 +29,16 @@ impl Simulation {
     }
 
     fn muscle_graphs(&self) -> Vec<MuscleGraph> {
-        let Some(make) = &self.scene.file.muscles else { return Vec::new() };
-        let coil = make.tube.as_ref().map(|t| t.coil);
-        let drawn = self.scene.file.muscle.iter().map(|m| MuscleGraph {
-            name: m.name.clone(),
-            outer_diameter_m: coil.map_or(1.45e-3, |c| c.outer_diameter_m),
-            coil_turns: coil.map_or(250.0, |c| c.turns),
-            rest_length_m: make.rest_length_m,
-            anchor_m: m.anchor_m,
-            direction: m.direction,
+        let drawn = self.scene.file.muscle.iter().zip(&self.scene.makes).map(|(m, make)| {
+            let coil = make.tube.as_ref().map(|t| t.coil);
+            MuscleGraph {
+                name: m.name.clone(),
+                outer_diameter_m: coil.map_or(1.45e-3, |c| c.outer_diameter_m),
+                coil_turns: coil.map_or(250.0, |c| c.turns),
+                rest_length_m: make.rest_length_m,
+                anchor_m: m.anchor_m,
+                direction: m.direction,
+            }
         });
         drawn.collect()
     }
@@ -79,7 +80,7 @@ impl Simulation {
         let name = &self.scene.file.cable[cable].name;
         let index = self.scene.file.muscle.iter().position(|m| m.cable.as_ref() == Some(name))?;
         let spec = &self.scene.file.muscle[index];
-        let make = self.scene.file.muscles.as_ref()?;
+        let make = self.scene.makes.get(index)?;
         let length = make.rest_length_m + self.muscle_frames().get(index)?.elongation_m;
         Some([0, 1, 2].map(|k| spec.anchor_m[k] + spec.direction[k] * length))
     }

@@ -63,8 +63,8 @@ fn reading<'a>(scene: &Scene, mechanism: &Mechanism, column: &str, values: &'a [
 
 /// The joint that a muscle moves by itself, and its elongation at the start.
 fn muscle_joint<'a>(scene: &'a Scene, output: &OutputSpec) -> Option<(&'a String, f64)> {
-    let muscle = scene.file.muscle.iter().find(|m| Some(&m.name) == output.of.first())?;
-    let make = scene.file.muscles.as_ref()?;
+    let mut muscles = scene.file.muscle.iter().zip(&scene.makes);
+    let (muscle, make) = muscles.find(|(m, _)| Some(&m.name) == output.of.first())?;
     Some((muscle.joint.as_ref()?, make.pre_elongation_ratio * make.rest_length_m))
 }
 

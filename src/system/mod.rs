@@ -72,4 +72,4 @@ pub use run::{Driver, RunError, record, record_driven, run};
 pub use schedule::Schedule;
 pub use simulation::Simulation;
 pub use state::PlantState;
-pub use twin::{StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};
+pub use twin::{MuscleNumber, StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -20,7 +20,7 @@ use crate::effects::Effect;
 use crate::laws::Law;
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
-use crate::scene::Scene;
+use crate::scene::{MuscleSpec, Scene};
 
 use super::build::{build, wrong_law};
 use super::install::{Site, install, install_laws, settle_memory};
@@ -32,7 +32,7 @@ use super::{Schedule, SystemError};
 use course::Course;
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
-pub use parameter::TwinParameter;
+pub use parameter::{MuscleNumber, TwinParameter};
 pub use plan::StepPlan;
 
 /// What drives a [`Twin`]: times (s, increasing) and each input of the scene there, SI, straight between samples.
@@ -95,9 +95,10 @@ pub struct Twin {
     outputs: Vec<TwinOutput>,
     /// Of each joint coordinate: the scene's [[mechanism.joint]] table that sets its spring.
     spring_table: Vec<Option<usize>>,
+    muscles: Vec<MuscleSpec>,
     cable_names: Vec<String>,
     pretension_n: Vec<f64>,
-    initial_load_n: f64,
+    initial_load_n: Vec<f64>,
     axis: Option<super::axis::Axis>,
     /// Greatest step, s.
     pub step_s: f64,
@@ -159,9 +160,10 @@ impl Twin {
             site,
             outputs,
             spring_table: lumped.spring_table,
+            muscles: bare.file.muscle.clone(),
             cable_names: bare.file.cable.iter().map(|c| c.name.clone()).collect(),
             pretension_n: bare.file.cable.iter().map(|c| c.pretension_n).collect(),
-            initial_load_n: bare.file.muscles.as_ref().map_or(0.0, |m| m.initial_load_n),
+            initial_load_n: bare.makes.iter().map(|m| m.initial_load_n).collect(),
             axis: super::channels::axis(&bare),
             step_s: GREATEST_STEP_S.min(STEP_ANGLE / fastest_rad_s(&lumped.plant)),
             plant: lumped.plant,
@@ -245,7 +247,7 @@ impl Twin {
         for (i, muscle) in plant.muscles.iter().enumerate() {
             if let Drive::Hydraulic { .. } = muscle.drive {
                 let elongation = dot::<_, 0>(&muscle.jacobian, state.y()) + muscle.elongation_0_m;
-                let pressure = muscle.elastic.holding_pressure_pa(elongation, D::constant(self.initial_load_n));
+                let pressure = muscle.elastic.holding_pressure_pa(elongation, D::constant(self.initial_load_n[i]));
                 state.pressures_mut(i).fill(pressure);
             }
         }

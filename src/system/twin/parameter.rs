@@ -1,7 +1,10 @@
 //! Calibrated parameters of the fast model, by scene key.
 
+use std::borrow::Cow;
+
 use crate::muscle::Material;
 use crate::scalar::Scalar;
+use crate::scene::{MuscleSpec, muscles_set_by};
 use crate::system::plant::{Drive, MusclePlant, Plant};
 use crate::system::{AxisNumber, Elastic};
 
@@ -10,6 +13,21 @@ use super::Twin;
 /// A number of the scene that the fast model can vary, with derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TwinParameter {
+    /// A number of muscles, and of which.
+    Muscle(MuscleNumber, Vec<usize>),
+    CableStiffness(usize),
+    /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
+    JointStiffness(Vec<(usize, f64)>),
+    Axis(AxisNumber),
+    /// A parameter of a law of the scene: both by index.
+    Law(usize, usize),
+    /// A parameter of a law on what a channel shows: output, law on it, parameter.
+    SensorLaw(usize, usize, usize),
+}
+
+/// A number of a muscle or of the line before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MuscleNumber {
     TubeC1,
     CoilStiffness,
     AreaGrowth,
@@ -21,20 +39,14 @@ pub enum TwinParameter {
     Damping,
     LinearStiffness,
     PressureGain,
-    CableStiffness(usize),
-    /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
-    JointStiffness(Vec<(usize, f64)>),
-    Axis(AxisNumber),
-    /// A parameter of a law of the scene: both by index.
-    Law(usize, usize),
-    /// A parameter of a law on what a channel shows: output, law on it, parameter.
-    SensorLaw(usize, usize, usize),
 }
 
-/// The parameter of a full scene key.
-pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
-    use TwinParameter as P;
-    Some(match key {
+/// The number of muscles that a scene key stands for, with the muscles that it sets.
+fn muscle_number(muscles: &[MuscleSpec], key: &str) -> Option<(MuscleNumber, Vec<usize>)> {
+    use MuscleNumber as P;
+    let all = || ((0..muscles.len()).collect(), Cow::Borrowed(key));
+    let (set, key) = muscles_set_by(muscles, key).unwrap_or_else(all);
+    let number = match key.as_ref() {
         "muscles.tube.material.c1_pa" => P::TubeC1,
         "muscles.tube.coil.stiffness_n_m" => P::CoilStiffness,
         "muscles.tube.area_growth_1_m" => P::AreaGrowth,
@@ -46,6 +58,18 @@ pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
         "muscles.damping_n_s_m" => P::Damping,
         "muscles.linear.stiffness_n_m" => P::LinearStiffness,
         "muscles.linear.pressure_gain_m2" => P::PressureGain,
+        _ => return None,
+    };
+    Some((number, set))
+}
+
+/// The parameter of a full scene key.
+pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
+    use TwinParameter as P;
+    if let Some((number, muscles)) = muscle_number(&twin.muscles, key) {
+        return Some(P::Muscle(number, muscles));
+    }
+    Some(match key {
         "axis.piston_area_m2" => P::Axis(AxisNumber::PistonArea),
         "axis.damping_n_s_m" => P::Axis(AxisNumber::Damping),
         "axis.offset_n" => P::Axis(AxisNumber::Offset),
@@ -99,11 +123,13 @@ impl TwinParameter {
                     laws.set(*law, *parameter, value);
                 }
             }
-            _ => plant.muscles.iter_mut().for_each(|m| self.put_in_muscle(value, m)),
+            Self::Muscle(number, muscles) => muscles.iter().for_each(|m| number.put(value, &mut plant.muscles[*m])),
         }
     }
+}
 
-    fn put_in_muscle<D: Scalar>(&self, value: D, muscle: &mut MusclePlant<D>) {
+impl MuscleNumber {
+    fn put<D: Scalar>(self, value: D, muscle: &mut MusclePlant<D>) {
         match (self, &mut muscle.elastic, &mut muscle.friction, &mut muscle.drive) {
             (Self::TubeC1, Elastic::Tube { wall, .. }, _, _) => {
                 let material = match *wall.material() {
