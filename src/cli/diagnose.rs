@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
@@ -46,6 +47,9 @@ pub struct DiagnoseArguments {
     /// Threads [default: all cores]; the answer does not depend on it
     #[arg(long, value_parser = threads())]
     threads: Option<usize>,
+    /// Say at each step how many seconds have gone by
+    #[arg(long)]
+    timings: bool,
 }
 
 /// Steps that can be left out.
@@ -86,7 +90,15 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     }
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
     let _held = take_folder(&out)?;
-    let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &|line| eprintln!("{line}"))?;
+    let start = Instant::now();
+    let progress = |line: String| match arguments.timings {
+        true => eprintln!("{:7.1} s  {line}", start.elapsed().as_secs_f64()),
+        false => eprintln!("{line}"),
+    };
+    let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &progress)?;
+    if arguments.timings {
+        progress("done".to_owned());
+    }
     let page = diagnosis_page(&outcome);
     write_answer_with(&outcome, &[("report.html", page.as_str())], &out)?;
     print_diagnosis(&outcome.diagnosis);

@@ -48,13 +48,14 @@ pub(super) fn weigh_laws(
     }
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     let is_open = confirmed == Confirmed::InPart || verdict::is_unknown(found, excess);
-    let is_doubtful = found.best.model.effects.len() > 1 || leaves_something(&open, found);
+    let is_doubtful = found.best.model.effects.len() > 1 || leaves_something(&open, &found.best);
     let is_null = found.best.model.effects.is_empty();
     if !is_open && (is_null || !is_doubtful) {
         return None;
     }
     let alone = search(&open, &found.baseline, &found.baseline, say);
-    let beside = (is_open && !is_null).then(|| search(&open, &found.baseline, &found.best, say)).flatten();
+    let is_all = alone.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
+    let beside = (is_open && !is_null && !is_all).then(|| search(&open, &found.baseline, &found.best, say)).flatten();
     let criterion =
         Criterion::of(&open, [Some(&found.best), alone.as_ref().map(|l| &l.best), beside.as_ref().map(|l| &l.best)]);
     let best =
@@ -124,9 +125,9 @@ fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<F
     Some((best.clone(), others.map(|f| (*f).clone()).collect()))
 }
 
-/// Whether the best leaves more than noise, and more than its search would still take up.
-fn leaves_something(open: &Problem, found: &Found) -> bool {
-    open.residuals(&found.best.model, &found.best.x).is_none_or(|residuals| {
+/// Whether a fit leaves more than noise, and more than a search would still take up.
+fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+    open.residuals(&fit.model, &fit.x).is_none_or(|residuals| {
         let (excess, error) = noise::structured_excess(&residuals, open.noise);
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
