@@ -289,10 +289,7 @@ fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &d
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
-    let complete = whole.fit_to_the_end(&found.best.model, &found.best.x);
-    let mut complete = complete.unwrap_or_else(|| found.best.clone());
-    intervals::widen(&whole, &mut complete);
-    let complete = on_full::settle(&whole, complete);
+    let complete = complete(&whole, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);
@@ -354,6 +351,17 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         next_inputs: experiment.inputs,
         case,
     })
+}
+
+/// What was found, fitted to all runs: what the scene gets. Where the answer is withheld it is the calibrated scene as it stands.
+fn complete(whole: &Problem, found: &Found) -> Fit {
+    if found.withheld.is_some() {
+        return found.baseline.clone();
+    }
+    let fitted = whole.fit_to_the_end(&found.best.model, &found.best.x);
+    let mut complete = fitted.unwrap_or_else(|| found.best.clone());
+    intervals::widen(whole, &mut complete);
+    on_full::settle(whole, complete)
 }
 
 /// Whether the open runs hold more than noise that the best does not explain.
