@@ -6,7 +6,7 @@ use super::{KNOWN_UNITS, RecordingError, Unit};
 use crate::bag::Clock;
 
 /// The keys of a `[[channel]]` that only bags need.
-pub(super) const BAG_KEYS: [&str; 6] = ["topic", "field", "joint", "unit", "zero", "time"];
+pub(super) const BAG_KEYS: [&str; 4] = ["topic", "field", "joint", "time"];
 
 /// Where a bag has a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +33,7 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
             None => Ok(None),
             Some(key) => {
                 Err(keys.error(format!(
-                    "{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too; what a CSV or Parquet file holds is taken as it \
-                     stands, convert it there"
+                    "{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too; a table has its channel by name, unit, scale and zero"
                 )))
             }
         };
@@ -43,6 +42,11 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
         return Err(
             keys.error(format!("topic = \"{topic}\" must begin with a slash\n  remedy: write topic = \"/{topic}\""))
         );
+    }
+    if keys.has("scale") {
+        return Err(keys.error(
+            "scale is for tables, topic for bags\n  remedy: remove scale, and publish the channel in its unit",
+        ));
     }
     let clock = keys.word("time", &[("stamp", Clock::Stamp), ("log", Clock::Log)])?.unwrap_or(Clock::Stamp);
     Ok(Some(BagSource {

@@ -4,7 +4,8 @@ use super::bag_read::{found_in_bag, read_bag};
 use super::bag_source::{BAG_KEYS, BagSource, bag_source};
 use super::folder_keys::Keys;
 use super::source::unopened;
-use super::{Channel, FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
+use super::table::{FILE_KEYS, TABLE_KEYS, file_options, read_declared, table_source};
+use super::{Channel, FileFormat, FileOptions, Recording, RecordingError, TIME_COLUMN, TableSource, parse_column};
 use crate::files::read_text;
 use crate::nearest::did_you_mean;
 use std::collections::{BTreeMap, HashSet};
@@ -15,7 +16,7 @@ use toml::Table;
 pub const SET_FILE_NAME: &str = "recordings.toml";
 
 const FORMAT: i64 = 1;
-pub(super) const TOP_KEYS: [&str; 4] = ["format", "scene", "channel", "run"];
+pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
 pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
 pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
 
@@ -48,6 +49,15 @@ pub struct ChannelSpec {
     pub noise_sd: Option<f64>,
     /// Where a bag has it, if stated.
     pub bag: Option<BagSource>,
+    /// Where a table has it, and in which unit.
+    pub table: TableSource,
+}
+
+impl ChannelSpec {
+    /// The name of its column in a table.
+    pub fn name_in_table(&self) -> &str {
+        self.table.name.as_deref().unwrap_or(&self.column)
+    }
 }
 
 /// A declared run.
@@ -61,6 +71,8 @@ pub struct Run {
     pub conditions: BTreeMap<String, f64>,
     /// Declared outputs that this run was recorded without: a sensor that was added later.
     pub not_recorded: Vec<String>,
+    /// How its file is laid out.
+    pub layout: FileOptions,
 }
 
 /// The recordings of one folder.
@@ -135,10 +147,11 @@ impl RecordingSet {
         check_format(&top)?;
         top.refuse_unknown(&TOP_KEYS)?;
         let channels = channels(&top, file)?;
+        let layout = layout(&top, file)?;
         Ok(Self {
             dir: file.parent().unwrap_or(Path::new("")).to_owned(),
             scene: top.required_text("scene", "muscle_bench")?.to_owned(),
-            runs: runs(&top, file, &channels)?,
+            runs: runs(&top, file, &channels, &layout)?,
             channels,
         })
     }
@@ -162,36 +175,46 @@ impl RecordingSet {
     /// Reads a run's file and checks that every declared column is there; one that the run was recorded without is
     /// filled with missing samples.
     ///
-    /// Columns that are not declared are kept and named in a note.
+    /// Columns that are not declared are kept where they are numbers, and named in a note.
     ///
     /// # Errors
-    /// As [`read_recording`]; a declared column is missing, or there although it was said not to be.
+    /// As [`read_recording`](super::read_recording); a declared column is missing, or there although it was said not to be; a file
+    /// that [`Self::load_parts`] makes several runs of.
     pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
-        let file = self.dir.join(&run.file);
-        let declared = self.channels_of(run);
-        let LoadedRun { recording, notes } = match FileFormat::of(&file)? {
-            FileFormat::Mcap => {
-                self.check_absent_from_bag(run, &file)?;
-                read_bag(&file, &declared)?
-            }
-            _ => self.read_table(&file, &declared)?,
-        };
-        Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
+        let mut parts = self.load_parts(run)?;
+        match (parts.pop(), parts.is_empty()) {
+            (Some(only), true) => Ok(only),
+            _ => Err(RecordingError::Format {
+                file: self.dir.join(&run.file),
+                problem: "is several runs (split_at_restart)\n  remedy: read its parts".to_owned(),
+            }),
+        }
     }
 
-    /// A file with one column for each channel.
-    fn read_table(&self, file: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
-        let recording = read_recording(file)?;
-        let mut columns = declared.iter().map(|spec| &spec.column);
-        if let Some(column) = columns.find(|column| recording.find(column).is_none()) {
-            return Err(RecordingError::MissingInRun {
-                file: file.to_owned(),
-                column: column.clone(),
-                found: recording.columns().join(", "),
-            });
-        }
-        let notes = self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(declared)).collect();
-        Ok(LoadedRun { recording, notes })
+    /// As [`Self::load_run`]; several where a run's clock started anew and `split_at_restart` says to split it there.
+    ///
+    /// # Errors
+    /// As [`Self::load_run`].
+    pub fn load_parts(&self, run: &Run) -> Result<Vec<LoadedRun>, RecordingError> {
+        let file = self.dir.join(&run.file);
+        let declared = self.channels_of(run);
+        let parts = match FileFormat::of(&file)? {
+            FileFormat::Mcap => {
+                self.check_absent_from_bag(run, &file)?;
+                vec![read_bag(&file, &declared)?]
+            }
+            FileFormat::Csv | FileFormat::Workbook | FileFormat::Parquet => {
+                read_declared(&file, &declared, &run.layout)?
+            }
+        };
+        let is_table = !matches!(FileFormat::of(&file)?, FileFormat::Mcap);
+        let whole = |LoadedRun { recording, mut notes }: LoadedRun| {
+            if is_table {
+                notes.extend(self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(&declared)));
+            }
+            Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
+        };
+        parts.into_iter().map(whole).collect()
     }
 
     /// A table's columns are seen anyway; of a bag only those that are asked for.
@@ -285,8 +308,16 @@ fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingEr
     Ok(channels)
 }
 
+/// What `[file]` says of every file.
+fn layout(top: &Keys<'_>, file: &Path) -> Result<FileOptions, RecordingError> {
+    let Some(table) = top.subtable("file")? else { return Ok(FileOptions::default()) };
+    let keys = Keys::new(file, "[file]", table);
+    keys.refuse_unknown(&FILE_KEYS)?;
+    file_options(&keys, &FileOptions::default())
+}
+
 fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
-    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &BAG_KEYS].concat())?;
+    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &TABLE_KEYS, &BAG_KEYS].concat())?;
     let column = keys.required_text("column", "plunger_mm")?;
     if column == TIME_COLUMN {
         return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
@@ -299,15 +330,26 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
         return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
     }
-    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag: bag_source(keys, unit)? })
+    let bag = bag_source(keys, unit)?;
+    // Beside a topic unit and zero are the bag's; a table's numbers are then the channel's as they stand.
+    let table = match bag {
+        None => table_source(keys, unit)?,
+        Some(_) => TableSource { name: keys.text("name")?.map(str::to_owned), ..TableSource::default() },
+    };
+    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag, table })
 }
 
-fn runs(top: &Keys<'_>, file: &Path, channels: &[ChannelSpec]) -> Result<Vec<Run>, RecordingError> {
+fn runs(
+    top: &Keys<'_>,
+    file: &Path,
+    channels: &[ChannelSpec],
+    layout: &FileOptions,
+) -> Result<Vec<Run>, RecordingError> {
     let mut seen = HashSet::new();
     let mut runs = Vec::new();
     for (index, table) in top.tables("run")?.into_iter().enumerate() {
         let keys = Keys::new(file, label("run", index, table.get("file")), table);
-        let run = run(&keys, channels)?;
+        let run = run(&keys, channels, layout)?;
         if !seen.insert(run.file.clone()) {
             return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
         }
@@ -316,9 +358,9 @@ fn runs(top: &Keys<'_>, file: &Path, channels: &[ChannelSpec]) -> Result<Vec<Run
     Ok(runs)
 }
 
-fn run(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Run, RecordingError> {
+fn run(keys: &Keys<'_>, channels: &[ChannelSpec], layout: &FileOptions) -> Result<Run, RecordingError> {
     let mut conditions = BTreeMap::new();
-    for key in keys.others(&RUN_KEYS) {
+    for key in keys.others(&[&RUN_KEYS[..], &FILE_KEYS].concat()) {
         let nearest = did_you_mean(key, &RUN_KEYS);
         if !nearest.is_empty() {
             let known = RUN_KEYS.join(", ");
@@ -334,6 +376,7 @@ fn run(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Run, RecordingError>
         file: keys.required_text("file", "sine.csv")?.to_owned(),
         run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
         not_recorded: not_recorded(keys, channels)?,
+        layout: file_options(keys, layout)?,
         conditions,
     })
 }

@@ -30,6 +30,7 @@ pub mod figures;
 mod folder;
 mod folder_keys;
 mod formats;
+mod guess;
 mod lost;
 mod noise;
 mod one_clock;
@@ -39,6 +40,7 @@ mod schema;
 mod source;
 mod strays;
 mod survey;
+mod table;
 mod unit;
 mod writer;
 
@@ -51,12 +53,16 @@ pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use formats::{FileFormat, read_recording};
+pub use guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, to_toml};
 pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;
 pub use strays::strays;
 pub use survey::{Gap, Missing, Strays, Survey, gap_limit_s, median, median_interval_s, survey};
+pub use table::{
+    Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label,
+};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
 pub use writer::RecordingWriter;
 
