@@ -161,8 +161,7 @@ fn messy_05_a_row_of_units() {
         factors: [1.0, 1.0, 100.0, 1.0],
         ..PLAIN
     };
-    // The factors are those of the channels: kPa written as bar is the third.
-    let written = holds("a.csv", Style { factors: [1.0, 1.0, 100.0, 1.0], ..style }.text().as_bytes());
+    let written = holds("a.csv", style.text().as_bytes());
     assert!(written.contains("units_row = true") && written.contains("unit = \"bar\""), "{written}");
 }
 
@@ -416,23 +415,13 @@ fn messy_22_a_stray_thousands_point_in_the_time() {
 
 #[test]
 fn messy_23_quoted_fields_and_a_trailing_delimiter() {
-    let text: String = Style { names: BRACKETS, time: ms, number: comma, ..PLAIN }
-        .text()
-        .lines()
-        .enumerate()
-        .map(|(i, line)| match i {
-            0 => format!("\"{}\",\n", line.replace(',', "\",\"")),
-            _ => {
-                let (at, values) = clean()[i - 1];
-                format!("{at},{},\n", values.map(|v| format!("\"{}\"", comma(v))).join(","))
-            }
-        })
-        .collect();
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("a.csv"), &text).expect("written");
-    // Quoted decimal commas between commas: the one layout that has to be said by hand is refused with the way out.
-    let semicolons = text.replace(",\"", ";\"").replace(",\n", ";\n");
-    holds("a.csv", semicolons.as_bytes());
+    // Decimal commas in quotes between commas: the quotes keep them apart.
+    let row =
+        |(at, values): (i64, [f64; 4])| format!("{at},{},\n", values.map(|v| format!("\"{}\"", comma(v))).join(","));
+    let names = BRACKETS.map(|name| format!("\"{name}\"")).join(",");
+    let text = format!("{names},\n{}", clean().into_iter().map(row).collect::<String>());
+    holds("a.csv", text.replace(",\"", ";\"").replace(",\n", ";\n").as_bytes());
+    holds("b.csv", text.as_bytes());
 }
 
 #[test]
@@ -494,4 +483,134 @@ fn what_is_there_is_not_written_over() {
     assert_eq!(elsewhere.scene, "muscle_bench");
     same(&elsewhere.load_run(&elsewhere.runs[0]).expect("a run"), &expected());
     assert!(smam(&["import", "a.csv", "--force"], folder.path()).status.success());
+}
+
+/// Rows of the bench under a leak, so that there is something to diagnose: made by the program, renamed as a lab would.
+fn recorded_bench(folder: &Path, arguments: &[&str]) -> String {
+    let run = [&["run", "muscle_bench", "--duration", "4", "--output", "made.csv"], arguments].concat();
+    let output = smam(&run, folder);
+    assert!(output.status.success(), "{}", said(&output));
+    fs::read_to_string(folder.join("made.csv")).expect("written")
+}
+
+fn first_rows(text: &str, rows: usize) -> String {
+    text.lines().take(rows + 1).map(|line| format!("{line}\n")).collect()
+}
+
+/// One column of a made file multiplied.
+fn scaled(text: &str, column: &str, factor: f64) -> String {
+    let names: Vec<&str> = text.lines().next().expect("names").split(',').collect();
+    let at = names.iter().position(|name| *name == column).expect("the column");
+    let line = |line: &str| {
+        let cells = line.split(',').enumerate();
+        cells
+            .map(
+                |(i, c)| {
+                    if i == at { (c.parse::<f64>().expect("a number") * factor).to_string() } else { c.to_owned() }
+                },
+            )
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    std::iter::once(names.join(",")).chain(text.lines().skip(1).map(line)).map(|l| l + "\n").collect()
+}
+
+#[test]
+fn one_well_named_file_is_compared_and_diagnosed_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = recorded_bench(folder.path(), &["--set", "muscles.friction.m0_n=0.15"]);
+    let renamed = made.replacen("time_s,plunger_mm,elongation_mm", "Time [s],Plunger [mm],Elongation [mm]", 1);
+    fs::write(folder.path().join("sine.csv"), renamed.replace(',', ";").replace('.', ",")).expect("written");
+    let compared = smam(&["compare", "sine.csv", "--scene", "muscle_bench"], folder.path());
+    assert!(compared.status.success() && said(&compared).contains("elongation_mm"), "{}", said(&compared));
+    // Too short for a verdict, which keeps it brief; but read.
+    fs::write(
+        folder.path().join("short.csv"),
+        first_rows(&made, 40).replacen("time_s,plunger_mm", "Time [s],Plunger [mm]", 1),
+    )
+    .expect("written");
+    let diagnosed = smam(&["diagnose", "short.csv", "--scene", "muscle_bench", "--out", "answer"], folder.path());
+    assert!(said(&diagnosed).contains("samples: record at least"), "{}", said(&diagnosed));
+    assert!(folder.path().join("answer/diagnosis.json").is_file());
+    // A column nobody can know: refused, with the way.
+    fs::write(folder.path().join("odd.csv"), made.replacen("plunger_mm", "a0", 1)).expect("written");
+    let refused = said(&smam(&["diagnose", "odd.csv", "--scene", "muscle_bench"], folder.path()));
+    assert!(refused.contains("no column is like the input plunger_mm") && refused.contains("smam import"), "{refused}");
+}
+
+/// The unit of a channel that moves 10, 25, 57, 100 or 1000 times too far or too little is named by both commands, and what they
+/// say makes the numbers right.
+#[test]
+fn units_are_told_by_size_and_the_remedy_is_right() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = recorded_bench(folder.path(), &[]);
+    for (column, unit, factor) in [
+        ("elongation_mm", "cm", 0.1),
+        ("elongation_mm", "m", 1e-3),
+        ("pressure_kpa", "psi", 1.0 / 6.894_757_293_168_361),
+        ("pressure_kpa", "bar", 0.01),
+    ] {
+        fs::write(folder.path().join("sine.csv"), scaled(&made, column, factor)).expect("written");
+        assert!(smam(&["import", "sine.csv", "--force"], folder.path()).status.success());
+        let wanted = format!("unit = \"{unit}\"");
+        // What physics might do as well is warned of, not refused: a whole diagnosis would follow.
+        let is_beyond_physics = !(0.05..=20.0).contains(&factor);
+        let diagnose = is_beyond_physics.then_some(&["diagnose", ".", "--out", "answer"][..]);
+        for command in std::iter::once(&["compare", "."][..]).chain(diagnose) {
+            let said = said(&smam(command, folder.path()));
+            assert!(said.contains(&wanted) && said.contains(column), "{column} in {unit}, {command:?}: {said}");
+        }
+        let path = folder.path().join("recordings.toml");
+        let written = fs::read_to_string(&path).expect("written");
+        let line = format!("column = \"{column}\"\n");
+        fs::write(&path, written.replace(&line, &format!("{line}{wanted}\n"))).expect("written");
+        let mended = said(&smam(&["compare", "."], folder.path()));
+        assert!(!mended.contains("as far as the scene does"), "{mended}");
+    }
+}
+
+#[test]
+fn rows_without_a_clock_are_read_and_the_verdict_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = recorded_bench(folder.path(), &[]);
+    let bare: String = made.lines().map(|line| line.split_once(',').expect("cells").1.to_owned() + "\n").collect();
+    fs::write(folder.path().join("sine.csv"), &bare).expect("written");
+    let output = smam(&["import", "sine.csv", "--scene", "muscle_bench"], folder.path());
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let path = folder.path().join("recordings.toml");
+    let written = fs::read_to_string(&path).expect("written");
+    assert!(written.contains("#   time = \"index\""), "{written}");
+    let declared = |lines: &str| {
+        fs::write(&path, written.replacen("\n# No column", &format!("\n[file]\n{lines}\n# No column"), 1))
+            .expect("written")
+    };
+    declared("interval_s = 0.01");
+    let even = said(&smam(&["compare", "."], folder.path()));
+    assert!(even.contains("elongation_mm") && !even.contains("cannot be judged"), "{even}");
+    declared("time = \"index\"\ninterval_s = 0.01");
+    fs::write(folder.path().join("sine.csv"), first_rows(&bare, 40)).expect("written");
+    let diagnosed = said(&smam(&["diagnose", ".", "--out", "answer"], folder.path()));
+    assert!(diagnosed.contains("what depends on rate"), "{diagnosed}");
+    let answer = fs::read_to_string(folder.path().join("answer/diagnosis.json")).expect("an answer");
+    assert!(answer.contains("what depends on rate"), "{answer}");
+    // Stamps that are there may be set aside.
+    fs::write(folder.path().join("sine.csv"), &made).expect("written");
+    declared("interval_s = 0.01");
+    let aside = said(&smam(&["compare", "."], folder.path()));
+    assert!(aside.contains("not read: time_s"), "{aside}");
+}
+
+/// A logger of the real recordings loses time between its blocks: said, where they are there.
+#[test]
+fn real_blocks_with_lost_time_are_said() {
+    let set = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings/real/cavatappi2022_sample1");
+    if !set.is_dir() {
+        eprintln!("skipped: {} is not there", set.display());
+        return;
+    }
+    let set = RecordingSet::load(&set).expect("a set");
+    let run = set.load_run(&set.runs[0]).expect("a run");
+    let blocks = smam::recording::survey(&run.recording).blocks.expect("blocks of samples");
+    assert_eq!(blocks.samples, 10);
+    assert!(blocks.passed.is_some_and(|share| share > 0.5), "{blocks:?}");
 }

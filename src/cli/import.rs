@@ -51,16 +51,60 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
     let text = to_toml(&guesses, OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
     write(&written, &text)?;
     say!("written: {}", written.display());
-    Ok(match read_back(&written) {
-        Ok(()) => {
+    let missing = absent_input(&guesses[0], &channels);
+    Ok(match (read_back(&written), missing) {
+        (Ok(()), Some(input)) => {
+            eprintln!(
+                "not complete: no column is like the input {}: its lines stand in {}, to be filled in",
+                input.column,
+                written.display()
+            );
+            ExitCode::from(1)
+        }
+        (Ok(()), None) => {
             say!("next: smam compare {}", shown_folder(&folder));
             ExitCode::SUCCESS
         }
-        Err(why) => {
+        (Err(why), _) => {
             eprintln!("not complete: {why}");
             ExitCode::from(1)
         }
     })
+}
+
+/// The recordings of a folder; or of one file, described by what it looks like. What is not sure is said.
+pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliError> {
+    if !path.is_file() || path.extension().is_some_and(|e| e == "toml") {
+        return Ok(RecordingSet::load(path)?);
+    }
+    let (scene, channels) = scene(named, path)?;
+    let found = guess(path, &channels)?;
+    let sayings = found.said.iter().map(|said| (said.sureness, said.what.clone()));
+    let named = found
+        .columns
+        .iter()
+        .filter_map(|c| c.channel.as_ref().map(|(w, s)| (*s, format!("\"{}\" is {}", c.name, w.column))));
+    for (sureness, what) in sayings.chain(named).filter(|(sureness, _)| *sureness != Sureness::Sure) {
+        eprintln!("note: {}: {} ({})", path.display(), what, sureness.word());
+    }
+    let folder = folder_of(path);
+    if let Some(input) = absent_input(&found, &channels) {
+        return Err(CliError::Usage(format!(
+            "{}: no column is like the input {} of the scene {scene} (found: {})\n  remedy: name the column so; or run `smam import` on \
+             the file and fill in what it could not know",
+            path.display(),
+            input.column,
+            found.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
+        )));
+    }
+    let text = to_toml(&[found], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
+    Ok(RecordingSet::parse(&text, &folder.join(SET_FILE_NAME))?)
+}
+
+/// An input of the scene that no column was found for.
+fn absent_input<'a>(found: &Guess, channels: &'a [Wanted]) -> Option<&'a Wanted> {
+    let is_found = |w: &Wanted| found.columns.iter().any(|c| c.channel.as_ref().is_some_and(|(f, _)| f == w));
+    channels.iter().find(|w| w.role == Role::Input && !is_found(w))
 }
 
 /// Files by their endings, where a folder is given.

@@ -89,7 +89,7 @@ fn refuse_slow(run: &RecordedRun) -> Result<(), IdentifyError> {
                 "one sample in {dt} s, over {:.1} hours: is the time in seconds, not in milliseconds?",
                 found.duration_s / 3600.0
             ),
-            remedy: "write time_s in seconds; if it truly is that slow, cut it into runs of less than an hour"
+            remedy: "write time_s in seconds, or say time_unit = \"ms\" in recordings.toml; if it truly is that slow, cut it into runs of less than an hour"
                 .to_owned(),
         }),
     }

@@ -1,6 +1,7 @@
 //! Where in a bag a channel is found: the keys `topic`, `field`, `joint`, `unit`, `zero` and `time` of a `[[channel]]`.
 
 use super::folder_keys::Keys;
+use super::table::file_unit;
 use super::unit::known_suffixes;
 use super::{KNOWN_UNITS, RecordingError, Unit};
 use crate::bag::Clock;
@@ -62,7 +63,10 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
 fn unit(keys: &Keys<'_>, column: Unit) -> Result<Option<Unit>, RecordingError> {
     let Some(text) = keys.text("unit")? else { return Ok(None) };
     let suffix = text.trim_start_matches('_');
-    let Some(unit) = KNOWN_UNITS.iter().find(|u| u.suffix == suffix) else {
+    let named = file_unit(suffix);
+    let is_named = |u: &&Unit| named.is_some_and(|n| n.si_suffix == u.si_suffix && n.factor == u.factor);
+    let Some(unit) = KNOWN_UNITS.iter().find(|u| u.suffix == suffix).or_else(|| KNOWN_UNITS.iter().find(is_named))
+    else {
         return Err(keys.error(format!("unit = \"{text}\" is not known\n  remedy: write one of {}", known_suffixes())));
     };
     if unit.si_suffix != column.si_suffix {

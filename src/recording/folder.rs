@@ -1,24 +1,19 @@
 //! A folder of recordings: `recordings.toml` and one file per run.
 
 use super::bag_read::{found_in_bag, read_bag};
-use super::bag_source::{BAG_KEYS, BagSource, bag_source};
+use super::bag_source::BagSource;
 use super::folder_keys::Keys;
+use super::folder_tables::{TOP_KEYS, channels, check_format, layout, runs};
 use super::source::unopened;
-use super::table::{FILE_KEYS, TABLE_KEYS, file_options, read_declared, table_source};
-use super::{Channel, FileFormat, FileOptions, Recording, RecordingError, TIME_COLUMN, TableSource, parse_column};
+use super::table::read_declared;
+use super::{Channel, FileFormat, FileOptions, Recording, RecordingError, TableSource};
 use crate::files::read_text;
-use crate::nearest::did_you_mean;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::Table;
 
 /// Name of the file that says what the recordings of a folder are.
 pub const SET_FILE_NAME: &str = "recordings.toml";
-
-const FORMAT: i64 = 1;
-pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
-pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
-pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
 
 /// What a channel is to a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,13 +203,13 @@ impl RecordingSet {
             }
         };
         let is_table = !matches!(FileFormat::of(&file)?, FileFormat::Mcap);
-        let whole = |LoadedRun { recording, mut notes }: LoadedRun| {
-            if is_table {
+        let whole = |(index, LoadedRun { recording, mut notes }): (usize, LoadedRun)| {
+            if is_table && index == 0 {
                 notes.extend(self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(&declared)));
             }
             Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
         };
-        parts.into_iter().map(whole).collect()
+        parts.into_iter().enumerate().map(whole).collect()
     }
 
     /// A table's columns are seen anyway; of a bag only those that are asked for.
@@ -280,129 +275,6 @@ fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
         }
         _ => unopened(&file, source),
     }
-}
-
-fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
-    match top.number("format")? {
-        Some(format) if format == FORMAT as f64 => Ok(()),
-        Some(format) => {
-            Err(top.error(format!("format = {format} is not known\n  remedy: this version reads format = {FORMAT}")))
-        }
-        None => Err(top.error(format!("key \"format\" is missing\n  remedy: add format = {FORMAT}"))),
-    }
-}
-
-fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingError> {
-    let mut channels: Vec<ChannelSpec> = Vec::new();
-    for (index, table) in top.tables("channel")?.into_iter().enumerate() {
-        let keys = Keys::new(file, label("channel", index, table.get("column")), table);
-        let spec = channel(&keys)?;
-        if channels.iter().any(|other| other.column == spec.column) {
-            return Err(keys.error("the column is declared twice\n  remedy: remove one [[channel]]"));
-        }
-        channels.push(spec);
-    }
-    if channels.iter().all(|spec| spec.role == Role::Input) {
-        return Err(top.error("no channel has role = \"output\"\n  remedy: declare one that was measured"));
-    }
-    Ok(channels)
-}
-
-/// What `[file]` says of every file.
-fn layout(top: &Keys<'_>, file: &Path) -> Result<FileOptions, RecordingError> {
-    let Some(table) = top.subtable("file")? else { return Ok(FileOptions::default()) };
-    let keys = Keys::new(file, "[file]", table);
-    keys.refuse_unknown(&FILE_KEYS)?;
-    file_options(&keys, &FileOptions::default())
-}
-
-fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
-    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &TABLE_KEYS, &BAG_KEYS].concat())?;
-    let column = keys.required_text("column", "plunger_mm")?;
-    if column == TIME_COLUMN {
-        return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
-    }
-    let unit = parse_column(column).map_err(|error| keys.error(error.to_string()))?.unit;
-    let role = keys
-        .word("role", &[("input", Role::Input), ("output", Role::Output)])?
-        .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
-    let noise_sd = keys.number("noise_sd")?;
-    if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
-        return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
-    }
-    let bag = bag_source(keys, unit)?;
-    // Beside a topic unit and zero are the bag's; a table's numbers are then the channel's as they stand.
-    let table = match bag {
-        None => table_source(keys, unit)?,
-        Some(_) => TableSource { name: keys.text("name")?.map(str::to_owned), ..TableSource::default() },
-    };
-    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag, table })
-}
-
-fn runs(
-    top: &Keys<'_>,
-    file: &Path,
-    channels: &[ChannelSpec],
-    layout: &FileOptions,
-) -> Result<Vec<Run>, RecordingError> {
-    let mut seen = HashSet::new();
-    let mut runs = Vec::new();
-    for (index, table) in top.tables("run")?.into_iter().enumerate() {
-        let keys = Keys::new(file, label("run", index, table.get("file")), table);
-        let run = run(&keys, channels, layout)?;
-        if !seen.insert(run.file.clone()) {
-            return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
-        }
-        runs.push(run);
-    }
-    Ok(runs)
-}
-
-fn run(keys: &Keys<'_>, channels: &[ChannelSpec], layout: &FileOptions) -> Result<Run, RecordingError> {
-    let mut conditions = BTreeMap::new();
-    for key in keys.others(&[&RUN_KEYS[..], &FILE_KEYS].concat()) {
-        let nearest = did_you_mean(key, &RUN_KEYS);
-        if !nearest.is_empty() {
-            let known = RUN_KEYS.join(", ");
-            return Err(keys.error(format!(
-                "unknown key \"{key}\"{nearest}\n  remedy: the keys here are {known} and the scene's conditions"
-            )));
-        }
-        if let Some(value) = keys.number(key)? {
-            conditions.insert(key.to_owned(), value);
-        }
-    }
-    Ok(Run {
-        file: keys.required_text("file", "sine.csv")?.to_owned(),
-        run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
-        not_recorded: not_recorded(keys, channels)?,
-        layout: file_options(keys, layout)?,
-        conditions,
-    })
-}
-
-/// Inputs drive the simulation: they are there in every run.
-fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>, RecordingError> {
-    let columns = keys.texts("not_recorded")?;
-    let outputs: Vec<&str> = channels.iter().filter(|c| c.role == Role::Output).map(|c| c.column.as_str()).collect();
-    if let Some(twice) = (1..columns.len()).find(|i| columns[..*i].contains(&columns[*i])) {
-        let column = &columns[twice];
-        return Err(keys.error(format!("not_recorded names \"{column}\" twice\n  remedy: name it once")));
-    }
-    match columns.iter().find(|c| !outputs.contains(&c.as_str())) {
-        None => Ok(columns),
-        Some(odd) => Err(keys.error(format!(
-            "not_recorded names \"{odd}\", which is no declared output{}\n  remedy: the outputs are {}",
-            did_you_mean(odd, &outputs),
-            outputs.join(", ")
-        ))),
-    }
-}
-
-/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
-fn label(kind: &str, index: usize, name: Option<&toml::Value>) -> String {
-    let name = name.map_or(String::new(), |name| format!(" ({name})"));
-    format!("[[{kind}]] {}{name}", index + 1)
 }
 
 #[cfg(test)]

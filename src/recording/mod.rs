@@ -21,6 +21,8 @@
 
 mod bag_read;
 mod bag_source;
+mod blocks;
+mod by_size;
 mod channels;
 mod compare;
 mod csv_read;
@@ -29,6 +31,7 @@ mod error;
 pub mod figures;
 mod folder;
 mod folder_keys;
+mod folder_tables;
 mod formats;
 mod guess;
 mod lost;
@@ -46,6 +49,8 @@ mod writer;
 
 pub use bag_read::read_bag_from;
 pub use bag_source::BagSource;
+pub use blocks::Blocks;
+pub use by_size::{BySize, motion_ratio, unit_by_size};
 pub use channels::{Channel, Recording, TIME_COLUMN};
 pub use compare::{ChannelFit, compare};
 pub use csv_read::{read_csv, read_csv_from};

@@ -143,7 +143,7 @@ fn text(description: &str) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::folder::{CHANNEL_KEYS, RUN_KEYS, TOP_KEYS};
+    use super::super::folder_tables::{CHANNEL_KEYS, RUN_KEYS, TOP_KEYS};
     use super::*;
     use crate::recording::bag_source::BAG_KEYS;
     use crate::recording::table::{FILE_KEYS, TABLE_KEYS};

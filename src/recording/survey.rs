@@ -1,6 +1,7 @@
 //! What is irregular in a recording. Nothing here changes a sample.
 
 use super::Recording;
+use super::blocks::{Blocks, blocks};
 use super::strays::strays;
 use std::fmt;
 
@@ -56,6 +57,8 @@ pub struct Survey {
     pub uneven_share: f64,
     /// Intervals longer than three medians.
     pub gaps: Vec<Gap>,
+    /// Samples in blocks with regular gaps between them.
+    pub blocks: Option<Blocks>,
     /// Channels with missing samples.
     pub missing: Vec<Missing>,
     /// Channels with samples far outside all others.
@@ -82,6 +85,7 @@ impl Survey {
             notes.push(format!("uneven sampling: {percent:.1} % of the intervals are more than 20 % off the median"));
         }
         notes.extend(self.gap_note());
+        notes.extend(self.blocks.as_ref().map(Blocks::note));
         notes.extend(self.missing.iter().map(|m| {
             format!(
                 "column \"{}\": {} of {} samples missing: left out of an output, bridged in an input",
@@ -158,6 +162,7 @@ pub fn survey(recording: &Recording) -> Survey {
             .filter(|w| w[1] - w[0] > gap_limit_s)
             .map(|w| Gap { from_s: w[0], to_s: w[1] })
             .collect(),
+        blocks: blocks(recording),
         missing: missing(recording),
         strays: all_strays(recording),
     }

@@ -11,16 +11,16 @@ use super::{Guess, GuessedColumn, Said, Sureness, Wanted};
 
 /// A median interval of so many seconds is none of a moving muscle: rather milliseconds, s.
 const SLOW_S: f64 = 2.0;
+/// A clock runs for so many rows between two restarts, in the mean.
+const FEWEST_ROWS: usize = 10;
 /// One of so many milliseconds rather counts microseconds.
 const SLOW_MS: f64 = 2000.0;
 
 pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Guess {
     let labels: Vec<Label> =
         layout.names.iter().enumerate().map(|(at, name)| labelled(name, layout.units.get(at))).collect();
-    let time = time_column(&layout, &labels);
-    if let Some((at, sureness)) = time {
-        declare_time(&mut layout, at, &labels[at], sureness);
-    }
+    let time = time_column(&layout, &labels)
+        .filter(|(at, sureness)| is_clock(file, &mut layout, *at, &labels[*at], *sureness));
     let others = (0..layout.names.len()).filter(|at| time.is_none_or(|(time, _)| time != *at));
     let mut columns: Vec<GuessedColumn> = others
         .filter(|at| !layout.names[*at].is_empty())
@@ -35,9 +35,7 @@ pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Gue
         })
         .collect();
     assign(&mut columns, wanted);
-    if time.is_some() {
-        mend_clock(file, &mut layout);
-    } else {
+    if time.is_none() {
         layout.said.push(Said { what: "no column of times".to_owned(), sureness: Sureness::Likely });
     }
     Guess {
@@ -80,7 +78,8 @@ fn time_column(layout: &Layout, labels: &[Label]) -> Option<(usize, Sureness)> {
     if let Some(at) = all().find(stamps) {
         return Some((at, Sureness::Likely));
     }
-    rises(layout, 0).then_some((0, Sureness::Assumed))
+    // What is measured in millimetres is no time, however it rises.
+    (labels.first()?.unit.is_none() && rises(layout, 0)).then_some((0, Sureness::Assumed))
 }
 
 fn times(layout: &Layout, at: usize) -> Vec<f64> {
@@ -90,6 +89,18 @@ fn times(layout: &Layout, at: usize) -> Vec<f64> {
 fn rises(layout: &Layout, at: usize) -> bool {
     let times = times(layout, at);
     times.len() > 2 && times.windows(2).all(|w| w[1] > w[0])
+}
+
+/// Declares a column as the time, unless the whole file shows that it is none.
+fn is_clock(file: &Path, layout: &mut Layout, at: usize, label: &Label, sureness: Sureness) -> bool {
+    let (options, count) = (layout.options.clone(), layout.said.len());
+    declare_time(layout, at, label, sureness);
+    let is_one = mend_clock(file, layout, sureness);
+    if !is_one {
+        layout.options = options;
+        layout.said.truncate(count);
+    }
+    is_one
 }
 
 fn declare_time(layout: &mut Layout, at: usize, label: &Label, sureness: Sureness) {
@@ -173,16 +184,22 @@ fn pair(column: &GuessedColumn, wanted: &Wanted) -> f64 {
     }
 }
 
-/// Restarts and repeated stamps, over the whole file.
-fn mend_clock(file: &Path, layout: &mut Layout) {
+/// Restarts and repeated stamps, over the whole file; `false` for a column that goes back so often, or at all where it was only
+/// assumed to be the time, that it is no clock.
+fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     // What cannot be read at all is said when what was written is read.
-    let Ok(faults) = clock_faults(file, &layout.options) else { return };
-    let mut say = |is: bool, what: &str| {
-        if is {
-            layout.said.push(Said { what: what.to_owned(), sureness: Sureness::Sure });
-        }
-        is
-    };
-    layout.options.split_at_restart = say(faults.restarts, "a clock that starts anew: split there");
-    layout.options.merge_repeated = say(faults.repeats, "repeated stamps: the mean of their rows");
+    let Ok(faults) = clock_faults(file, &layout.options) else { return true };
+    let most = if sureness == Sureness::Assumed { 0 } else { faults.rows / FEWEST_ROWS };
+    if faults.restarts > most {
+        return false;
+    }
+    layout.options.split_at_restart = faults.restarts > 0;
+    layout.options.merge_repeated = faults.repeats > 0;
+    let words = [
+        (faults.restarts, "a clock that starts anew: split there"),
+        (faults.repeats, "repeated stamps: the mean of their rows"),
+    ];
+    let found = words.into_iter().filter(|(count, _)| *count > 0);
+    layout.said.extend(found.map(|(_, what)| Said { what: what.to_owned(), sureness: Sureness::Sure }));
+    true
 }

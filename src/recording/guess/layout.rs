@@ -65,7 +65,8 @@ fn best(text: &str, base: &FileOptions) -> Option<(FileOptions, Vec<Line>)> {
     let mut best: Option<(usize, FileOptions, Vec<Line>)> = None;
     for delimiter in [b',', b';', b'\t', b'|'].map(Delimiter::Character).into_iter().chain([Delimiter::Blanks]) {
         for (decimal, thousands) in [('.', None), (',', None), (',', Some('.')), ('.', Some(',')), ('.', Some('.'))] {
-            if delimiter == Delimiter::Character(decimal as u8) {
+            // Both are the comma only where quotes keep them apart.
+            if delimiter == Delimiter::Character(decimal as u8) && !text.contains('"') {
                 continue;
             }
             let options = FileOptions { delimiter: Some(delimiter), decimal: Some(decimal), thousands, ..base.clone() };
@@ -168,7 +169,7 @@ fn with_names(lines: &[Line], found: std::ops::Range<usize>, mut options: FileOp
             options.names.clone()
         }
     };
-    if options.delimiter == Some(Delimiter::Character(b',')) {
+    if options.delimiter == Some(Delimiter::Character(b',')) && options.decimal != Some(',') {
         options.delimiter = None;
     }
     options.decimal = options.decimal.filter(|decimal| *decimal != '.');

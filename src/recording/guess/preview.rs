@@ -5,7 +5,7 @@ use std::path::Path;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::super::source::{read_settled, read_whole};
-use super::super::table::{parquet_rows, workbook_rows};
+use super::super::table::{check_labview, parquet_rows, workbook_rows};
 use super::super::{FileFormat, RecordingError};
 use super::{Said, Sureness};
 
@@ -28,17 +28,22 @@ pub(super) fn preview(file: &Path) -> Result<Preview, RecordingError> {
             file: file.to_owned(),
             problem: "is a bag: its topics are not guessed\n  remedy: declare them as docs/formats.md says (topic = \"/syringe\")".to_owned(),
         }),
-        FileFormat::Csv => Ok(text(&read_settled(file)?)),
+        FileFormat::Csv => {
+            let (text, encoding, said) = text(&read_settled(file)?);
+            check_labview(&text, file)?;
+            Ok(Preview::Text { text, encoding, said })
+        }
     }
 }
 
-fn text(bytes: &[u8]) -> Preview {
+/// The text, its encoding where that has to be declared, and what is to be said of it.
+fn text(bytes: &[u8]) -> (String, Option<&'static Encoding>, Option<Said>) {
     let (encoding, sureness) = encoding(bytes);
     let (text, actual, _) = encoding.decode(bytes);
     let is_plain = encoding == UTF_8 || Encoding::for_bom(bytes).is_some();
     let said = (encoding != UTF_8).then(|| Said { what: format!("encoding {}", actual.name()), sureness });
     let text = text.trim_start_matches('\u{feff}').to_owned();
-    Preview::Text { text, encoding: (!is_plain).then_some(encoding), said }
+    (text, (!is_plain).then_some(encoding), said)
 }
 
 /// The encoding of a text: by its mark, by where its zeros are, by whether it is UTF-8; else what Windows writes in the west.

@@ -64,7 +64,8 @@ fn plain(text: &str, options: &FileOptions) -> Option<String> {
     let (whole, rest) = at.map_or((text, ""), |at| (&text[..at], &text[at + decimal.len_utf8()..]));
     let groups: Vec<&str> = whole.split(thousands).collect();
     let are_three = groups[1..].iter().all(|g| g.len() == 3 && g.bytes().all(|b| b.is_ascii_digit()));
-    (are_three && !rest.contains(thousands)).then(|| match at {
+    let is_led_by_zero = groups.len() > 1 && groups[0].trim_start_matches(['-', '+']).starts_with('0');
+    (are_three && !is_led_by_zero && !rest.contains(thousands)).then(|| match at {
         None => groups.concat(),
         Some(_) => format!("{}.{rest}", groups.concat()),
     })
@@ -124,6 +125,7 @@ mod tests {
             ("1,5", with('.', None)),
             ("1.23,5", with(',', Some('.'))),
             ("1,5.000", with(',', Some('.'))),
+            ("0.523", with(',', Some('.'))),
             ("1.203.000", with('.', None)),
             ("inf", with('.', None)),
             ("", with('.', None)),

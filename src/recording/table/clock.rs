@@ -102,7 +102,7 @@ impl Clock {
 
     /// What had to be put right.
     pub(super) fn faults(&self) -> ClockFaults {
-        ClockFaults { restarts: self.starts.len() > 1, repeats: self.repeated > 0 }
+        ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1, repeats: self.repeated }
     }
 
     /// What was done to the times.

@@ -108,9 +108,11 @@ fn check(keys: &Keys<'_>, options: &FileOptions) -> Result<(), RecordingError> {
         ));
     }
     let decimal = options.decimal.unwrap_or('.');
-    if options.delimiter() == Delimiter::Character(decimal as u8) {
+    // Said twice it is meant: cells in quotes.
+    if options.delimiter.is_none() && options.delimiter() == Delimiter::Character(decimal as u8) {
         return Err(keys.error(format!(
-            "decimal = \"{decimal}\" is the delimiter too\n  remedy: say what separates the columns, as delimiter = \";\""
+            "decimal = \"{decimal}\" is the delimiter too\n  remedy: say what separates the columns, as delimiter = \";\" (\",\" \
+             too, where the numbers are in quotes)"
         )));
     }
     Ok(())

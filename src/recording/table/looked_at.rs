@@ -26,6 +26,12 @@ pub(in crate::recording) fn labview_options(text: &str, options: &FileOptions) -
     with_labview(text, options).ok().filter(|_| is_labview(text))
 }
 
+/// Refuses a LabVIEW file whose header says that it is not one table.
+pub(in crate::recording) fn check_labview(text: &str, file: &Path) -> Result<(), RecordingError> {
+    let read = with_labview(text, &FileOptions::default());
+    read.map(drop).map_err(|problem| problem.in_file(&file.display().to_string()))
+}
+
 /// Rows of a workbook's first sheet, moments as seconds.
 pub(in crate::recording) fn workbook_rows(bytes: &[u8], file: &Path) -> Result<Vec<Vec<String>>, RecordingError> {
     let mut rows = Vec::new();
@@ -49,8 +55,11 @@ pub(in crate::recording) fn parquet_rows(file: &Path) -> Result<Vec<Vec<String>>
 /// What is wrong with a file's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::recording) struct ClockFaults {
-    pub(in crate::recording) restarts: bool,
-    pub(in crate::recording) repeats: bool,
+    pub(in crate::recording) rows: usize,
+    /// How often it went back.
+    pub(in crate::recording) restarts: usize,
+    /// How often it stood still.
+    pub(in crate::recording) repeats: usize,
 }
 
 /// Reads the times of a whole file.

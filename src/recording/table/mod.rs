@@ -23,7 +23,7 @@ mod stamp;
 use std::path::Path;
 
 use super::source::{read_lines, read_settled};
-use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, parse_column};
+use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, TIME_COLUMN, parse_column};
 use crate::columns::Column;
 use cell::Cell;
 use columns::Columns;
@@ -36,7 +36,9 @@ pub use options::{Delimiter, FileOptions, Header, TimeSource};
 pub use source::TableSource;
 
 pub(super) use keys::{FILE_KEYS, file_options};
-pub(super) use looked_at::{cell_number, clock_faults, is_stamp, labview_options, parquet_rows, workbook_rows};
+pub(super) use looked_at::{
+    cell_number, check_labview, clock_faults, is_stamp, labview_options, parquet_rows, workbook_rows,
+};
 pub(super) use options::TIME_UNITS;
 pub(super) use source::{TABLE_KEYS, table_source};
 
@@ -205,7 +207,8 @@ fn in_channels(
         if Some(index) == columns.names.time || columns.names.is_needed[index] || name.is_empty() {
             continue;
         }
-        match columns.has_texts[index] || kept.iter().any(|(column, _)| column == name) {
+        let is_taken = name == TIME_COLUMN || kept.iter().any(|(column, _)| column == name);
+        match columns.has_texts[index] || is_taken {
             true => texts.push(name.clone()),
             false => kept.push((name.clone(), std::mem::take(&mut columns.values[index]))),
         }
@@ -221,10 +224,11 @@ fn in_channels(
              lag, leak, line) cannot be judged from it"
         ));
     }
-    let part = |(time_s, values): (Vec<f64>, Vec<Vec<f64>>)| {
+    // What holds for the whole file is said once.
+    let part = |(index, (time_s, values)): (usize, (Vec<f64>, Vec<Vec<f64>>))| {
         let channels = names.iter().cloned().zip(values).map(|(name, values)| Channel::new(name, values)).collect();
         let recording = Recording::new(time_s, channels).map_err(|e| Problem::new(e.to_string()))?;
-        Ok(LoadedRun { recording, notes: notes.clone() })
+        Ok(LoadedRun { recording, notes: if index == 0 { notes.clone() } else { Vec::new() } })
     };
-    columns.clock.cut(&values).into_iter().map(part).collect()
+    columns.clock.cut(&values).into_iter().enumerate().map(part).collect()
 }

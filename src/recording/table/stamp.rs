@@ -64,8 +64,11 @@ fn of_day(text: &str) -> Option<Moment> {
 
 /// Whether a text looks like a stamp, be it one that is read or not.
 pub(super) fn is_like_a_stamp(text: &str) -> bool {
-    let is_dated = text.matches('-').count() == 2 || text.matches('/').count() == 2 || text.matches('.').count() >= 2;
-    text.starts_with(|c: char| c.is_ascii_digit()) && (text.contains(':') || is_dated)
+    let is_dated = ['-', '/', '.'].iter().any(|mark| text.matches(*mark).count() == 2);
+    let is_of_a_stamp = |c: char| c.is_ascii_digit() || "-/.:,+ TZAMPamp".contains(c);
+    text.starts_with(|c: char| c.is_ascii_digit())
+        && text.chars().all(is_of_a_stamp)
+        && (text.contains(':') || is_dated)
 }
 
 #[cfg(test)]
