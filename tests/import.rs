@@ -470,6 +470,15 @@ fn messy_27_radians_and_revolutions() {
 }
 
 #[test]
+fn messy_28_gbk() {
+    let names = ["时间(ms)", "活塞(mm)", "位移(mm)", "压力(bar)", "力(N)"];
+    let style = Style { names, time: ms, factors: [1.0, 1.0, 100.0, 1.0], ..PLAIN };
+    let text = style.text();
+    let written = holds("a.csv", &encoding_rs::GBK.encode(&text).0);
+    assert!(written.contains("encoding = \"gbk\""), "{written}");
+}
+
+#[test]
 fn what_is_there_is_not_written_over() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("a.csv"), PLAIN.text()).expect("written");

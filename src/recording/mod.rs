@@ -31,6 +31,7 @@ mod error;
 pub mod figures;
 mod folder;
 mod folder_keys;
+mod folder_load;
 mod folder_tables;
 mod formats;
 mod guess;

@@ -1,8 +1,8 @@
 //! How much a header's words are like a channel's name.
 
-/// Words that labs use for one thing, in English and German, with pinyin and short forms left to the user.
+/// Words that labs use for one thing, in English, German and Chinese.
 const ALIKE: [&[&str]; 8] = [
-    &["plunger", "piston", "syringe", "kolben", "spritze", "stroke", "hub"],
+    &["plunger", "piston", "syringe", "kolben", "spritze", "stroke", "hub", "活塞"],
     &[
         "elongation",
         "extension",
@@ -15,18 +15,19 @@ const ALIKE: [&[&str]; 8] = [
         "position",
         "pos",
         "verschiebung",
+        "位移",
         "x",
     ],
-    &["pressure", "druck", "p", "press"],
-    &["force", "kraft", "load", "f", "loadcell"],
+    &["pressure", "druck", "p", "press", "压力", "压强"],
+    &["force", "kraft", "load", "f", "loadcell", "力"],
     &["tension", "zug", "zugkraft", "cable"],
-    &["angle", "winkel", "theta", "bend", "bending", "tip", "rotation"],
+    &["angle", "winkel", "theta", "bend", "bending", "tip", "rotation", "角度"],
     &["jaw", "forceps", "grip", "greifer"],
     &["drive", "motor", "antrieb"],
 ];
 
 /// Words for the time.
-const TIME: [&str; 14] = [
+const TIME: [&str; 15] = [
     "time",
     "t",
     "zeit",
@@ -41,6 +42,7 @@ const TIME: [&str; 14] = [
     "datetime",
     "date/time",
     "uhrzeit",
+    "时间",
 ];
 
 /// Whether a header names the time.

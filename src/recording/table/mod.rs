@@ -64,10 +64,10 @@ pub(super) fn read_plain_workbook(path: &Path) -> Result<Recording, RecordingErr
 }
 
 fn every_column(columns: Columns) -> Result<Recording, RecordingError> {
-    let named = columns.names.columns.iter().zip(&columns.values).enumerate();
-    let channels = named.filter(|(index, _)| Some(*index) != columns.names.time);
-    let channels = channels.map(|(_, (name, values))| Channel::new(name.clone(), values.clone())).collect();
-    Recording::new(columns.clock.time_s, channels)
+    let Columns { names, values, clock, .. } = columns;
+    let named = names.columns.into_iter().zip(values).enumerate();
+    let channels = named.filter(|(index, _)| Some(*index) != names.time);
+    Recording::new(clock.time_s, channels.map(|(_, (name, values))| Channel::new(name, values)).collect())
 }
 
 /// Reads the declared channels of a file in their own units, and what else it has in numbers. More than one where the clock
