@@ -3,8 +3,10 @@
 //! Either time was lost between the blocks, or none was and the blocks were stamped late. Motion tells: across a gap of length `g` it goes
 //! on by `g v` where time passed, and by one sample interval's worth, `dt v`, where none did. The speed `v` is that on both sides.
 
-use super::{Recording, gap_limit_s, median_interval_s};
+use super::{Recording, median_interval_s};
 
+/// An interval of so many median ones lies between two blocks: less than what counts as a gap, for here the pattern tells.
+const BETWEEN_BLOCKS: f64 = 1.5;
 /// Fewer gaps are no pattern.
 const LEAST_GAPS: usize = 4;
 /// Share of the blocks that have the usual number of samples.
@@ -45,8 +47,9 @@ impl Blocks {
 /// The blocks of a recording, if it has any.
 pub(super) fn blocks(recording: &Recording) -> Option<Blocks> {
     let time_s = recording.time_s();
-    let (limit_s, interval_s) = (gap_limit_s(time_s), median_interval_s(time_s)?);
-    let ends: Vec<usize> = (1..time_s.len()).filter(|i| time_s[*i] - time_s[*i - 1] > limit_s).collect();
+    let interval_s = median_interval_s(time_s)?;
+    let is_between = |i: &usize| time_s[*i] - time_s[*i - 1] > BETWEEN_BLOCKS * interval_s;
+    let ends: Vec<usize> = (1..time_s.len()).filter(is_between).collect();
     if ends.len() < LEAST_GAPS {
         return None;
     }
