@@ -2,7 +2,7 @@
 
 use super::bag_read::{found_in_bag, read_bag};
 use super::table::read_declared;
-use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, RecordingSet, Run};
+use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, RecordingSet, Run, TableSource};
 use std::path::Path;
 
 impl RecordingSet {
@@ -34,6 +34,7 @@ impl RecordingSet {
         let declared = self.channels_of(run);
         let parts = match FileFormat::of(&file)? {
             FileFormat::Mcap => {
+                check_topics(&declared, &file)?;
                 self.check_absent_from_bag(run, &file)?;
                 vec![read_bag(&file, &declared)?]
             }
@@ -68,6 +69,19 @@ impl RecordingSet {
         (!others.is_empty())
             .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
     }
+}
+
+/// Without a topic `name`, `unit`, `scale` and `zero` are a table's: a bag's numbers would be taken as they stand.
+fn check_topics(declared: &[ChannelSpec], file: &Path) -> Result<(), RecordingError> {
+    let unheeded = declared.iter().find(|spec| spec.bag.is_none() && spec.table != TableSource::default());
+    unheeded.map_or(Ok(()), |spec| {
+        let problem = format!(
+            "column \"{}\": its name, unit, scale and zero are for tables\n  remedy: add topic = \"/NAME\" to its [[channel]], \
+             which has unit and zero for bags",
+            spec.column
+        );
+        Err(RecordingError::Format { file: file.to_owned(), problem })
+    })
 }
 
 /// That a unit or a zero of a bag's channel is not applied to a table's column.
