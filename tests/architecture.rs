@@ -92,6 +92,9 @@ const OWNED: &[(&str, &str)] = &[
     ("ruzstd", "bag"),
     ("crc32fast", "bag"),
     ("pulp", "hysteresis"),
+    ("calamine", "recording"),
+    ("encoding_rs", "recording"),
+    ("chrono", "recording"),
 ];
 
 /// Roots of the crate; they name every folder and stand outside the order.

@@ -146,9 +146,7 @@ fn a_channel_that_the_bag_does_not_have_is_named_with_the_remedy() {
     assert!(refusal("field = \"wrench.force.z\"", "").contains("topic /ft/wrench, message 1: it has no field `data`"));
     assert!(refusal("topic = \"/syringe/position\"\nunit = \"mm\"", "").contains("ends in /position_mm (topics"));
     assert!(refusal("unit = \"mm\"", "unit = \"kpa\"").contains("unit = \"kpa\" cannot become the column's, mm"));
-    assert!(
-        refusal("topic = \"/syringe/position\"", "").contains("unit is for a channel of a bag\n  remedy: add topic")
-    );
+    assert!(refusal("topic = \"/syringe/position\"", "").contains("are for tables\n  remedy: add topic"));
     assert!(refusal("\"/syringe/position\"", "\"syringe\"").contains("remedy: write topic = \"/syringe\""));
     let notes = loaded(&fixture("zstd"), &SET.replace("zero = 101325", "")).expect("a run").notes;
     assert!(

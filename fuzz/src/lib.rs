@@ -7,7 +7,7 @@ use std::path::Path;
 
 use smam::columns::decode;
 use smam::mechanism::{ContactSpec, Mechanism, MechanismSpec};
-use smam::recording::{RecordingSet, read_bag_from, read_csv_from};
+use smam::recording::{OpenScene, RecordingSet, Role, Wanted, guess, read_bag_from, read_csv_from, to_toml};
 use smam::scene::Scene;
 use smam::system::{Simulation, SystemError, Twin};
 
@@ -36,6 +36,29 @@ pub fn csv(bytes: &[u8]) {
             assert!(time_s.iter().all(|t| t.is_finite()) && time_s.is_sorted_by(|a, b| a < b), "{time_s:?}");
         }
         Err(e) => check_words(&e.to_string(), "fuzz.csv"),
+    }
+    looked_at(bytes);
+}
+
+/// The same file, described by what it looks like and read so: what is written of it is always a description.
+fn looked_at(bytes: &[u8]) {
+    let wanted = [("plunger_mm", Role::Input), ("force_n", Role::Output)]
+        .map(|(column, role)| Wanted { column: column.to_owned(), role });
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("fuzz.csv");
+    std::fs::write(&path, bytes).expect("written");
+    let found = match guess(&path, &wanted) {
+        Ok(found) => found,
+        Err(e) => return check_words(&e.to_string(), "fuzz.csv"),
+    };
+    let text = to_toml(&[found], OpenScene { name: "muscle_bench", channels: &wanted }, &|_| "fuzz.csv".to_owned());
+    match RecordingSet::parse(&text, &folder.path().join("recordings.toml")) {
+        Err(e) => check_words(&e.to_string(), "recordings.toml"),
+        Ok(set) => {
+            if let Err(e) = set.load_parts(&set.runs[0]) {
+                check_words(&e.to_string(), "fuzz.csv");
+            }
+        }
     }
 }
 

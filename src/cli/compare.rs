@@ -7,13 +7,17 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, lead_in, load_runs, replay};
-use smam::recording::{ChannelFit, Recording, RecordingSet, Run, RunUse, compare as compare_channels};
+use smam::recording::{
+    BySize, ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels, motion_ratio,
+    unit_by_size,
+};
 use smam::report::{ComparedChannel, ComparedRun, compare_svg};
 use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
 use super::changes::Changes;
 use super::files::{make_folder, write};
+use super::import::recordings;
 
 /// Arguments of `smam compare`.
 #[derive(Args)]
@@ -21,7 +25,7 @@ use super::files::{make_folder, write};
   smam compare rig/monday                        every run beside its simulation
   smam compare rig/monday --scene my_scene.toml  against another scene than the recordings name")]
 pub struct CompareArguments {
-    /// Folder with a recordings.toml
+    /// Folder with a recordings.toml; or a file, which is described as `smam import` does
     dir: PathBuf,
     /// Compare with this scene instead of the one that recordings.toml names
     #[arg(long)]
@@ -39,7 +43,7 @@ pub struct CompareArguments {
 /// Runs the command.
 pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
     let mut overrides = arguments.changes.overrides()?;
-    let set = RecordingSet::load(&arguments.dir)?;
+    let set = recordings(&arguments.dir, arguments.scene.as_deref())?;
     let scene_name = arguments.scene.clone().unwrap_or_else(|| set.scene_path());
     let scene = Scene::load(&scene_name, &overrides)?;
     let declared = load_runs(&set, &set.runs, &mut |n| eprintln!("note: {n}"))?;
@@ -64,6 +68,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .zip(&simulated)
         .map(|(run, is)| compare_channels(&run.recording, is, &set.channels_of(&run.run)))
         .collect::<Result<_, _>>()?;
+    shown.iter().zip(&simulated).for_each(|(run, is)| warn_of_units(run, is, &set));
     let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
     let picture = compare_svg(&heading, &remark(&report), &figure(&shown, &simulated, &fits));
     write(&out.join("compare.svg"), &picture)?;
@@ -79,6 +84,17 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
 fn replay_all(scene: &str, overrides: &[Override], runs: &[RecordedRun]) -> Result<Vec<Recording>, CliError> {
     let replayed: Result<_, _> = runs.par_iter().map(|run| replay(scene, overrides, run, 1)).collect();
     Ok(replayed?)
+}
+
+/// Says where a channel moves as numbers in another unit would.
+fn warn_of_units(run: &RecordedRun, simulated: &Recording, set: &RecordingSet) {
+    for spec in set.channels_of(&run.run).iter().filter(|spec| spec.role == Role::Output) {
+        let (Some(was), Some(is)) = (run.recording.find(&spec.column), simulated.find(&spec.column)) else { continue };
+        let ratio = motion_ratio(run.recording.time_s(), &was.values, &is.values);
+        if let Some(BySize::Wrong(words) | BySize::Odd(words)) = ratio.and_then(|r| unit_by_size(&spec.column, r)) {
+            eprintln!("warning: {}: {words}", run.run.file);
+        }
+    }
 }
 
 /// A declared run of that name, with its known conditions, or any other file.
@@ -100,7 +116,9 @@ fn default_out(dir: &Path) -> PathBuf {
 
 /// Name of the folder of recordings.
 fn set_name(dir: &Path) -> String {
-    let name = dir.canonicalize().ok().and_then(|d| d.file_name().map(|n| n.to_string_lossy().into_owned()));
+    let name = dir.canonicalize().ok().and_then(|d| {
+        if d.is_file() { d.file_stem() } else { d.file_name() }.map(|n| n.to_string_lossy().into_owned())
+    });
     name.unwrap_or_else(|| "recordings".to_owned())
 }
 

@@ -13,15 +13,17 @@ use super::CliError;
 use super::changes::Changes;
 use super::diagnose_view::Shown;
 use super::files::take_folder;
+use super::import::recordings;
 
 /// Arguments of `smam diagnose`.
 #[derive(Args)]
 #[command(after_help = "Examples:
   smam diagnose rig/monday                   answer on the screen; page, scene and next experiment in out/
   smam diagnose rig/monday rig/tuesday       two folders of the same rig together
+  smam diagnose sine.csv --scene muscle_bench   one file whose columns have telling names
   smam diagnose rig/monday --rrd --seed 3    with a side-by-side recording for the viewer")]
 pub struct DiagnoseArguments {
-    /// Folders with a recordings.toml, all of one rig
+    /// Folders with a recordings.toml, all of one rig; or a file, which is described as `smam import` does
     #[arg(required = true)]
     dirs: Vec<PathBuf>,
     /// Use this scene instead of the one that recordings.toml names
@@ -84,7 +86,9 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     use_threads(arguments.threads)?;
     let overrides = arguments.changes.overrides()?;
     let folders: Vec<&Path> = arguments.dirs.iter().map(PathBuf::as_path).collect();
-    let mut case = Case::load(&folders, arguments.scene.as_deref(), &overrides)?;
+    let scene = arguments.scene.as_deref();
+    let sets = folders.iter().map(|path| recordings(path, scene)).collect::<Result<Vec<_>, _>>()?;
+    let mut case = Case::of_sets(&sets, &folders, scene, &overrides)?;
     if let Some(step) = arguments.without {
         case.leave_out(step.step());
     }
@@ -122,7 +126,9 @@ pub fn use_threads(threads: Option<usize>) -> Result<(), CliError> {
 }
 
 fn default_out(folder: &Path) -> PathBuf {
-    let name = folder.canonicalize().ok().and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
+    let name = folder.canonicalize().ok().and_then(|p| {
+        if p.is_file() { p.file_stem() } else { p.file_name() }.map(|n| n.to_string_lossy().into_owned())
+    });
     Path::new("out").join(format!("diagnose_{}", name.unwrap_or_else(|| "recordings".to_owned())))
 }
 

@@ -21,6 +21,7 @@ mod feedforward;
 mod files;
 mod identify;
 mod identify_page;
+mod import;
 mod interrupt;
 mod junit;
 mod laws;
@@ -58,6 +59,7 @@ struct Arguments {
 const EXAMPLES: &str = "Examples:
   smam run bending_catheter                  a catheter bends and its forceps grip; writes out/
   smam run muscle_bench --check              the paper's figures of one muscle, checked
+  smam import path/to/files --scene muscle_bench   a lab's files described, whatever their layout
   smam compare path/to/recordings            your recording beside its simulation
   smam diagnose path/to/recordings           what physics the scene lacks to explain it
   smam run muscle_bench --set muscles.friction.m0_n=0.2 --output mine.csv";
@@ -66,6 +68,8 @@ const EXAMPLES: &str = "Examples:
 enum Command {
     /// Run a scene and record it
     Run(run::RunArguments),
+    /// Look at a lab's files and write the recordings.toml that reads them
+    Import(import::ImportArguments),
     /// Simulate what was recorded and show measured against simulated
     Compare(compare::CompareArguments),
     /// Find the physics that recordings show and the scene lacks
@@ -140,6 +144,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         }
         Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Import(arguments)) => import::import(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::diagnose(&arguments),
         Some(Command::Identify(arguments)) => identify::identify(&arguments),

@@ -24,9 +24,22 @@ impl Case {
     /// Unreadable or contradictory recordings, a scene without fast model.
     pub fn load(folders: &[&Path], scene: Option<&str>, overrides: &[Override]) -> Result<Self, DiagnoseError> {
         let sets = folders.iter().map(|f| RecordingSet::load(f)).collect::<Result<Vec<_>, _>>()?;
+        Self::of_sets(&sets, folders, scene, overrides)
+    }
+
+    /// As [`Self::load`], of sets that are read already; `folders` is what they are called.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn of_sets(
+        sets: &[RecordingSet],
+        folders: &[&Path],
+        scene: Option<&str>,
+        overrides: &[Override],
+    ) -> Result<Self, DiagnoseError> {
         let Some(first) = sets.first() else { return Err(DiagnoseError::Nothing) };
-        refuse_repeated(&sets)?;
-        refuse_mixed(&sets)?;
+        refuse_repeated(sets)?;
+        refuse_mixed(sets)?;
         let scene_name = scene.map_or_else(|| first.scene_path(), str::to_owned);
         let base = Scene::load(&scene_name, overrides)?;
         check_channels(first, &base)?;
@@ -42,7 +55,7 @@ impl Case {
             without: None,
             scene_name,
         };
-        for set in &sets {
+        for set in sets {
             case.add_set(set, overrides)?;
         }
         if case.runs.is_empty() {

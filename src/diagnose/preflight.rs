@@ -3,7 +3,7 @@
 use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
-use crate::recording::{noise_sd, strays};
+use crate::recording::{BySize, noise_sd, strays, unit_by_size};
 
 /// Fewer samples than this say nothing.
 const LEAST_SAMPLES: usize = 200;
@@ -56,7 +56,7 @@ fn inputs(case: &Case, found: &mut Preflight) {
         let is_plunger = input.channel.contains("plunger");
         if is_plunger && stroke > 0.2 {
             found.unusable.push(format!(
-                "{} moves by {stroke:.2} m: its unit is wrong by a factor of 1000 (the name must end in the unit that the numbers are in)",
+                "{} moves by {stroke:.2} m, farther than a syringe is long: say in its [[channel]] which unit the numbers have (unit = \"um\")",
                 input.channel
             ));
         } else if is_plunger && stroke > 0.0 && stroke < 2e-5 {
@@ -93,16 +93,6 @@ fn channels(case: &Case, found: &mut Preflight) {
         }
     }
 }
-
-/// Factors by which a channel is typically wrong, with their names and the unit that the column must end in.
-const FACTORS: [(f64, &str, &str); 6] = [
-    (1000.0, "1000 (a prefix: milli, kilo)", ""),
-    (1.0e-3, "1/1000 (a prefix: milli, kilo)", ""),
-    (std::f64::consts::PI / 180.0, "pi/180 (degrees and radians)", "_deg"),
-    (180.0 / std::f64::consts::PI, "180/pi (degrees and radians)", "_rad"),
-    (0.01, "1/100 (bar in place of kPa)", "_kpa"),
-    (100.0, "100 (kPa in place of bar)", "_bar"),
-];
 
 /// How long a recording counts as beginning, s, and how far from the scene it may begin, in deviations of its noise and
 /// as a share of its spread.
@@ -152,10 +142,9 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
         let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);
         let correlation = correlation(&measured, &simulated);
         let column = &channel.column;
-        if let Some(words) = wrong_unit(column, ratio) {
-            found.unusable.push(format!(
-                "{column}: moves {ratio:.3e} times as far as the scene does: a factor of {words}; mend the unit in the column's name"
-            ));
+        let by_size = unit_by_size(column, ratio);
+        if let Some(BySize::Wrong(words)) = by_size {
+            found.unusable.push(words);
         } else if correlation < -0.8 {
             found.unusable.push(format!("{column}: runs against the scene: sign or channel swapped?"));
         } else if correlation < 0.3 {
@@ -165,33 +154,12 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
         } else {
             let least_off = (BEGINS_OFF * noise).max(BEGINS_OFF_SHARE * spread(&simulated));
             let off = begins_off(problem, &residuals, c).filter(|off| off.abs() > least_off);
-            found.warnings.extend(odd_size(column, ratio));
+            if let Some(BySize::Odd(words)) = by_size {
+                found.warnings.push(words);
+            }
             found.warnings.extend(off.map(|off| other_zero(column, off)));
         }
     }
-}
-
-/// The factor by which a unit is wrong, where the ratio of the spreads is far from 1 and near to one.
-fn wrong_unit(column: &str, ratio: f64) -> Option<&'static str> {
-    let is_near = |factor: f64| (ratio / factor).ln().abs() < 0.7f64.min(factor.ln().abs() / 3.0);
-    let named = FACTORS.iter().find(|(factor, _, suffix)| column.ends_with(suffix) && is_near(*factor));
-    named.filter(|_| !(0.05..=20.0).contains(&ratio)).map(|(_, words, _)| *words)
-}
-
-/// Spreads that differ by a larger factor may be of two units; missing physics can do that too.
-const ODD_RATIO: f64 = 3.0;
-/// kPa in a psi.
-const KPA_PER_PSI: f64 = 6.894_757;
-
-fn odd_size(column: &str, ratio: f64) -> Option<String> {
-    let psi = if column.ends_with("_kpa") && (ratio * KPA_PER_PSI).ln().abs() < 0.25 {
-        " (psi in place of kPa?)"
-    } else {
-        ""
-    };
-    (ratio.ln().abs() > ODD_RATIO.ln()).then(|| {
-        format!("{column}: moves {ratio:.3} times as far as the scene does: make sure of its unit{psi} before believing what is named")
-    })
 }
 
 fn other_zero(column: &str, off: f64) -> String {

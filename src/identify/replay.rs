@@ -36,12 +36,19 @@ pub fn load_runs(
 ) -> Result<Vec<RecordedRun>, IdentifyError> {
     let mut loaded = Vec::new();
     for run in runs {
-        let data = set.load_run(run)?;
-        let mut found = crate::recording::survey(&data.recording);
-        found.missing.retain(|m| !run.not_recorded.contains(&m.column));
-        let notes = data.notes.into_iter().chain(found.notes());
-        notes.for_each(|n| note(format!("{}: {n}", run.file)));
-        loaded.push(RecordedRun { run: run.clone(), recording: data.recording });
+        let parts = set.load_parts(run)?;
+        let count = parts.len();
+        for (index, data) in parts.into_iter().enumerate() {
+            let mut run = run.clone();
+            if count > 1 {
+                run.file = format!("{} (part {} of {count})", run.file, index + 1);
+            }
+            let mut found = crate::recording::survey(&data.recording);
+            found.missing.retain(|m| !run.not_recorded.contains(&m.column));
+            let notes = data.notes.into_iter().chain(found.notes());
+            notes.for_each(|n| note(format!("{}: {n}", run.file)));
+            loaded.push(RecordedRun { run, recording: data.recording });
+        }
     }
     Ok(loaded)
 }
@@ -82,7 +89,7 @@ fn refuse_slow(run: &RecordedRun) -> Result<(), IdentifyError> {
                 "one sample in {dt} s, over {:.1} hours: is the time in seconds, not in milliseconds?",
                 found.duration_s / 3600.0
             ),
-            remedy: "write time_s in seconds; if it truly is that slow, cut it into runs of less than an hour"
+            remedy: "write time_s in seconds, or say time_unit = \"ms\" in recordings.toml; if it truly is that slow, cut it into runs of less than an hour"
                 .to_owned(),
         }),
     }

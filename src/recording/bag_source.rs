@@ -1,12 +1,13 @@
 //! Where in a bag a channel is found: the keys `topic`, `field`, `joint`, `unit`, `zero` and `time` of a `[[channel]]`.
 
 use super::folder_keys::Keys;
+use super::table::file_unit;
 use super::unit::known_suffixes;
 use super::{KNOWN_UNITS, RecordingError, Unit};
 use crate::bag::Clock;
 
 /// The keys of a `[[channel]]` that only bags need.
-pub(super) const BAG_KEYS: [&str; 6] = ["topic", "field", "joint", "unit", "zero", "time"];
+pub(super) const BAG_KEYS: [&str; 4] = ["topic", "field", "joint", "time"];
 
 /// Where a bag has a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +34,7 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
             None => Ok(None),
             Some(key) => {
                 Err(keys.error(format!(
-                    "{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too; what a CSV or Parquet file holds is taken as it \
-                     stands, convert it there"
+                    "{key} is for a channel of a bag\n  remedy: add topic = \"/NAME\" too; a table has its channel by name, unit, scale and zero"
                 )))
             }
         };
@@ -43,6 +43,11 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
         return Err(
             keys.error(format!("topic = \"{topic}\" must begin with a slash\n  remedy: write topic = \"/{topic}\""))
         );
+    }
+    if keys.has("scale") {
+        return Err(keys.error(
+            "scale is for tables, topic for bags\n  remedy: remove scale, and publish the channel in its unit",
+        ));
     }
     let clock = keys.word("time", &[("stamp", Clock::Stamp), ("log", Clock::Log)])?.unwrap_or(Clock::Stamp);
     Ok(Some(BagSource {
@@ -58,7 +63,10 @@ pub(super) fn bag_source(keys: &Keys<'_>, column: Unit) -> Result<Option<BagSour
 fn unit(keys: &Keys<'_>, column: Unit) -> Result<Option<Unit>, RecordingError> {
     let Some(text) = keys.text("unit")? else { return Ok(None) };
     let suffix = text.trim_start_matches('_');
-    let Some(unit) = KNOWN_UNITS.iter().find(|u| u.suffix == suffix) else {
+    let named = file_unit(suffix);
+    let is_named = |u: &&Unit| named.is_some_and(|n| n.si_suffix == u.si_suffix && n.factor == u.factor);
+    let Some(unit) = KNOWN_UNITS.iter().find(|u| u.suffix == suffix).or_else(|| KNOWN_UNITS.iter().find(is_named))
+    else {
         return Err(keys.error(format!("unit = \"{text}\" is not known\n  remedy: write one of {}", known_suffixes())));
     };
     if unit.si_suffix != column.si_suffix {

@@ -29,14 +29,14 @@ impl ChannelFit {
 /// Samples missing in either recording are skipped.
 ///
 /// ```
-/// use smam::recording::{Channel, ChannelSpec, Recording, Role, compare};
+/// use smam::recording::{TableSource, Channel, ChannelSpec, Recording, Role, compare};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let recording = |force_n: [f64; 3]| {
 ///     Recording::new(vec![0.0, 1.0, 2.0], vec![Channel::new("force_n", force_n.to_vec())])
 /// };
 /// let (measured, simulated) = (recording([1.0, f64::NAN, 5.0])?, recording([2.0, 7.0, 4.0])?);
-/// let force = ChannelSpec { column: "force_n".to_owned(), role: Role::Output, noise_sd: Some(0.5), bag: None };
+/// let force = ChannelSpec { column: "force_n".to_owned(), role: Role::Output, noise_sd: Some(0.5), bag: None, table: TableSource::default() };
 /// let fits = compare(&measured, &simulated, &[force])?;
 /// // 1 N off at the two samples that there are: twice the noise.
 /// assert_eq!((fits[0].rmse, fits[0].count, fits[0].rmse_over_noise()), (1.0, 2, Some(2.0)));
@@ -98,6 +98,7 @@ fn fit(column: &str, measured: &[f64], simulated: &[f64], noise_sd: Option<f64>)
 mod tests {
     use super::*;
     use crate::recording::Channel;
+    use crate::recording::TableSource;
 
     fn recording(time_s: &[f64], force_n: &[f64]) -> Recording {
         let force = Channel::new("force_n", force_n.to_vec());
@@ -105,7 +106,13 @@ mod tests {
     }
 
     fn force_output() -> Vec<ChannelSpec> {
-        vec![ChannelSpec { column: "force_n".into(), role: Role::Output, noise_sd: Some(0.5), bag: None }]
+        vec![ChannelSpec {
+            column: "force_n".into(),
+            role: Role::Output,
+            noise_sd: Some(0.5),
+            bag: None,
+            table: TableSource::default(),
+        }]
     }
 
     #[test]

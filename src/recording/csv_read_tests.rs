@@ -34,20 +34,22 @@ fn header_errors() {
     assert_eq!(
         refusal("t,a_n\n0,1\n"),
         "a.csv: line 1: no column \"time_s\" (found: t, a_n)\n  remedy: name the time column \"time_s\" and give \
-             it in seconds"
+             it in seconds, or say time_column = \"...\" in recordings.toml (`smam import` writes it)"
     );
     assert_eq!(
         refusal("time_s,a_n,a_n\n0,1,2\n"),
         "a.csv: line 1: column \"a_n\" occurs twice\n  remedy: rename or remove one"
     );
+    // A comma at the end makes a column that is none; one in the middle has to have a name.
+    assert_eq!(read("time_s,a_n,\n0,1,\n").unwrap().columns(), ["a_n"]);
     assert_eq!(
-        refusal("time_s,a_n,\n0,1,\n"),
-        "a.csv: line 1: column 3 has no name\n  remedy: name it, or remove it and its comma"
+        refusal("time_s,,a_n\n0,1,2\n"),
+        "a.csv: line 1: column 2 has no name\n  remedy: name it, or remove it and its comma"
     );
     assert_eq!(
         refusal("time_s;a_n\n0,0;1,5\n"),
-        "a.csv: line 1: the columns are separated by semicolons\n  remedy: save the file with commas between the \
-             columns and points as decimal marks"
+        "a.csv: line 1: the columns are separated by semicolons\n  remedy: say delimiter = \";\" in recordings.toml \
+             (`smam import` writes it), or save the file with commas between the columns and points as decimal marks"
     );
 }
 
@@ -67,7 +69,8 @@ fn row_errors() {
     assert_eq!(
         refusal("time_s,a_n\n0,1\n0.1,1\n0.1,1\n"),
         "a.csv: line 4, column \"time_s\": 0.1 is not after 0.1\n  remedy: remove repeated rows, sort the rows by \
-             time, or split the file where its clock starts anew"
+             time, or split the file where its clock starts anew; or say merge_repeated = true in recordings.toml: the mean of \
+             the rows of one stamp"
     );
     assert_eq!(
         refusal("time_s,a_n\n,1\n"),
@@ -79,13 +82,17 @@ fn row_errors() {
 fn what_spreadsheets_and_loggers_write_has_a_remedy_of_its_own() {
     assert_eq!(
         refusal("time_s,a_n\ns,N\n0,1\n"),
-        "a.csv: line 2: words where the first numbers should be: \"s, N\"\n  remedy: remove the line; the end of a column's \
-         name says its unit, as in plunger_mm"
+        "a.csv: line 2: words where the first numbers should be: \"s, N\"\n  remedy: remove the line (the end of a column's \
+         name says its unit, as in plunger_mm), or say units_row = true in recordings.toml"
     );
     assert!(refusal("time_s,a_n\n0,\"0,5\"\n").contains("remedy: write decimals with a point: 0.5"));
-    for clock in ["2026-03-01T10:00:00Z", "2026-03-01", "10:00:01.250"] {
+    // Stamps that are no dispute are read, others are not.
+    assert_eq!(read("time_s,a_n\n2026-03-01T10:00:00Z,1\n2026-03-01T10:00:00.5Z,1\n").unwrap().time_s(), [0.0, 0.5]);
+    for clock in ["2026-03-01", "3/1/2026 10:00:01"] {
         assert!(refusal(&format!("time_s,a_n\n{clock},1\n")).contains("remedy: give the time in seconds as a number"));
     }
+    let mixed = refusal("time_s,a_n\n2026-03-01T10:00:00Z,1\n2026-03-01T10:00:01,1\n");
+    assert!(mixed.contains("remedy: write all with a zone or all without"), "{mixed}");
     assert!(read("time_s,a_n,b_n\n0,NaN,nan\n").is_ok());
 }
 
@@ -94,7 +101,10 @@ fn lines_count_blank_ones_and_text_must_be_utf8() {
     assert!(refusal("time_s,a_n\n0,1\n\n1,x\n").starts_with("a.csv: line 4, "));
     assert!(refusal("\u{feff}time_s,a_n\r\n0,1\r\n1,x\r\n").starts_with("a.csv: line 3, "));
     let error = read_csv_from(&b"time_s,a_n\n0,\xff\n"[..], "a.csv").unwrap_err();
-    assert_eq!(error.to_string(), "a.csv: line 2: is not UTF-8 text\n  remedy: save the file as CSV in UTF-8");
+    assert_eq!(
+        error.to_string(),
+        "a.csv: line 2: is not UTF-8 text\n  remedy: save the file as CSV in UTF-8, or say encoding = \"windows-1252\" in recordings.toml"
+    );
 }
 
 #[test]

@@ -93,7 +93,7 @@ pub enum RecordingError {
     },
     /// A run's file lacks a column its set declares.
     #[error(
-        "{}: no column \"{column}\", which recordings.toml declares (found: {found})\n  remedy: rename the column or the [[channel]], or list it under not_recorded in the [[run]] of this file",
+        "{}: no column \"{column}\", which recordings.toml declares (found: {found})\n  remedy: rename the column, say name = \"...\" in the [[channel]], or list it under not_recorded in the [[run]] of this file",
         file.display()
     )]
     MissingInRun {

@@ -1,23 +1,17 @@
 //! A folder of recordings: `recordings.toml` and one file per run.
 
-use super::bag_read::{found_in_bag, read_bag};
-use super::bag_source::{BAG_KEYS, BagSource, bag_source};
+use super::bag_source::BagSource;
 use super::folder_keys::Keys;
+use super::folder_tables::{TOP_KEYS, channels, check_format, layout, runs};
 use super::source::unopened;
-use super::{Channel, FileFormat, Recording, RecordingError, TIME_COLUMN, parse_column, read_recording};
+use super::{FileOptions, Recording, RecordingError, TableSource};
 use crate::files::read_text;
-use crate::nearest::did_you_mean;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::Table;
 
 /// Name of the file that says what the recordings of a folder are.
 pub const SET_FILE_NAME: &str = "recordings.toml";
-
-const FORMAT: i64 = 1;
-pub(super) const TOP_KEYS: [&str; 4] = ["format", "scene", "channel", "run"];
-pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
-pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
 
 /// What a channel is to a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +42,15 @@ pub struct ChannelSpec {
     pub noise_sd: Option<f64>,
     /// Where a bag has it, if stated.
     pub bag: Option<BagSource>,
+    /// Where a table has it, and in which unit.
+    pub table: TableSource,
+}
+
+impl ChannelSpec {
+    /// The name of its column in a table.
+    pub fn name_in_table(&self) -> &str {
+        self.table.name.as_deref().unwrap_or(&self.column)
+    }
 }
 
 /// A declared run.
@@ -61,6 +64,8 @@ pub struct Run {
     pub conditions: BTreeMap<String, f64>,
     /// Declared outputs that this run was recorded without: a sensor that was added later.
     pub not_recorded: Vec<String>,
+    /// How its file is laid out.
+    pub layout: FileOptions,
 }
 
 /// The recordings of one folder.
@@ -135,10 +140,11 @@ impl RecordingSet {
         check_format(&top)?;
         top.refuse_unknown(&TOP_KEYS)?;
         let channels = channels(&top, file)?;
+        let layout = layout(&top, file)?;
         Ok(Self {
             dir: file.parent().unwrap_or(Path::new("")).to_owned(),
             scene: top.required_text("scene", "muscle_bench")?.to_owned(),
-            runs: runs(&top, file, &channels)?,
+            runs: runs(&top, file, &channels, &layout)?,
             channels,
         })
     }
@@ -158,93 +164,6 @@ impl RecordingSet {
     pub fn channels_of(&self, run: &Run) -> Vec<ChannelSpec> {
         self.channels.iter().filter(|spec| !run.not_recorded.contains(&spec.column)).cloned().collect()
     }
-
-    /// Reads a run's file and checks that every declared column is there; one that the run was recorded without is
-    /// filled with missing samples.
-    ///
-    /// Columns that are not declared are kept and named in a note.
-    ///
-    /// # Errors
-    /// As [`read_recording`]; a declared column is missing, or there although it was said not to be.
-    pub fn load_run(&self, run: &Run) -> Result<LoadedRun, RecordingError> {
-        let file = self.dir.join(&run.file);
-        let declared = self.channels_of(run);
-        let LoadedRun { recording, notes } = match FileFormat::of(&file)? {
-            FileFormat::Mcap => {
-                self.check_absent_from_bag(run, &file)?;
-                read_bag(&file, &declared)?
-            }
-            _ => self.read_table(&file, &declared)?,
-        };
-        Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
-    }
-
-    /// A file with one column for each channel.
-    fn read_table(&self, file: &Path, declared: &[ChannelSpec]) -> Result<LoadedRun, RecordingError> {
-        let recording = read_recording(file)?;
-        let mut columns = declared.iter().map(|spec| &spec.column);
-        if let Some(column) = columns.find(|column| recording.find(column).is_none()) {
-            return Err(RecordingError::MissingInRun {
-                file: file.to_owned(),
-                column: column.clone(),
-                found: recording.columns().join(", "),
-            });
-        }
-        let notes = self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(declared)).collect();
-        Ok(LoadedRun { recording, notes })
-    }
-
-    /// A table's columns are seen anyway; of a bag only those that are asked for.
-    fn check_absent_from_bag(&self, run: &Run, file: &Path) -> Result<(), RecordingError> {
-        let is_absent = |spec: &&ChannelSpec| run.not_recorded.contains(&spec.column);
-        let absent: Vec<ChannelSpec> = self.channels.iter().filter(is_absent).cloned().collect();
-        if absent.is_empty() {
-            return Ok(());
-        }
-        found_in_bag(file, &absent)?.map_or(Ok(()), |column| Err(is_there(&column, file)))
-    }
-
-    fn undeclared_note(&self, recording: &Recording) -> Option<String> {
-        let is_declared = |column: &str| self.channels.iter().any(|spec| spec.column == column);
-        let mut others = recording.columns();
-        others.retain(|column| !is_declared(column));
-        (!others.is_empty())
-            .then(|| format!("columns that recordings.toml does not declare are not used: {}", others.join(", ")))
-    }
-}
-
-/// That a unit or a zero of a bag's channel is not applied to a table's column.
-fn taken_as_it_stands(declared: &[ChannelSpec]) -> Option<String> {
-    let converted = |spec: &&ChannelSpec| spec.bag.as_ref().is_some_and(|b| b.unit.is_some() || b.zero.is_some());
-    let columns: Vec<&str> = declared.iter().filter(converted).map(|spec| spec.column.as_str()).collect();
-    (!columns.is_empty())
-        .then(|| format!("unit and zero are for bags: {} taken as in the file, convert there", columns.join(", ")))
-}
-
-/// A recording with columns that it was recorded without: all their samples are missing.
-fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result<Recording, RecordingError> {
-    if columns.is_empty() {
-        return Ok(recording);
-    }
-    let mut channels = recording.channels().to_vec();
-    for column in columns {
-        if let Some(there) = recording.find(column) {
-            if there.values.iter().all(|v| v.is_nan()) {
-                continue;
-            }
-            return Err(is_there(column, file));
-        }
-        channels.push(Channel::new(column.clone(), vec![f64::NAN; recording.sample_count()]));
-    }
-    Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
-}
-
-fn is_there(column: &str, file: &Path) -> RecordingError {
-    let problem = format!(
-        "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
-         remedy: remove it from that list, or rename the column"
-    );
-    RecordingError::Format { file: file.to_owned(), problem }
 }
 
 /// A file that is there but no text has another remedy than one that is not there.
@@ -257,109 +176,6 @@ fn unreadable(file: &Path, source: std::io::Error) -> RecordingError {
         }
         _ => unopened(&file, source),
     }
-}
-
-fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
-    match top.number("format")? {
-        Some(format) if format == FORMAT as f64 => Ok(()),
-        Some(format) => {
-            Err(top.error(format!("format = {format} is not known\n  remedy: this version reads format = {FORMAT}")))
-        }
-        None => Err(top.error(format!("key \"format\" is missing\n  remedy: add format = {FORMAT}"))),
-    }
-}
-
-fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingError> {
-    let mut channels: Vec<ChannelSpec> = Vec::new();
-    for (index, table) in top.tables("channel")?.into_iter().enumerate() {
-        let keys = Keys::new(file, label("channel", index, table.get("column")), table);
-        let spec = channel(&keys)?;
-        if channels.iter().any(|other| other.column == spec.column) {
-            return Err(keys.error("the column is declared twice\n  remedy: remove one [[channel]]"));
-        }
-        channels.push(spec);
-    }
-    if channels.iter().all(|spec| spec.role == Role::Input) {
-        return Err(top.error("no channel has role = \"output\"\n  remedy: declare one that was measured"));
-    }
-    Ok(channels)
-}
-
-fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
-    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &BAG_KEYS].concat())?;
-    let column = keys.required_text("column", "plunger_mm")?;
-    if column == TIME_COLUMN {
-        return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
-    }
-    let unit = parse_column(column).map_err(|error| keys.error(error.to_string()))?.unit;
-    let role = keys
-        .word("role", &[("input", Role::Input), ("output", Role::Output)])?
-        .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
-    let noise_sd = keys.number("noise_sd")?;
-    if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
-        return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
-    }
-    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag: bag_source(keys, unit)? })
-}
-
-fn runs(top: &Keys<'_>, file: &Path, channels: &[ChannelSpec]) -> Result<Vec<Run>, RecordingError> {
-    let mut seen = HashSet::new();
-    let mut runs = Vec::new();
-    for (index, table) in top.tables("run")?.into_iter().enumerate() {
-        let keys = Keys::new(file, label("run", index, table.get("file")), table);
-        let run = run(&keys, channels)?;
-        if !seen.insert(run.file.clone()) {
-            return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
-        }
-        runs.push(run);
-    }
-    Ok(runs)
-}
-
-fn run(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Run, RecordingError> {
-    let mut conditions = BTreeMap::new();
-    for key in keys.others(&RUN_KEYS) {
-        let nearest = did_you_mean(key, &RUN_KEYS);
-        if !nearest.is_empty() {
-            let known = RUN_KEYS.join(", ");
-            return Err(keys.error(format!(
-                "unknown key \"{key}\"{nearest}\n  remedy: the keys here are {known} and the scene's conditions"
-            )));
-        }
-        if let Some(value) = keys.number(key)? {
-            conditions.insert(key.to_owned(), value);
-        }
-    }
-    Ok(Run {
-        file: keys.required_text("file", "sine.csv")?.to_owned(),
-        run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
-        not_recorded: not_recorded(keys, channels)?,
-        conditions,
-    })
-}
-
-/// Inputs drive the simulation: they are there in every run.
-fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>, RecordingError> {
-    let columns = keys.texts("not_recorded")?;
-    let outputs: Vec<&str> = channels.iter().filter(|c| c.role == Role::Output).map(|c| c.column.as_str()).collect();
-    if let Some(twice) = (1..columns.len()).find(|i| columns[..*i].contains(&columns[*i])) {
-        let column = &columns[twice];
-        return Err(keys.error(format!("not_recorded names \"{column}\" twice\n  remedy: name it once")));
-    }
-    match columns.iter().find(|c| !outputs.contains(&c.as_str())) {
-        None => Ok(columns),
-        Some(odd) => Err(keys.error(format!(
-            "not_recorded names \"{odd}\", which is no declared output{}\n  remedy: the outputs are {}",
-            did_you_mean(odd, &outputs),
-            outputs.join(", ")
-        ))),
-    }
-}
-
-/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
-fn label(kind: &str, index: usize, name: Option<&toml::Value>) -> String {
-    let name = name.map_or(String::new(), |name| format!(" ({name})"));
-    format!("[[{kind}]] {}{name}", index + 1)
 }
 
 #[cfg(test)]

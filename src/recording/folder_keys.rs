@@ -1,6 +1,6 @@
 //! Reading TOML keys with errors that name file, table, key and remedy.
 
-use super::RecordingError;
+use super::{Header, RecordingError};
 use crate::nearest::did_you_mean;
 use std::path::Path;
 use toml::{Table, Value};
@@ -85,6 +85,47 @@ impl<'a> Keys<'a> {
             Some(other) => Err(self.error(format!(
                 "{key} = {other} must be a finite number\n  remedy: write {key} = 0.5, or whatever it is"
             ))),
+        }
+    }
+
+    pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, RecordingError> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::Boolean(flag)) => Ok(Some(*flag)),
+            Some(other) => {
+                Err(self.error(format!("{key} = {other} must be true or false\n  remedy: write {key} = true")))
+            }
+        }
+    }
+
+    /// A whole number, not negative.
+    pub(super) fn count(&self, key: &str) -> Result<Option<usize>, RecordingError> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        let count = value.as_integer().and_then(|whole| usize::try_from(whole).ok());
+        count.map(Some).ok_or_else(|| {
+            self.error(format!("{key} = {value} must be a whole number, 0 or more\n  remedy: write {key} = 3"))
+        })
+    }
+
+    /// The line of the names, from 1, or `false` for none.
+    pub(super) fn header(&self) -> Result<Option<Header>, RecordingError> {
+        let line = |whole: i64| usize::try_from(whole).ok().filter(|line| *line > 0);
+        match self.table.get("header") {
+            None | Some(Value::Boolean(true)) => Ok(None),
+            Some(Value::Boolean(false)) => Ok(Some(Header::Absent)),
+            Some(Value::Integer(whole)) if line(*whole).is_some() => Ok(line(*whole).map(Header::Line)),
+            Some(other) => Err(self.error(format!(
+                "header = {other} is no line\n  remedy: write header = 4 for names in the fourth line, header = false for none"
+            ))),
+        }
+    }
+
+    /// The table of `[key]`, if there is one.
+    pub(super) fn subtable(&self, key: &str) -> Result<Option<&'a Table>, RecordingError> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::Table(table)) => Ok(Some(table)),
+            Some(other) => Err(self.error(format!("{key} = {other} must be a table\n  remedy: write [{key}]"))),
         }
     }
 

@@ -56,12 +56,12 @@ fn top_level_mistakes() {
     assert_eq!(
         refusal("scene =", "scen ="),
         "rig/recordings.toml: top level: unknown key \"scen\", did you mean \"scene\"?\n  remedy: the keys here are \
-         format, scene, channel, run"
+         format, scene, file, channel, run"
     );
     assert_eq!(
         refusal("[[run]]", "[[channel]]"),
         "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd, \
-         topic, field, joint, unit, zero, time"
+         name, unit, scale, zero, topic, field, joint, time"
     );
     assert!(refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3"));
 }
@@ -71,7 +71,7 @@ fn channel_mistakes() {
     assert_eq!(
         refusal("role = \"input\"", "rol = \"input\""),
         "rig/recordings.toml: [[channel]] 1 (\"plunger_mm\"): unknown key \"rol\", did you mean \"role\"?\n  remedy: \
-         the keys here are column, role, noise_sd, topic, field, joint, unit, zero, time"
+         the keys here are column, role, noise_sd, name, unit, scale, zero, topic, field, joint, time"
     );
     assert_eq!(
         refusal("\"output\"", "\"ouput\""),
@@ -120,7 +120,7 @@ fn runs_are_checked_against_the_declaration() {
     assert!(
         error.ends_with(
             "sine.csv: no column \"force_n\", which recordings.toml declares (found: plunger_mm, force)\n  remedy: \
-             rename the column or the [[channel]], or list it under not_recorded in the [[run]] of this file"
+             rename the column, say name = \"...\" in the [[channel]], or list it under not_recorded in the [[run]] of this file"
         ),
         "{error}"
     );
@@ -158,4 +158,81 @@ fn what_was_not_recorded_is_an_output_that_is_declared() {
     );
     assert!(said("[\"plunger_mm\"]").contains("no declared output"));
     assert!(said("\"force_n\"").ends_with("must be a list of texts\n  remedy: write not_recorded = [\"force_n\"]"));
+}
+
+const LAYOUT: &str = "[file]\ndelimiter = \";\"\ndecimal = \",\"\n\n[[run]]\n";
+
+/// What `[file]` says holds for every run that does not say otherwise.
+#[test]
+fn a_run_may_be_laid_out_otherwise() {
+    let text = GOOD.replace("[[run]]\n", LAYOUT) + "delimiter = \"tab\"\n\n[[run]]\nfile = \"step.csv\"\n";
+    let set = parse(&text).unwrap();
+    let delimiters: Vec<_> =
+        set.runs.iter().map(|run| run.layout.delimiter.map(crate::recording::Delimiter::word)).collect();
+    assert_eq!(delimiters, [Some("tab".to_owned()), Some(";".to_owned())]);
+    assert!(set.runs.iter().all(|run| run.layout.decimal == Some(',')));
+    assert_eq!(set.runs[0].conditions.len(), 2);
+}
+
+/// Each mistake names its key and its remedy; the remedies are in the second column, and are read.
+#[test]
+fn layout_mistakes_and_their_remedies() {
+    for (wrong, right) in [
+        ("delimiter = \"colon\"", "delimiter = \";\""),
+        ("decimal = \";\"", "decimal = \",\"\ndelimiter = \";\""),
+        ("decimal = \",\"", "decimal = \",\"\ndelimiter = \"tab\""),
+        ("encoding = \"ansi code\"", "encoding = \"windows-1252\""),
+        ("skip_rows = -1", "skip_rows = 3"),
+        ("header = 0", "header = 4"),
+        ("header = false", "header = false\nnames = [\"time_s\", \"plunger_mm\"]"),
+        ("names = [\"time_s\"]", "header = false\nnames = [\"time_s\"]"),
+        ("units_row = 1", "units_row = true"),
+        ("time_unit = \"mm\"", "time_unit = \"ms\""),
+        ("time = \"index\"", "time = \"index\"\ninterval_s = 0.1"),
+        ("interval_s = 0", "interval_s = 0.01"),
+        ("time = \"rows\"", "time = \"column\""),
+        ("split_at_restart = \"yes\"", "split_at_restart = true"),
+        ("colums = 1", "skip_rows = 1"),
+    ] {
+        let said = refusal("[[run]]", &format!("[file]\n{wrong}\n[[run]]"));
+        let key = wrong.split(' ').next().unwrap();
+        assert!(said.starts_with("rig/recordings.toml: [file]: ") && said.contains(key), "{said}");
+        assert_eq!(said.matches("remedy: ").count(), 1, "{said}");
+        let mended = parse(&GOOD.replace("[[run]]", &format!("[file]\n{right}\n[[run]]")));
+        assert!(mended.is_ok(), "{right}: {mended:?}");
+    }
+    let said = refusal("scene = \"muscle_bench\"", "scene = \"muscle_bench\"\nfile = 3");
+    assert!(said.contains("file = 3 must be a table"), "{said}");
+}
+
+#[test]
+fn channel_sources_are_checked_against_their_units() {
+    for (wrong, right) in [
+        ("unit = \"furlong\"", "unit = \"kgf\""),
+        ("unit = \"V\"", "unit = \"V\"\nscale = 2.5"),
+        ("unit = \"bar\"", "unit = \"lbf\""),
+        ("scale = 0", "scale = 2"),
+        ("field = \"data\"", "topic = \"/force\"\nfield = \"data\""),
+        ("topic = \"/force\"\nscale = 2", "topic = \"/force\""),
+    ] {
+        let said = refusal("noise_sd = 1", wrong);
+        assert!(said.contains("[[channel]] 2 (\"force_n\"): ") && said.contains("remedy: "), "{said}");
+        let mended = parse(&GOOD.replace("noise_sd = 1", right));
+        assert!(mended.is_ok(), "{right}: {mended:?}");
+    }
+}
+
+/// `value = unit(scale * (number - zero))`, by hand: (3 V - 0.5 V) * 4 N/V; (50 - 10) cm is 400 mm.
+#[test]
+fn numbers_become_the_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = GOOD
+        .replace("noise_sd = 1", "name = \"Load [V]\"\nzero = 0.5\nscale = 4")
+        .replace("role = \"input\"", "role = \"input\"\nname = \"x\"\nunit = \"cm\"\nzero = 10");
+    std::fs::write(folder.path().join(SET_FILE_NAME), text).unwrap();
+    std::fs::write(folder.path().join("sine.csv"), "time_s,x,Load [V]\n0,50,3\n0.1,10,0.5\n").unwrap();
+    let set = RecordingSet::load(folder.path()).unwrap();
+    let read = set.load_run(&set.runs[0]).unwrap().recording;
+    assert_eq!(read.channel("plunger_mm").unwrap().values, [400.0, 0.0]);
+    assert_eq!(read.channel("force_n").unwrap().values, [10.0, 0.0]);
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Recording, RecordingError, bag_read, parquet_read, read_csv};
+use super::{Recording, RecordingError, bag_read, parquet_read, read_csv, table};
 
 /// How a file holds a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,12 +11,14 @@ pub enum FileFormat {
     Csv,
     /// `.parquet`
     Parquet,
+    /// `.xlsx`: a workbook.
+    Workbook,
     /// `.mcap`: a ROS 2 bag.
     Mcap,
 }
 
 /// Endings of files that are refused, and how to make one that is read.
-const REFUSED: [(&str, &str); 7] = [
+const REFUSED: [(&str, &str); 6] = [
     (
         "mat",
         "MATLAB files are neither read nor written; make a CSV file of it: in MATLAB \
@@ -27,8 +29,7 @@ const REFUSED: [(&str, &str); 7] = [
     ),
     ("db3", "SQLite bags are not read; convert it to MCAP with `ros2 bag convert`"),
     ("bag", "ROS 1 bags are not read; write its topics to CSV with `rostopic echo -b RUN.bag -p /TOPIC`"),
-    ("xlsx", "spreadsheets are not read; save the sheet as CSV with commas and decimal points"),
-    ("xls", "spreadsheets are not read; save the sheet as CSV with commas and decimal points"),
+    ("xls", "spreadsheets of the old format are not read; save it as .xlsx, or the sheet as CSV"),
     ("h5", "HDF5 files are not read; write the columns to CSV or Parquet, with pandas for one"),
     ("hdf5", "HDF5 files are not read; write the columns to CSV or Parquet, with pandas for one"),
 ];
@@ -43,6 +44,7 @@ impl FileFormat {
         match ending.as_str() {
             "parquet" => return Ok(Self::Parquet),
             "mcap" => return Ok(Self::Mcap),
+            "xlsx" => return Ok(Self::Workbook),
             _ => {}
         }
         match REFUSED.iter().find(|(refused, _)| *refused == ending) {
@@ -77,6 +79,7 @@ impl FileFormat {
 pub fn read_recording(path: &Path) -> Result<Recording, RecordingError> {
     match FileFormat::of(path)? {
         FileFormat::Csv => read_csv(path),
+        FileFormat::Workbook => table::read_plain_workbook(path),
         FileFormat::Parquet => parquet_read::read_parquet(path),
         FileFormat::Mcap => Ok(bag_read::read_bag(path, &[])?.recording),
     }

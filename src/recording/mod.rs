@@ -21,6 +21,8 @@
 
 mod bag_read;
 mod bag_source;
+mod blocks;
+mod by_size;
 mod channels;
 mod compare;
 mod csv_read;
@@ -29,7 +31,10 @@ mod error;
 pub mod figures;
 mod folder;
 mod folder_keys;
+mod folder_load;
+mod folder_tables;
 mod formats;
+mod guess;
 mod lost;
 mod noise;
 mod one_clock;
@@ -39,11 +44,14 @@ mod schema;
 mod source;
 mod strays;
 mod survey;
+mod table;
 mod unit;
 mod writer;
 
 pub use bag_read::read_bag_from;
 pub use bag_source::BagSource;
+pub use blocks::Blocks;
+pub use by_size::{BySize, motion_ratio, unit_by_size};
 pub use channels::{Channel, Recording, TIME_COLUMN};
 pub use compare::{ChannelFit, compare};
 pub use csv_read::{read_csv, read_csv_from};
@@ -51,12 +59,16 @@ pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use formats::{FileFormat, read_recording};
+pub use guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, to_toml};
 pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
 pub use schema::recordings_schema;
 pub use strays::strays;
 pub use survey::{Gap, Missing, Strays, Survey, gap_limit_s, median, median_interval_s, survey};
+pub use table::{
+    Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label,
+};
 pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
 pub use writer::RecordingWriter;
 

@@ -4,15 +4,14 @@ use std::path::Path;
 
 use super::source::open_file;
 use super::{Channel, Recording, RecordingError, TIME_COLUMN};
-use crate::columns::decode;
+use crate::columns::{Column, decode};
 
 /// Reads the columns of a Parquet file.
 pub(super) fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     let file = path.display().to_string();
     let refuse = |problem: String| RecordingError::Format { file: path.to_owned(), problem };
-    let source = open_file(path)?;
     let mut columns = Vec::new();
-    for (name, column) in decode(source).map_err(|e| refuse(unreadable(&e)))? {
+    for (name, column) in columns_of(path)? {
         let values = column.numbers();
         columns.push((
             values.ok_or_else(|| refuse(format!("column \"{name}\" holds texts\n  remedy: leave it out")))?,
@@ -34,6 +33,11 @@ pub(super) fn read_parquet(path: &Path) -> Result<Recording, RecordingError> {
     Recording::new(time_s, channels.collect()).map_err(|e| refuse(e.to_string()))
 }
 
+/// The columns of a Parquet file as it holds them.
+pub(super) fn columns_of(path: &Path) -> Result<Vec<(String, Column)>, RecordingError> {
+    decode(open_file(path)?).map_err(|e| RecordingError::Format { file: path.to_owned(), problem: unreadable(&e) })
+}
+
 /// What cannot be decoded may say itself what to do about it.
 fn unreadable(problem: &str) -> String {
     if problem.contains("remedy: ") {
@@ -45,7 +49,7 @@ fn unreadable(problem: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::columns::{Column, encode};
+    use crate::columns::encode;
 
     fn read(table: &[(&str, Column)]) -> Result<Recording, RecordingError> {
         let folder = tempfile::tempdir().expect("a folder");

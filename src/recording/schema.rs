@@ -12,6 +12,7 @@ pub fn recordings_schema() -> String {
         "properties": {
             "format": { "const": 1, "description": "Version of this format: 1." },
             "scene": text("A stock scene, or the path of a scene file (from this folder, else from where you are)."),
+            "file": file(),
             "channel": tables(&channel()),
             "run": tables(&run()),
         },
@@ -42,14 +43,14 @@ fn channel() -> Value {
         "topic": { "type": "string", "pattern": "^/", "description": "Bags only: the topic, /syringe/position." },
         "field": text("Bags only: path of the number in the message, wrench.force.z or data[2]; data when left out."),
         "joint": text("Bags only: which joint, by its name in the list `name` of the message."),
-        "unit": {
-            "enum": suffixes,
-            "description": "Bags only: unit of the number in the bag; SI when left out.",
-        },
-        "zero": {
+        "name": text("Tables only: the column's name in the file, if it is another: Pressure [bar]."),
+        "unit": text("Unit of the numbers in the file: mm, cm, m, um, in, deg, rad, rev, kPa, Pa, MPa, bar, mbar, psi, mmHg, N, mN, kN, gf, kgf, lbf, V; \
+                      left out, a table's is that of its name or of the column, a bag's SI."),
+        "scale": {
             "type": "number",
-            "description": "Bags only: reading that counts as zero, in the bag's unit; 101325 for absolute pressures in Pa.",
+            "description": "Tables only: factor upon the numbers; for volts, what one volt is in the column's unit.",
         },
+        "zero": { "type": "number", "description": "Number that counts as zero, in the file's unit; 101325 for absolute pressures in Pa." },
         "time": {
             "enum": ["stamp", "log"],
             "description": "Bags only: stamp (header.stamp where there is one) or log (when it was recorded).",
@@ -64,18 +65,69 @@ fn channel() -> Value {
     })
 }
 
+/// `[file]`, and what a `[[run]]` may say otherwise.
+fn file_keys() -> Map<String, Value> {
+    let flag = |description: &str| json!({ "type": "boolean", "description": description });
+    let texts =
+        |description: &str| json!({ "type": "array", "items": { "type": "string" }, "description": description });
+    let keys = json!({
+        "encoding": text("utf-8, utf-16le, utf-16be, latin1, windows-1252, gbk or another of the Encoding Standard; a byte order mark outranks it."),
+        "delimiter": { "enum": [",", ";", "tab", "|", "blanks", "comma", "semicolon", "bar", "\t", ":", " "], "description": "Between columns." },
+        "decimal": { "enum": [".", ","], "description": "Decimal mark." },
+        "thousands": { "enum": [".", ",", "'", " "], "description": "Mark between groups of three digits." },
+        "skip_rows": { "type": "integer", "minimum": 0, "description": "Lines at the top that do not belong to the table." },
+        "header": {
+            "oneOf": [{ "type": "integer", "minimum": 1 }, { "type": "boolean" }],
+            "description": "Line with the names of the columns, from 1; false: the file has none, names gives them.",
+        },
+        "names": texts("Names of the columns where header = false."),
+        "units_row": flag("The row below the names holds units."),
+        "missing": texts("Texts for a missing sample, besides NaN, n.a., - and the like."),
+        "sheet": text("Sheet of a workbook; the first when left out."),
+        "time_column": text("Name of the time column; time_s when left out."),
+        "time_unit": { "enum": super::table::TIME_UNITS, "description": "Unit of the time; what its name says when left out, else s." },
+        "time": { "enum": ["column", "index"], "description": "index: rows without a clock; their order is known, their pace is not." },
+        "interval_s": { "type": "number", "exclusiveMinimum": 0, "description": "Time between two rows, for files without a time column." },
+        "split_at_restart": flag("A clock that goes back begins a run of its own."),
+        "merge_repeated": flag("Rows of one stamp become one, their mean."),
+    });
+    match keys {
+        Value::Object(keys) => keys,
+        // It is written as one above.
+        _ => Map::new(),
+    }
+}
+
+fn file() -> Value {
+    json!({
+        "type": "object",
+        "description": "How the files are laid out; a [[run]] may say otherwise for its own.",
+        "properties": file_keys(),
+        "additionalProperties": false,
+    })
+}
+
 fn run() -> Value {
+    let mut keys = file_keys();
+    keys.insert(
+        "file".to_owned(),
+        text("CSV file, workbook (.xlsx), Parquet file (.parquet) or ROS 2 bag (.mcap) in this folder."),
+    );
+    keys.insert(
+        "use".to_owned(),
+        json!({ "enum": ["fit", "holdout"], "description": "Nothing is fitted to a holdout run." }),
+    );
+    keys.insert(
+        "not_recorded".to_owned(),
+        json!({
+            "type": "array", "items": { "type": "string" },
+            "description": "Declared outputs that this run was recorded without.",
+        }),
+    );
     json!({
         "type": "object",
         "description": "A run. Keys other than these are known conditions: numbers whose names end in their unit.",
-        "properties": {
-            "file": text("CSV file, Parquet file (.parquet) or ROS 2 bag (.mcap) in this folder."),
-            "use": { "enum": ["fit", "holdout"], "description": "Nothing is fitted to a holdout run." },
-            "not_recorded": {
-                "type": "array", "items": { "type": "string" },
-                "description": "Declared outputs that this run was recorded without.",
-            },
-        },
+        "properties": keys,
         "required": ["file"],
         "additionalProperties": { "type": "number" },
     })
@@ -91,9 +143,10 @@ fn text(description: &str) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::folder::{CHANNEL_KEYS, RUN_KEYS, TOP_KEYS};
+    use super::super::folder_tables::{CHANNEL_KEYS, RUN_KEYS, TOP_KEYS};
     use super::*;
     use crate::recording::bag_source::BAG_KEYS;
+    use crate::recording::table::{FILE_KEYS, TABLE_KEYS};
 
     fn keys(schema: &Value) -> Vec<String> {
         let mut keys: Vec<String> = schema["properties"].as_object().expect("keys").keys().cloned().collect();
@@ -111,7 +164,8 @@ mod tests {
     fn keys_of_the_schema_are_those_that_are_read() {
         let schema: Value = serde_json::from_str(&recordings_schema()).expect("JSON");
         assert_eq!(keys(&schema), sorted(&TOP_KEYS));
-        assert_eq!(keys(&channel()), sorted(&[&CHANNEL_KEYS[..], &BAG_KEYS].concat()));
-        assert_eq!(keys(&run()), sorted(&RUN_KEYS));
+        assert_eq!(keys(&channel()), sorted(&[&CHANNEL_KEYS[..], &TABLE_KEYS, &BAG_KEYS].concat()));
+        assert_eq!(keys(&file()), sorted(&FILE_KEYS));
+        assert_eq!(keys(&run()), sorted(&[&RUN_KEYS[..], &FILE_KEYS].concat()));
     }
 }

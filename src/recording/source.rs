@@ -10,6 +10,9 @@ use crate::files;
 /// No line of a text is longer, header included: ten thousand columns with names of a hundred letters.
 const LONGEST_LINE_BYTES: usize = 1 << 20;
 
+/// No workbook is longer: a million rows of ten columns have half of it.
+const LONGEST_BOOK_BYTES: u64 = 1 << 28;
+
 /// Opens a file, as [`files::open`].
 pub(super) fn open_file(path: &Path) -> Result<File, RecordingError> {
     files::open(path).map_err(|source| unopened(path, source))
@@ -38,6 +41,18 @@ pub(super) fn read_settled(path: &Path) -> Result<Vec<u8>, RecordingError> {
         true => Ok(bytes),
         false => Err(RecordingError::Format { file: path.to_owned(), problem: changed(before, after) }),
     }
+}
+
+/// The bytes of a file that is no text; of no more than [`LONGEST_BOOK_BYTES`].
+pub(super) fn read_whole(path: &Path) -> Result<Vec<u8>, RecordingError> {
+    let failed = |source| RecordingError::Read { file: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    open_file(path)?.take(LONGEST_BOOK_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 <= LONGEST_BOOK_BYTES {
+        return Ok(bytes);
+    }
+    let problem = format!("has more than {LONGEST_BOOK_BYTES} bytes\n  remedy: save its sheet as CSV");
+    Err(RecordingError::Format { file: path.to_owned(), problem })
 }
 
 fn changed(before: u64, after: u64) -> String {

@@ -1,6 +1,7 @@
 //! What is irregular in a recording. Nothing here changes a sample.
 
 use super::Recording;
+use super::blocks::{Blocks, blocks};
 use super::strays::strays;
 use std::fmt;
 
@@ -8,6 +9,8 @@ use std::fmt;
 const GAP_FACTOR: f64 = 3.0;
 /// Muscles move faster than samples this far apart could show: a clock of milliseconds, more likely, s.
 const SLOW_S: f64 = 1.0;
+/// Sensors of muscles are not read 20 000 times a second: seconds that are called milliseconds, more likely, s.
+const FAST_S: f64 = 5e-5;
 /// An interval this far from the median (as a share of it) is uneven; clocks that count in
 /// milliseconds stay below it at 100 Hz.
 const UNEVEN_TOLERANCE: f64 = 0.2;
@@ -56,6 +59,8 @@ pub struct Survey {
     pub uneven_share: f64,
     /// Intervals longer than three medians.
     pub gaps: Vec<Gap>,
+    /// Samples in blocks with regular gaps between them.
+    pub blocks: Option<Blocks>,
     /// Channels with missing samples.
     pub missing: Vec<Missing>,
     /// Channels with samples far outside all others.
@@ -75,13 +80,22 @@ impl Survey {
             notes.push("one sample only: nothing moves".to_owned());
         }
         if let Some(interval_s) = self.median_interval_s.filter(|s| *s > SLOW_S) {
-            notes.push(format!("one sample in {interval_s} s: is the time in seconds, not in milliseconds?"));
+            notes.push(format!(
+                "one sample in {interval_s} s: is the time in seconds, not in milliseconds? (time_unit = \"ms\" in recordings.toml)"
+            ));
+        }
+        if let Some(interval_s) = self.median_interval_s.filter(|s| *s < FAST_S) {
+            notes.push(format!(
+                "{:.0} samples a second: is the time in another unit than its name says? (time_unit in recordings.toml)",
+                1.0 / interval_s
+            ));
         }
         if self.is_uneven() {
             let percent = 100.0 * self.uneven_share;
             notes.push(format!("uneven sampling: {percent:.1} % of the intervals are more than 20 % off the median"));
         }
         notes.extend(self.gap_note());
+        notes.extend(self.blocks.as_ref().map(Blocks::note));
         notes.extend(self.missing.iter().map(|m| {
             format!(
                 "column \"{}\": {} of {} samples missing: left out of an output, bridged in an input",
@@ -158,6 +172,7 @@ pub fn survey(recording: &Recording) -> Survey {
             .filter(|w| w[1] - w[0] > gap_limit_s)
             .map(|w| Gap { from_s: w[0], to_s: w[1] })
             .collect(),
+        blocks: blocks(recording),
         missing: missing(recording),
         strays: all_strays(recording),
     }
@@ -240,6 +255,18 @@ mod tests {
              gaps (1): 3 to 7 s\n\
              column \"force_n\": 1 of 8 samples missing: left out of an output, bridged in an input"
         );
+    }
+
+    /// Milliseconds called seconds, and seconds called milliseconds, of a recording at 100 Hz.
+    #[test]
+    fn a_clock_in_another_unit_is_asked_for() {
+        let of = |interval_s: f64| {
+            let time_s = (0..100).map(|i| f64::from(i) * interval_s).collect();
+            survey(&Recording::new(time_s, vec![]).unwrap()).notes().concat()
+        };
+        assert!(of(10.0).contains("not in milliseconds? (time_unit = \"ms\""));
+        assert!(of(10e-6).contains("100000 samples a second: is the time in another unit"));
+        assert_eq!(of(0.001) + &of(0.01) + &of(0.5), "");
     }
 
     #[test]

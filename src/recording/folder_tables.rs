@@ -1,0 +1,137 @@
+//! The tables of `recordings.toml`: `[file]`, `[[channel]]`, `[[run]]`.
+
+use super::bag_source::{BAG_KEYS, bag_source};
+use super::folder_keys::Keys;
+use super::table::{FILE_KEYS, TABLE_KEYS, file_options, table_source};
+use super::{ChannelSpec, FileOptions, RecordingError, Role, Run, RunUse, TIME_COLUMN, TableSource, parse_column};
+use crate::nearest::did_you_mean;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+
+const FORMAT: i64 = 1;
+pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
+pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
+pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
+
+pub(super) fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
+    match top.number("format")? {
+        Some(format) if format == FORMAT as f64 => Ok(()),
+        Some(format) => {
+            Err(top.error(format!("format = {format} is not known\n  remedy: this version reads format = {FORMAT}")))
+        }
+        None => Err(top.error(format!("key \"format\" is missing\n  remedy: add format = {FORMAT}"))),
+    }
+}
+
+pub(super) fn channels(top: &Keys<'_>, file: &Path) -> Result<Vec<ChannelSpec>, RecordingError> {
+    let mut channels: Vec<ChannelSpec> = Vec::new();
+    for (index, table) in top.tables("channel")?.into_iter().enumerate() {
+        let keys = Keys::new(file, label("channel", index, table.get("column")), table);
+        let spec = channel(&keys)?;
+        if channels.iter().any(|other| other.column == spec.column) {
+            return Err(keys.error("the column is declared twice\n  remedy: remove one [[channel]]"));
+        }
+        channels.push(spec);
+    }
+    if channels.iter().all(|spec| spec.role == Role::Input) {
+        return Err(top.error("no channel has role = \"output\"\n  remedy: declare one that was measured"));
+    }
+    Ok(channels)
+}
+
+/// What `[file]` says of every file.
+pub(super) fn layout(top: &Keys<'_>, file: &Path) -> Result<FileOptions, RecordingError> {
+    let Some(table) = top.subtable("file")? else { return Ok(FileOptions::default()) };
+    let keys = Keys::new(file, "[file]", table);
+    keys.refuse_unknown(&FILE_KEYS)?;
+    file_options(&keys, &FileOptions::default())
+}
+
+fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
+    keys.refuse_unknown(&[&CHANNEL_KEYS[..], &TABLE_KEYS, &BAG_KEYS].concat())?;
+    let column = keys.required_text("column", "plunger_mm")?;
+    if column == TIME_COLUMN {
+        return Err(keys.error("the time is no channel\n  remedy: remove this [[channel]]"));
+    }
+    let unit = parse_column(column).map_err(|error| keys.error(error.to_string()))?.unit;
+    let role = keys
+        .word("role", &[("input", Role::Input), ("output", Role::Output)])?
+        .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
+    let noise_sd = keys.number("noise_sd")?;
+    if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
+        return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
+    }
+    let bag = bag_source(keys, unit)?;
+    // Beside a topic unit and zero are the bag's; a table's numbers are then the channel's as they stand.
+    let table = match bag {
+        None => table_source(keys, unit)?,
+        Some(_) => TableSource { name: keys.text("name")?.map(str::to_owned), ..TableSource::default() },
+    };
+    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag, table })
+}
+
+pub(super) fn runs(
+    top: &Keys<'_>,
+    file: &Path,
+    channels: &[ChannelSpec],
+    layout: &FileOptions,
+) -> Result<Vec<Run>, RecordingError> {
+    let mut seen = HashSet::new();
+    let mut runs = Vec::new();
+    for (index, table) in top.tables("run")?.into_iter().enumerate() {
+        let keys = Keys::new(file, label("run", index, table.get("file")), table);
+        let run = run(&keys, channels, layout)?;
+        if !seen.insert(run.file.clone()) {
+            return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
+        }
+        runs.push(run);
+    }
+    Ok(runs)
+}
+
+fn run(keys: &Keys<'_>, channels: &[ChannelSpec], layout: &FileOptions) -> Result<Run, RecordingError> {
+    let mut conditions = BTreeMap::new();
+    for key in keys.others(&[&RUN_KEYS[..], &FILE_KEYS].concat()) {
+        let nearest = did_you_mean(key, &RUN_KEYS);
+        if !nearest.is_empty() {
+            let known = RUN_KEYS.join(", ");
+            return Err(keys.error(format!(
+                "unknown key \"{key}\"{nearest}\n  remedy: the keys here are {known} and the scene's conditions"
+            )));
+        }
+        if let Some(value) = keys.number(key)? {
+            conditions.insert(key.to_owned(), value);
+        }
+    }
+    Ok(Run {
+        file: keys.required_text("file", "sine.csv")?.to_owned(),
+        run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
+        not_recorded: not_recorded(keys, channels)?,
+        layout: file_options(keys, layout)?,
+        conditions,
+    })
+}
+
+/// Inputs drive the simulation: they are there in every run.
+fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>, RecordingError> {
+    let columns = keys.texts("not_recorded")?;
+    let outputs: Vec<&str> = channels.iter().filter(|c| c.role == Role::Output).map(|c| c.column.as_str()).collect();
+    if let Some(twice) = (1..columns.len()).find(|i| columns[..*i].contains(&columns[*i])) {
+        let column = &columns[twice];
+        return Err(keys.error(format!("not_recorded names \"{column}\" twice\n  remedy: name it once")));
+    }
+    match columns.iter().find(|c| !outputs.contains(&c.as_str())) {
+        None => Ok(columns),
+        Some(odd) => Err(keys.error(format!(
+            "not_recorded names \"{odd}\", which is no declared output{}\n  remedy: the outputs are {}",
+            did_you_mean(odd, &outputs),
+            outputs.join(", ")
+        ))),
+    }
+}
+
+/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
+fn label(kind: &str, index: usize, name: Option<&toml::Value>) -> String {
+    let name = name.map_or(String::new(), |name| format!(" ({name})"));
+    format!("[[{kind}]] {}{name}", index + 1)
+}

@@ -1,0 +1,70 @@
+//! The rows that are looked at.
+
+use std::path::Path;
+
+use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
+
+use super::super::source::{read_settled, read_whole};
+use super::super::table::{check_labview, parquet_rows, workbook_rows};
+use super::super::{FileFormat, RecordingError};
+use super::{Said, Sureness};
+
+/// What a file holds, before any row is taken apart.
+pub(super) enum Preview {
+    Text {
+        text: String,
+        encoding: Option<&'static Encoding>,
+        said: Option<Said>,
+    },
+    /// Cells as texts: no delimiter, points as decimal marks.
+    Cells(Vec<Vec<String>>),
+}
+
+pub(super) fn preview(file: &Path) -> Result<Preview, RecordingError> {
+    match FileFormat::of(file)? {
+        FileFormat::Workbook => Ok(Preview::Cells(workbook_rows(&read_whole(file)?, file)?)),
+        FileFormat::Parquet => Ok(Preview::Cells(parquet_rows(file)?)),
+        FileFormat::Mcap => Err(RecordingError::Format {
+            file: file.to_owned(),
+            problem: "is a bag: its topics are not guessed\n  remedy: declare them as docs/formats.md says (topic = \"/syringe\")".to_owned(),
+        }),
+        FileFormat::Csv => {
+            let (text, encoding, said) = text(&read_settled(file)?);
+            check_labview(&text, file)?;
+            Ok(Preview::Text { text, encoding, said })
+        }
+    }
+}
+
+/// The text, its encoding where that has to be declared, and what is to be said of it.
+fn text(bytes: &[u8]) -> (String, Option<&'static Encoding>, Option<Said>) {
+    let (encoding, sureness) = encoding(bytes);
+    let (text, actual, _) = encoding.decode(bytes);
+    let is_plain = encoding == UTF_8 || Encoding::for_bom(bytes).is_some();
+    let said = (encoding != UTF_8).then(|| Said { what: format!("encoding {}", actual.name()), sureness });
+    let text = text.trim_start_matches('\u{feff}').to_owned();
+    (text, (!is_plain).then_some(encoding), said)
+}
+
+/// The encoding of a text: by its mark, by where its zeros are, by whether it is UTF-8; else what Windows writes in the west.
+fn encoding(bytes: &[u8]) -> (&'static Encoding, Sureness) {
+    if let Some((encoding, _)) = Encoding::for_bom(bytes) {
+        return (encoding, Sureness::Sure);
+    }
+    let zeros = |at: usize| bytes.iter().skip(at).step_by(2).filter(|byte| **byte == 0).count();
+    match (zeros(0), zeros(1)) {
+        (0, 0) if std::str::from_utf8(bytes).is_ok() => (UTF_8, Sureness::Sure),
+        (0, 0) => (single_or_gbk(bytes), Sureness::Likely),
+        (even, odd) if even > odd => (UTF_16BE, Sureness::Likely),
+        _ => (UTF_16LE, Sureness::Likely),
+    }
+}
+
+/// Chinese text comes in pairs of high bytes; a degree sign or an umlaut stands alone among letters.
+fn single_or_gbk(bytes: &[u8]) -> &'static Encoding {
+    let runs = bytes.chunk_by(|a, b| (*a >= 0x80) == (*b >= 0x80)).filter(|run| run[0] >= 0x80);
+    let (mut pairs, mut singles) = (0, 0);
+    runs.for_each(|run| if run.len() % 2 == 0 { pairs += 1 } else { singles += 1 });
+    let is_gbk = pairs > singles && !encoding_rs::GBK.decode_without_bom_handling(bytes).1;
+    if is_gbk { encoding_rs::GBK } else { WINDOWS_1252 }
+}

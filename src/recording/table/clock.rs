@@ -1,0 +1,168 @@
+//! Times of rows: increasing, or put right as declared.
+
+use super::looked_at::ClockFaults;
+use super::options::{FileOptions, TimeSource};
+
+/// Eleven days without a sample: a simulation would run across them, so it is rather the unit that is wrong.
+const LONGEST_GAP_S: f64 = 1e6;
+
+/// The times of a file's rows, s, in the order of its rows.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    may_split: bool,
+    may_merge: bool,
+    interval_s: Option<f64>,
+    pub(super) time_s: Vec<f64>,
+    /// First rows of the parts.
+    starts: Vec<usize>,
+    repeated: usize,
+}
+
+impl Clock {
+    pub(super) fn new(options: &FileOptions) -> Self {
+        let interval_s = match options.time {
+            TimeSource::Column => None,
+            TimeSource::Interval(s) | TimeSource::Index(s) => Some(s),
+        };
+        Self {
+            may_split: options.split_at_restart,
+            may_merge: options.merge_repeated,
+            interval_s,
+            time_s: Vec::new(),
+            starts: vec![0],
+            repeated: 0,
+        }
+    }
+
+    /// The time of a row of a file without clock.
+    pub(super) fn tick(&mut self) {
+        let row = self.time_s.len() as f64;
+        self.time_s.extend(self.interval_s.map(|s| row * s));
+    }
+
+    /// Takes the time of the next row.
+    pub(super) fn push(&mut self, time_s: f64) -> Result<(), String> {
+        if time_s.is_nan() {
+            return Err("the time is missing\n  remedy: give every row its time, or remove the row".to_owned());
+        }
+        if let Some(previous_s) = self.time_s.last().copied() {
+            self.follow(time_s, previous_s)?;
+        }
+        self.time_s.push(time_s);
+        Ok(())
+    }
+
+    fn follow(&mut self, time_s: f64, previous_s: f64) -> Result<(), String> {
+        if time_s - previous_s > LONGEST_GAP_S {
+            return Err(format!(
+                "{time_s:e} is more than {LONGEST_GAP_S:e} s after {previous_s}\n  remedy: give the time in seconds, or split the \
+                 file where nothing was recorded"
+            ));
+        }
+        if time_s > previous_s {
+            return Ok(());
+        }
+        let (is_repeated, said) = (time_s == previous_s, format!("{time_s} is not after {previous_s}\n  remedy: "));
+        match (is_repeated, self.may_merge, self.may_split) {
+            (true, true, _) => self.repeated += 1,
+            (false, _, true) => self.starts.push(self.time_s.len()),
+            (true, ..) => {
+                return Err(format!(
+                    "{said}remove repeated rows, sort the rows by time, or split the file where its clock starts anew; or say \
+                     merge_repeated = true in recordings.toml: the mean of the rows of one stamp"
+                ));
+            }
+            (false, ..) => {
+                return Err(format!(
+                    "{said}remove repeated rows, sort the rows by time, or split the file where its clock starts anew; or say \
+                     split_at_restart = true in recordings.toml: a run of its own from there"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Rows of the parts.
+    fn parts(&self) -> Vec<std::ops::Range<usize>> {
+        let ends = self.starts[1..].iter().copied().chain([self.time_s.len()]);
+        self.starts.iter().copied().zip(ends).map(|(from, to)| from..to).collect()
+    }
+
+    /// Times and values of each part, rows of one stamp made one.
+    pub(super) fn cut(&self, columns: &[Vec<f64>]) -> Vec<(Vec<f64>, Vec<Vec<f64>>)> {
+        let part = |rows: std::ops::Range<usize>| {
+            let time_s = &self.time_s[rows.clone()];
+            let merged = |column: &Vec<f64>| means(time_s, &column[rows.clone()]);
+            let mut own = time_s.to_vec();
+            own.dedup();
+            (own, columns.iter().map(merged).collect())
+        };
+        self.parts().into_iter().map(part).collect()
+    }
+
+    /// What had to be put right.
+    pub(super) fn faults(&self) -> ClockFaults {
+        ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1, repeats: self.repeated }
+    }
+
+    /// What was done to the times.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.repeated > 0 {
+            let count = self.repeated;
+            notes.push(format!(
+                "merge_repeated: {count} rows had the stamp of the row before; each stamp has the mean of its rows"
+            ));
+        }
+        if self.starts.len() > 1 {
+            let at: Vec<String> =
+                self.starts[1..].iter().take(5).map(|i| format!("{} s", self.time_s[i - 1])).collect();
+            let (parts, at) = (self.starts.len(), at.join(", "));
+            notes.push(format!("split_at_restart: {parts} runs of one file; the clock started anew after {at}"));
+        }
+        notes
+    }
+}
+
+/// The mean of the values of each stamp, missing ones left out; alone they stay missing.
+fn means(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let rows: Vec<(f64, f64)> = time_s.iter().copied().zip(values.iter().copied()).collect();
+    let mean = |rows: &[(f64, f64)]| {
+        let known: Vec<f64> = rows.iter().map(|(_, v)| *v).filter(|v| !v.is_nan()).collect();
+        match known.as_slice() {
+            [one] => *one,
+            known => known.iter().sum::<f64>() / known.len() as f64,
+        }
+    };
+    rows.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn restarts_split_and_repeats_merge() {
+        let options = FileOptions { split_at_restart: true, merge_repeated: true, ..FileOptions::default() };
+        let mut clock = Clock::new(&options);
+        for t in [0.0, 0.1, 0.1, 0.2, 0.0, 0.1] {
+            clock.push(t).unwrap();
+        }
+        let parts = clock.cut(&[vec![1.0, 2.0, 4.0, 5.0, f64::NAN, 7.0]]);
+        assert_eq!(parts[0], (vec![0.0, 0.1, 0.2], vec![vec![1.0, 3.0, 5.0]]));
+        assert!(parts[1].0 == [0.0, 0.1] && parts[1].1[0][0].is_nan() && parts[1].1[0][1] == 7.0);
+        let notes = clock.notes();
+        assert!(notes[0].contains("1 rows had the stamp") && notes[1].contains("2 runs of one file"), "{notes:?}");
+    }
+
+    #[test]
+    fn neither_happens_unless_declared() {
+        let mut clock = Clock::new(&FileOptions::default());
+        clock.push(0.5).unwrap();
+        assert!(clock.push(0.5).unwrap_err().contains("merge_repeated = true"));
+        assert!(clock.push(0.4).unwrap_err().contains("split_at_restart = true"));
+        assert!(clock.push(2e6).unwrap_err().contains("1e6 s after 0.5"));
+        assert!(clock.push(f64::NAN).unwrap_err().contains("the time is missing"));
+        assert_eq!(clock.time_s, [0.5]);
+    }
+}

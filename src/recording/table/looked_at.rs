@@ -1,0 +1,70 @@
+//! What is asked of a file before anybody has described it.
+
+use std::path::Path;
+
+use super::super::RecordingError;
+use super::any_columns;
+use super::cell::{Cell, number};
+use super::header::Needed;
+use super::labview::{is_labview, with_labview};
+use super::options::FileOptions;
+use super::sheet;
+use super::stamp::stamp;
+
+/// The number of a cell, NaN where it says that it is missing; `None` where it is none.
+pub(in crate::recording) fn cell_number(cell: &str, options: &FileOptions) -> Option<f64> {
+    number(cell, options).ok()
+}
+
+/// Whether a cell is a stamp.
+pub(in crate::recording) fn is_stamp(cell: &str) -> bool {
+    stamp(cell).is_some()
+}
+
+/// The options of a LabVIEW file with all that its header says.
+pub(in crate::recording) fn labview_options(text: &str, options: &FileOptions) -> Option<FileOptions> {
+    with_labview(text, options).ok().filter(|_| is_labview(text))
+}
+
+/// Refuses a LabVIEW file whose header says that it is not one table.
+pub(in crate::recording) fn check_labview(text: &str, file: &Path) -> Result<(), RecordingError> {
+    let read = with_labview(text, &FileOptions::default());
+    read.map(drop).map_err(|problem| problem.in_file(&file.display().to_string()))
+}
+
+/// Rows of a workbook's first sheet, moments as seconds.
+pub(in crate::recording) fn workbook_rows(bytes: &[u8], file: &Path) -> Result<Vec<Vec<String>>, RecordingError> {
+    let mut rows = Vec::new();
+    let read = sheet::each_row(bytes, &FileOptions::default(), &mut |cells| {
+        rows.push(cells.iter().map(Cell::words).collect());
+        Ok(())
+    });
+    read.map_err(|problem| problem.in_file(&file.display().to_string()))?;
+    Ok(rows)
+}
+
+/// Names and rows of a Parquet file.
+pub(in crate::recording) fn parquet_rows(file: &Path) -> Result<Vec<Vec<String>>, RecordingError> {
+    let columns = super::super::parquet_read::columns_of(file)?;
+    let names = columns.iter().map(|(name, _)| name.clone()).collect();
+    let rows = columns.first().map_or(0, |(_, column)| column.len());
+    let row = |row: usize| columns.iter().map(|(_, column)| super::stored_cell(column, row).words()).collect();
+    Ok(std::iter::once(names).chain((0..rows).map(row)).collect())
+}
+
+/// What is wrong with a file's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::recording) struct ClockFaults {
+    pub(in crate::recording) rows: usize,
+    /// How often it went back.
+    pub(in crate::recording) restarts: usize,
+    /// How often it stood still.
+    pub(in crate::recording) repeats: usize,
+}
+
+/// Reads the times of a whole file.
+pub(in crate::recording) fn clock_faults(path: &Path, options: &FileOptions) -> Result<ClockFaults, RecordingError> {
+    let lenient = FileOptions { split_at_restart: true, merge_repeated: true, ..options.clone() };
+    let (columns, _) = any_columns(path, &lenient, Needed::These(&[]))?;
+    Ok(columns.clock.faults())
+}

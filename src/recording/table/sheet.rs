@@ -1,0 +1,58 @@
+//! Rows of a workbook (`.xlsx`).
+
+use std::io::Cursor;
+
+use calamine::{Data, Reader, Xlsx};
+
+use super::cell::Cell;
+use super::options::{FileOptions, Header};
+use super::place::Problem;
+use super::rows::Take;
+
+/// Hands each row of a sheet to `take`, blank ones left out; lines of errors are rows of the sheet.
+pub(super) fn each_row(bytes: &[u8], options: &FileOptions, take: &mut Take<'_>) -> Result<(), Problem> {
+    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|e| unreadable(&e.to_string()))?;
+    let names = book.sheet_names();
+    let name = match &options.sheet {
+        Some(name) if names.contains(name) => name.clone(),
+        Some(name) => {
+            let known = names.join("\", \"");
+            return Err(Problem::new(format!("has no sheet \"{name}\"\n  remedy: write one of \"{known}\"")));
+        }
+        None => names.first().cloned().ok_or_else(|| unreadable("it has no sheet"))?,
+    };
+    let range = book.worksheet_range(&name).map_err(|e| unreadable(&e.to_string()))?;
+    let first = range.start().map_or(0, |(row, _)| row as usize);
+    let skipped = match options.header {
+        Some(Header::Line(line)) => line.saturating_sub(1),
+        _ => options.skip_rows,
+    };
+    for (index, row) in range.rows().enumerate().skip(skipped.saturating_sub(first)) {
+        let cells: Vec<Cell<'_>> = row.iter().map(cell).collect();
+        if !cells.iter().all(Cell::is_empty) {
+            take(&cells).map_err(|problem| problem.or_line(|| first + index + 1))?;
+        }
+    }
+    Ok(())
+}
+
+fn unreadable(why: &str) -> Problem {
+    Problem::new(format!("cannot be read as a workbook: {why}\n  remedy: save it again as .xlsx, or the sheet as CSV"))
+}
+
+/// Seconds in the day that a workbook counts by.
+const DAY_S: f64 = 86_400.0;
+
+fn cell(data: &Data) -> Cell<'_> {
+    match data {
+        Data::Int(whole) => Cell::Number(*whole as f64),
+        Data::Float(number) => Cell::Number(*number),
+        Data::DateTime(at) => Cell::Moment((at.as_f64() * DAY_S * 1e6).round() / 1e6),
+        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => Cell::Text(text),
+        Data::Bool(true) => Cell::Number(1.0),
+        Data::Bool(false) => Cell::Number(0.0),
+        Data::Error(_) => Cell::Text("NaN"),
+        // Nothing, and what a later version of the reader may know.
+        _ => Cell::Text(""),
+    }
+}
