@@ -39,7 +39,7 @@ struct Lawful {
 pub(super) fn weigh_laws(
     case: &Case,
     noise: &[Noise],
-    (found, confirmed): (&Found, Confirmed),
+    (found, confirmed): (&mut Found, Confirmed),
     excess: Excess,
     say: &dyn Fn(String),
 ) -> Option<Found> {
@@ -48,9 +48,11 @@ pub(super) fn weigh_laws(
     }
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     let is_open = confirmed == Confirmed::InPart || verdict::is_unknown(found, excess);
-    let is_doubtful = found.best.model.effects.len() > 1 || leaves_something(&open, &found.best);
     let is_null = found.best.model.effects.is_empty();
-    if !is_open && (is_null || !is_doubtful) {
+    let is_elsewhere = !is_open && other_places(&open, found);
+    let found = &*found;
+    let is_doubtful = || found.best.model.effects.len() > 1 || leaves_something(&open, &found.best);
+    if !is_open && (is_null || !(is_elsewhere || is_doubtful())) {
         return None;
     }
     let alone = search(&open, &found.baseline, &found.baseline, say);
@@ -94,24 +96,26 @@ pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Foun
     (found, renewed.noise)
 }
 
-/// Of a single effect of the catalogue: laws at other places that explain the recordings as well. It stays the answer.
-pub(super) fn other_places(case: &Case, noise: &[Noise], found: &mut Found) {
-    let [effect] = &found.best.model.effects[..] else { return };
+/// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
+/// them clearly better, so that the effect only stands in for a law.
+fn other_places(open: &Problem, found: &mut Found) -> bool {
+    let [effect] = &found.best.model.effects[..] else { return false };
     let variables = port_of(effect.kind).variables;
-    if case.is_without(Step::OpenSet) || effect.channel.is_some() || variables.is_empty() {
-        return;
+    if effect.channel.is_some() || variables.is_empty() {
+        return false;
     }
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    let criterion = Criterion::of(&open, [Some(&found.best), None, None]);
+    let criterion = Criterion::of(open, [Some(&found.best), None, None]);
     let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (found.baseline.cost - found.best.cost);
     let own = port_of(effect.kind).port;
-    let others = unlisted::alternatives(&open, &found.baseline, &found.best, variables);
+    let others = unlisted::alternatives(open, &found.baseline, &found.best, variables);
+    let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
     let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().map(|e| e.kind) {
         Some(Kind::Law(id)) => id.law().law.address.port.spec().name() != own,
         _ => false,
     };
     let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
     found.forms = near.take(MOST_FORMS).cloned().collect();
+    is_better
 }
 
 /// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.

@@ -256,16 +256,12 @@ fn explain(
 /// Puts a law that nobody listed in the place of what was found, where that explains clearly more.
 fn explain_by_laws(
     case: &mut Case,
-    listed: Explained,
+    mut listed: Explained,
     seed: u64,
     say: &dyn Fn(String),
 ) -> Result<Explained, DiagnoseError> {
-    let Explained { found, confirmed, excess, noise, .. } = &listed;
-    let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, say) else {
-        let mut listed = listed;
-        hypothesis::other_places(case, &listed.noise, &mut listed.found);
-        return Ok(listed);
-    };
+    let Explained { found, confirmed, excess, noise, .. } = &mut listed;
+    let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, say) else { return Ok(listed) };
     let (found, noise) = hypothesis::renew(case, noise, found);
     let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
     let (sealed, whole) = (problem(Sealed::Sealed), problem(Sealed::Both));
