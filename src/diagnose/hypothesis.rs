@@ -144,7 +144,8 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
     let mut here = from.clone();
     for _ in 0..MOST_LAWS {
         let is_explained = here.cost - noise < EXPLAINED * (baseline.cost - noise);
-        if is_explained || here.model.effects.len() >= MOST_EFFECTS {
+        let is_all = lawful.is_some() && !leaves_something(open, &here);
+        if is_explained || is_all || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
         let Some(proposals) = propose(open, &here, say) else { break };
