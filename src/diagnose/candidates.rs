@@ -43,6 +43,8 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         }
         ElementKind::Mechanism => 1,
         ElementKind::Syringe if file.axis.is_some() => 1,
+        ElementKind::Muscle if file.strip.is_some() => 1,
+        ElementKind::Line if file.chamber.is_some() => 1,
         ElementKind::Cable => file.cable.len(),
         _ => file.muscle.len(),
     };
@@ -101,6 +103,7 @@ fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
         Kind::ExternalContact => with(&levels(case, "", std::f64::consts::PI / 180.0).unwrap_or_else(|| vec![0.6])),
         Kind::NotchClosure => with(&[0.15, 0.25, 0.35]),
         Kind::BearingFriction => with(&[0.01, 0.05]),
+        Kind::RubberOgden => with(&[-2.0, 4.0, 8.0]),
         _ => vec![typical],
     }
 }

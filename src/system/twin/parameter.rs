@@ -3,7 +3,8 @@
 use crate::muscle::Material;
 use crate::scalar::Scalar;
 use crate::system::plant::{Drive, MusclePlant, Plant};
-use crate::system::{AxisNumber, Elastic};
+use crate::system::standalone::Standalone;
+use crate::system::{Elastic, StandaloneNumber};
 
 use super::Twin;
 
@@ -24,7 +25,7 @@ pub enum TwinParameter {
     CableStiffness(usize),
     /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
     JointStiffness(Vec<(usize, f64)>),
-    Axis(AxisNumber),
+    Standalone(StandaloneNumber),
     /// A parameter of a law of the scene: both by index.
     Law(usize, usize),
     /// A parameter of a law on what a channel shows: output, law on it, parameter.
@@ -46,11 +47,10 @@ pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
         "muscles.damping_n_s_m" => P::Damping,
         "muscles.linear.stiffness_n_m" => P::LinearStiffness,
         "muscles.linear.pressure_gain_m2" => P::PressureGain,
-        "axis.piston_area_m2" => P::Axis(AxisNumber::PistonArea),
-        "axis.damping_n_s_m" => P::Axis(AxisNumber::Damping),
-        "axis.offset_n" => P::Axis(AxisNumber::Offset),
-        "axis.mass_kg" => P::Axis(AxisNumber::Mass),
-        _ => return resolve_named(twin, key),
+        _ => match Standalone::number(key) {
+            Some(number) => P::Standalone(number),
+            None => return resolve_named(twin, key),
+        },
     })
 }
 
@@ -93,7 +93,7 @@ impl TwinParameter {
             Self::JointStiffness(springs) => {
                 springs.iter().for_each(|(i, share)| plant.coordinates.stiffness[*i] = value * *share);
             }
-            Self::Axis(_) | Self::SensorLaw(..) => {}
+            Self::Standalone(_) | Self::SensorLaw(..) => {}
             Self::Law(law, parameter) => {
                 if let Some(laws) = &mut plant.laws {
                     laws.set(*law, *parameter, value);
