@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::effects::Effect;
-use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs};
+use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs, own_start};
 use crate::recording::{Recording, RecordingSet, Role, RunUse, strays};
 use crate::scene::{CalibrateSpec, Override, Scene};
 use crate::system::{Twin, TwinRun};
@@ -16,6 +16,8 @@ use super::thin::thin;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
 const LEAST_INTERVAL_S: f64 = 0.01;
+/// So much of a recording that begins in motion is not compared, s: several times as long as a slender rod swings or a sensor lags.
+const BEGINNING_S: f64 = 0.2;
 
 impl Case {
     /// Reads the folders; all must be of one scene and have the same channels.
@@ -59,7 +61,8 @@ impl Case {
         let runs = load_runs(set, &set.runs, &mut |n| notes.push(n))?;
         self.notes.extend(notes);
         for run in &runs {
-            let conditions = condition_overrides(&self.scene, &run.run)?;
+            let mut conditions = condition_overrides(&self.scene, &run.run)?;
+            conditions.extend(own_start(&self.scene, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
             let scene = match conditions.is_empty() {
                 true => self.scene.clone(),
                 false => {
@@ -85,7 +88,7 @@ impl Case {
             Some(channel) => at_times(&times_s, recording.time_s(), &channel.values),
             None => vec![f64::NAN; times_s.len()],
         });
-        let measured = measured.collect();
+        let measured = self.without_beginning(measured.collect(), &times_s);
         let mut drive = TwinRun { times_s, inputs, plan: None };
         let lead_in = self.lead_in(&mut drive);
         self.runs.push(CaseRun {
@@ -100,6 +103,15 @@ impl Case {
             lead_in,
         });
         Ok(())
+    }
+
+    /// Leaves out the first moments of a recording that begins in motion: they depend on what was before them.
+    fn without_beginning(&self, mut measured: Vec<Vec<f64>>, times_s: &[f64]) -> Vec<Vec<f64>> {
+        if self.scene.file.simulation.recorded_in_motion {
+            let count = times_s.iter().take_while(|t| **t < times_s[0] + BEGINNING_S).count();
+            measured.iter_mut().for_each(|m| m[..count].fill(f64::NAN));
+        }
+        measured
     }
 
     /// Lets a run that does not begin at rest come to where it begins. Returns how many instants.

@@ -3,7 +3,7 @@
 use crate::scalar::Scalar;
 
 /// Longest step of the integration, s: a step of this length is short beside the fastest leak that the ranges allow.
-const LONGEST_STEP_S: f64 = 0.05;
+const LONGEST_STEP_S: f64 = 0.1;
 const MOST_STEPS: f64 = 1e4;
 
 /// Ratio of absolute pressures below which the flow through an orifice is choked; that of a nozzle and air.

@@ -75,6 +75,10 @@ pub struct SimulationSpec {
     pub substeps: usize,
     /// Interval of the recording, s.
     pub output_interval_s: f64,
+    /// Recordings are pieces of longer runs: inputs are led from zero to where a recording begins, and its first moments, which
+    /// depend on what was before them, are not compared.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub recorded_in_motion: bool,
 }
 
 /// A cable: pulls when stretched, never pushes.

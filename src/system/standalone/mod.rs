@@ -59,6 +59,7 @@ impl Standalone {
             "axis.damping_n_s_m" => N::Axis(AxisNumber::Damping),
             "axis.offset_n" => N::Axis(AxisNumber::Offset),
             "axis.mass_kg" => N::Axis(AxisNumber::Mass),
+            "strip.length_m" => N::Strip(StripNumber::Length),
             "strip.material.c1_pa" => N::Strip(StripNumber::C1),
             "strip.material.c2_pa" => N::Strip(StripNumber::C2),
             "strip.material.c3_pa" => N::Strip(StripNumber::C3),

@@ -16,6 +16,7 @@ pub(in crate::system) struct Strip {
 /// Which number of a strip's law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StripNumber {
+    Length,
     C1,
     C2,
     C3,
@@ -31,7 +32,7 @@ pub enum StripNumber {
 #[derive(Clone, Debug)]
 pub(in crate::system) struct StripRubber<D> {
     pub position: usize,
-    length_m: f64,
+    length_m: D,
     section_m2: f64,
     material: Material<D>,
     terms: Vec<RubberTerm<D>>,
@@ -57,16 +58,22 @@ impl Strip {
         numbers: impl Iterator<Item = (StripNumber, D)>,
         effects: &[Effect<D>],
     ) -> StripRubber<D> {
-        let material = self.spec.material.map(D::constant);
-        let material = numbers.fold(material, |material, (which, value)| put(material, which, value));
+        let mut material = self.spec.material.map(D::constant);
+        let mut length_m = D::constant(self.spec.length_m);
+        for (which, value) in numbers {
+            match which {
+                StripNumber::Length => length_m = value,
+                of_law => material = put(material, of_law, value),
+            }
+        }
         let terms: Vec<RubberTerm<D>> = effects.iter().filter_map(term).collect();
         let shear_pa = terms.iter().fold(material.shear_modulus_pa(), |sum, term| sum + term.shear_modulus_pa());
-        let stiffness_n_m = shear_pa * (3.0 * self.spec.section_m2 / self.spec.length_m);
+        let stiffness_n_m = shear_pa * (3.0 * self.spec.section_m2) / length_m;
         let relaxing = effects.iter().filter(|e| e.kind == Kind::Viscoelasticity);
         let branches = relaxing.flat_map(|e| branches(&e.values, stiffness_n_m));
         StripRubber {
             position: self.position,
-            length_m: self.spec.length_m,
+            length_m,
             section_m2: self.spec.section_m2,
             branches: branches.map(|branch| (branch, D::constant(0.0))).collect(),
             material,
@@ -129,7 +136,7 @@ impl<D: Scalar> StripRubber<D> {
 
     /// Elongation of the linear muscle that pulls as the relaxed strip does, m; zero while it is slack.
     fn elongation_m(&self, position_m: f64) -> D {
-        let stretch = D::constant(1.0 + (position_m / self.length_m).max(0.0));
+        let stretch = self.length_m.recip() * position_m.max(0.0) + 1.0;
         let shear_pa = self.material.shear_modulus_pa();
         let law_pa = self.material.uniaxial_pa(stretch);
         let stress_pa = self.terms.iter().fold(law_pa, |sum, term| sum + term.stress_pa(stretch, shear_pa));
