@@ -63,6 +63,7 @@ impl Case {
         for run in &runs {
             let mut conditions = condition_overrides(&self.scene, &run.run)?;
             conditions.extend(own_start(&self.scene, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
+            conditions.extend(self.chamber_number());
             let scene = match conditions.is_empty() {
                 true => self.scene.clone(),
                 false => {
@@ -73,6 +74,12 @@ impl Case {
             self.add_run(run, scene)?;
         }
         Ok(())
+    }
+
+    /// Chambers are numbered by their runs.
+    fn chamber_number(&self) -> Option<Override> {
+        self.scene.file.chamber.as_ref()?;
+        Override::parse(&format!("chamber.number={}", self.runs.len() + 1)).ok()
     }
 
     fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
@@ -173,46 +180,6 @@ impl Case {
         self.notes.extend(absent.map(|(c, _)| format!("{}: no run recorded it; the channel is left out", c.column)));
         keep_those(&mut self.channels, &is_there);
         self.runs.iter_mut().for_each(|r| keep_those(&mut r.measured, &is_there));
-    }
-
-    /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
-    fn seal(&mut self) {
-        if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
-            return;
-        }
-        self.runs.iter_mut().for_each(|r| r.is_sealed = false);
-        if self.runs.len() > 1 {
-            if let Some(last) = self.runs.last_mut() {
-                last.is_sealed = true;
-            }
-            return;
-        }
-        self.notes.push("one run only: its last third is held back".to_owned());
-        let cut = self.runs[0].times_s().len() * 2 / 3;
-        self.seal_from(cut);
-    }
-
-    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
-    pub fn seal_from(&mut self, cut: usize) {
-        let mut sealed = self.runs[0].clone();
-        let cut = cut.min(sealed.times_s().len());
-        self.runs[0].keep(0..cut);
-        self.runs[0].is_sealed = false;
-        sealed.open_part = Some(sealed.measured.clone());
-        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
-        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
-        sealed.is_sealed = true;
-        self.runs.truncate(1);
-        self.runs.push(sealed);
-    }
-}
-
-impl CaseRun {
-    fn keep(&mut self, range: std::ops::Range<usize>) {
-        let end = self.lead_in + range.end;
-        self.drive.times_s.truncate(end);
-        self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
-        self.measured.iter_mut().for_each(|m| m.truncate(range.end));
     }
 }
 

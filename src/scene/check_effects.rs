@@ -86,7 +86,9 @@ fn on_standalone(scene: &SceneFile, effect: &Effect<f64>) -> Option<Result<(), (
     {
         return match effect.element.index {
             0 => Some(Ok(())),
-            _ => refuse("there is one strip, or one chamber", "leave the number out of `element`"),
+            // Of another chamber ([chamber] number): a file may hold what was found of several.
+            _ if scene.chamber.is_some() => Some(Ok(())),
+            _ => refuse("there is one strip", "leave the number out of `element`"),
         };
     }
     if scene.strip.is_some() {

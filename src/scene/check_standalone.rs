@@ -68,6 +68,7 @@ fn check_strip(scene: &SceneFile, strip: &StripSpec, place: &Place) -> Result<()
 fn check_chamber(chamber: &ChamberSpec, place: &Place) -> Result<(), SceneError> {
     place.positive("ambient_pressure_pa", chamber.ambient_pressure_pa)?;
     place.finite("start_pressure_pa", chamber.start_pressure_pa)?;
+    place.positive("number", chamber.number as f64)?;
     if chamber.start_pressure_pa + chamber.zero_pa() > 0.0 {
         return Ok(());
     }

@@ -49,6 +49,9 @@ pub struct ChamberSpec {
     /// Absolute pressure of the surroundings, Pa.
     #[serde(default = "atmospheric_pa")]
     pub ambient_pressure_pa: f64,
+    /// Which of several chambers it is, counted from 1: an effect on `line_2` is the second's alone. A diagnosis numbers them by run.
+    #[serde(default = "first", skip_serializing_if = "is_first")]
+    pub number: usize,
 }
 
 /// Where a pressure counts from.
@@ -70,6 +73,14 @@ impl ChamberSpec {
             PressureScale::Absolute => 0.0,
         }
     }
+}
+
+fn first() -> usize {
+    1
+}
+
+fn is_first(number: &usize) -> bool {
+    *number == 1
 }
 
 fn atmospheric_pa() -> f64 {

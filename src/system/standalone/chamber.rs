@@ -39,7 +39,8 @@ impl Chamber {
         let scene = D::constant(self.spec.start_pressure_pa);
         let start = numbers.last().map_or(scene, |(ChamberNumber::Start, value)| value);
         let mut leak = GasLeak::none();
-        for effect in effects {
+        let is_own = |e: &&Effect<D>| !e.element.is_numbered || e.element.index + 1 == self.spec.number;
+        for effect in effects.iter().filter(is_own) {
             match effect.kind {
                 Kind::ChamberLeak => leak.rate_1_s += effect.values[0],
                 Kind::ChamberGap => leak.laminar_1_s += effect.values[0],
@@ -74,7 +75,7 @@ mod tests {
     use crate::scene::PressureScale;
 
     fn chamber(reads: PressureScale) -> Chamber {
-        Chamber { spec: ChamberSpec { start_pressure_pa: 7e5, reads, ambient_pressure_pa: 1e5 } }
+        Chamber { spec: ChamberSpec { start_pressure_pa: 7e5, reads, ambient_pressure_pa: 1e5, number: 1 } }
     }
 
     #[test]
@@ -96,5 +97,19 @@ mod tests {
             let found = gas.pressure_pa(25.0) - end_pa;
             assert!((found / (left_pa * (-2.0f64).exp()) - 1.0).abs() < 1e-6, "{found}");
         }
+    }
+
+    #[test]
+    fn a_leak_of_another_chamber_leaves_this_one_tight() {
+        let pressure_pa = |element: &str| {
+            let text = format!("name = 'leak'\nelement = '{element}'\nrate_1_s = 0.1");
+            let leak = toml::from_str::<crate::effects::EffectTable>(&text).expect("TOML").effect().expect("right");
+            let mut gas = chamber(PressureScale::Gauge).begin(std::iter::empty(), &[leak]);
+            gas.pressure_pa(0.0);
+            gas.pressure_pa(10.0)
+        };
+        assert_eq!(pressure_pa("line_2"), 7e5);
+        assert_eq!(pressure_pa("line_1"), pressure_pa("line"));
+        assert!(pressure_pa("line") < 3e5);
     }
 }
