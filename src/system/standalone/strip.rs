@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_force_is_that_of_the_law_and_never_a_push() {
-        let mut rubber = strip().begin(std::iter::empty(), &[]);
+        let mut rubber = strip().begin::<f64>(std::iter::empty(), &[]);
         assert_eq!(rubber.force_n(-0.01, 0.0), 0.0);
         // Twice the length: 2 C1 (2 - 1/4).
         assert!((rubber.force_n(L0, 1.0) / (A0 * 2e4 * 1.75) - 1.0).abs() < 1e-12);
