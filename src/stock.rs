@@ -46,12 +46,16 @@ pub const FILES: &[(&str, &[u8])] = carried![
     "scenes/pressure_muscle.toml",
     "scenes/tendon_sheath.toml",
     "scenes/driven_axis.toml",
+    "scenes/tensile_test.toml",
+    "scenes/closed_chamber.toml",
+    "scenes/tendon_catheter.toml",
     "scenes/scene.schema.json",
     "models/antagonistic_pulley.urdf",
     "models/bending_catheter.urdf",
     "models/bending_catheter_strip.stl",
     "models/bending_catheter_tube.stl",
     "models/muscle_bench.urdf",
+    "models/tendon_catheter.urdf",
 ];
 
 /// Names of the stock scenes, `muscle_bench` first.

@@ -113,3 +113,33 @@ fn val_two_seals_at_once_are_no_single_law() {
     let d = answer(load(&folder));
     named(&d, "seal_friction", "syringe");
 }
+
+#[test]
+fn val_another_rubber_law_is_named_from_one_pull() {
+    for (name, share) in [("silicone_ecoflex_0030", 0.1), ("silicone_dragon_skin_30", 0.5)] {
+        let Some(folder) = real(name) else { continue };
+        let d = answer(load(&folder));
+        named(&d, "rubber_law", "muscle");
+        let force = d.fit.channels["force_n"];
+        assert!(force.rmse_corrected < share * force.rmse_baseline, "{name}: {force:?}");
+    }
+}
+
+#[test]
+fn val_relaxation_of_a_held_strip_is_named() {
+    let Some(folder) = real("vhb4910_relaxation") else { return };
+    let d = answer(load(&folder));
+    assert!(named(&d, "viscoelasticity", "muscle").parameters["decades"].value > 0.0, "{:?}", d.effects);
+    let force = d.fit.channels["force_n"];
+    // Three branches beside a neo-Hookean law leave 0.064 N.
+    assert!(force.rmse_corrected < 0.067, "{force:?}");
+}
+
+#[test]
+fn val_a_late_tip_of_a_catheter_is_named() {
+    let Some(folder) = real("catheter_tendon_multisine") else { return };
+    let d = answer(load(&folder));
+    named(&d, "sensor_lag", "sensor");
+    let tip = d.fit.channels["tip_x_mm"];
+    assert!(tip.rmse_corrected < 0.5 * tip.rmse_baseline, "{tip:?}");
+}

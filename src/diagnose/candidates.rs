@@ -43,11 +43,13 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         }
         ElementKind::Mechanism => 1,
         ElementKind::Syringe if file.axis.is_some() => 1,
+        ElementKind::Muscle if file.strip.is_some() => 1,
+        ElementKind::Line if file.chamber.is_some() => chambers(case),
         ElementKind::Cable => file.cable.len(),
         _ => file.muscle.len(),
     };
     let mut placed: Vec<Placed> = (0..count).map(|i| on(spec.element, i, count, None)).collect();
-    if count > 1 && IN_ALL.contains(&spec.kind) {
+    if count > 1 && (IN_ALL.contains(&spec.kind) || file.chamber.is_some()) {
         placed.push(on(spec.element, 0, 1, None));
     }
     if spec.kind == Kind::GravityLoad && file.cable.is_empty() {
@@ -55,6 +57,12 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         placed = (0..file.muscle.len()).map(|i| on(ElementKind::Muscle, i, file.muscle.len(), None)).collect();
     }
     placed
+}
+
+/// How many chambers were recorded: each run may be another's.
+fn chambers(case: &Case) -> usize {
+    let numbers = case.runs.iter().filter_map(|r| r.scene.file.chamber.as_ref()).map(|c| c.number);
+    numbers.max().unwrap_or(1)
 }
 
 /// Whether the scene takes the effect: the checks of a scene file decide.
@@ -101,6 +109,7 @@ fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
         Kind::ExternalContact => with(&levels(case, "", std::f64::consts::PI / 180.0).unwrap_or_else(|| vec![0.6])),
         Kind::NotchClosure => with(&[0.15, 0.25, 0.35]),
         Kind::BearingFriction => with(&[0.01, 0.05]),
+        Kind::RubberOgden => with(&[-2.0, 4.0, 8.0]),
         _ => vec![typical],
     }
 }

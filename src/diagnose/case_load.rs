@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::effects::Effect;
-use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs};
+use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs, own_start};
 use crate::recording::{Recording, RecordingSet, Role, RunUse, strays};
 use crate::scene::{CalibrateSpec, Override, Scene};
 use crate::system::{Twin, TwinRun};
@@ -16,6 +16,8 @@ use super::thin::thin;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
 const LEAST_INTERVAL_S: f64 = 0.01;
+/// So much of a recording that begins in motion is not compared, s: several times as long as a slender rod swings or a sensor lags.
+const BEGINNING_S: f64 = 0.2;
 
 impl Case {
     /// Reads the folders; all must be of one scene and have the same channels.
@@ -72,7 +74,9 @@ impl Case {
         let runs = load_runs(set, &set.runs, &mut |n| notes.push(n))?;
         self.notes.extend(notes);
         for run in &runs {
-            let conditions = condition_overrides(&self.scene, &run.run)?;
+            let mut conditions = condition_overrides(&self.scene, &run.run)?;
+            conditions.extend(own_start(&self.scene, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
+            conditions.extend(self.chamber_number());
             let scene = match conditions.is_empty() {
                 true => self.scene.clone(),
                 false => {
@@ -83,6 +87,12 @@ impl Case {
             self.add_run(run, scene)?;
         }
         Ok(())
+    }
+
+    /// Chambers are numbered by their runs.
+    fn chamber_number(&self) -> Option<Override> {
+        self.scene.file.chamber.as_ref()?;
+        Override::parse(&format!("chamber.number={}", self.runs.len() + 1)).ok()
     }
 
     fn add_run(&mut self, run: &RecordedRun, scene: Scene) -> Result<(), DiagnoseError> {
@@ -98,7 +108,7 @@ impl Case {
             Some(channel) => at_times(&times_s, recording.time_s(), &channel.values),
             None => vec![f64::NAN; times_s.len()],
         });
-        let measured = measured.collect();
+        let measured = self.without_beginning(measured.collect(), &times_s);
         let mut drive = TwinRun { times_s, inputs, plan: None };
         let lead_in = self.lead_in(&mut drive);
         self.runs.push(CaseRun {
@@ -113,6 +123,15 @@ impl Case {
             lead_in,
         });
         Ok(())
+    }
+
+    /// Leaves out the first moments of a recording that begins in motion: they depend on what was before them.
+    fn without_beginning(&self, mut measured: Vec<Vec<f64>>, times_s: &[f64]) -> Vec<Vec<f64>> {
+        if self.scene.file.simulation.recorded_in_motion {
+            let count = times_s.iter().take_while(|t| **t < times_s[0] + BEGINNING_S).count();
+            measured.iter_mut().for_each(|m| m[..count].fill(f64::NAN));
+        }
+        measured
     }
 
     /// Lets a run that does not begin at rest come to where it begins. Returns how many instants.
@@ -174,46 +193,6 @@ impl Case {
         self.notes.extend(absent.map(|(c, _)| format!("{}: no run recorded it; the channel is left out", c.column)));
         keep_those(&mut self.channels, &is_there);
         self.runs.iter_mut().for_each(|r| keep_those(&mut r.measured, &is_there));
-    }
-
-    /// Holds the last run back unless the recordings say which; of a single run its last third is cut off.
-    fn seal(&mut self) {
-        if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
-            return;
-        }
-        self.runs.iter_mut().for_each(|r| r.is_sealed = false);
-        if self.runs.len() > 1 {
-            if let Some(last) = self.runs.last_mut() {
-                last.is_sealed = true;
-            }
-            return;
-        }
-        self.notes.push("one run only: its last third is held back".to_owned());
-        let cut = self.runs[0].times_s().len() * 2 / 3;
-        self.seal_from(cut);
-    }
-
-    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
-    pub fn seal_from(&mut self, cut: usize) {
-        let mut sealed = self.runs[0].clone();
-        let cut = cut.min(sealed.times_s().len());
-        self.runs[0].keep(0..cut);
-        self.runs[0].is_sealed = false;
-        sealed.open_part = Some(sealed.measured.clone());
-        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
-        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
-        sealed.is_sealed = true;
-        self.runs.truncate(1);
-        self.runs.push(sealed);
-    }
-}
-
-impl CaseRun {
-    fn keep(&mut self, range: std::ops::Range<usize>) {
-        let end = self.lead_in + range.end;
-        self.drive.times_s.truncate(end);
-        self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
-        self.measured.iter_mut().for_each(|m| m.truncate(range.end));
     }
 }
 

@@ -57,6 +57,7 @@ pub mod programme;
 mod prove;
 mod refits;
 mod screening;
+mod seal;
 mod search;
 mod settle;
 mod side_by_side;

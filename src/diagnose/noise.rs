@@ -13,6 +13,9 @@ use crate::recording::{median, median_interval_s, noise_sd};
 /// Time over which the running mean is taken that separates misfit from noise, s, and its bounds in samples.
 const WINDOW_S: f64 = 0.5;
 const WINDOW: (usize, usize) = (21, 51);
+/// A recording of fewer windows than this moves as fast as what is taken for noise: there, and where no size is stated, noise is what
+/// neighbouring samples show of it.
+const LEAST_WINDOWS: f64 = 8.0;
 /// Longest time over which noise remembers itself, s, and its bounds in samples.
 const MEMORY_S: f64 = 0.1;
 const MEMORY: (f64, f64) = (2.0, 10.0);
@@ -90,11 +93,16 @@ impl Noise {
 /// when a running mean is taken off.
 pub fn estimate(case: &Case, residuals: &[Vec<Vec<f64>>]) -> Vec<Noise> {
     let interval_s = case.runs.first().and_then(|r| median_interval_s(r.times_s())).unwrap_or(0.01);
+    let lasts_s = |r: &CaseRun| r.times_s().last().zip(r.times_s().first()).map_or(0.0, |(end, start)| end - start);
+    let is_short = case.runs.iter().map(lasts_s).fold(0.0, f64::max) < LEAST_WINDOWS * WINDOW_S;
     (0..case.channels.len())
         .map(|c| {
+            let stated_sd = case.channels[c].stated_sd;
+            if is_short && stated_sd.is_none() {
+                return Noise::white(of_recording(case, c));
+            }
             let channel = on_own_clock(residuals, c);
             let runs: Vec<&[f64]> = channel.runs.iter().map(AsRef::as_ref).collect();
-            let stated_sd = case.channels[c].stated_sd;
             of_channel(&runs, channel.rows_per_sample * interval_s, stated_sd)
                 .unwrap_or_else(|| Noise::white(of_recording(case, c)))
         })

@@ -33,6 +33,10 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
 }
 
 fn inputs(case: &Case, found: &mut Preflight) {
+    // Time alone drives a scene without inputs.
+    if case.scene.file.input.is_empty() {
+        return;
+    }
     // The way to where a recording begins was not recorded.
     let recorded = |run: &CaseRun, input: usize| ends(&run.drive.inputs[input][run.lead_in..]);
     let moves = |run: &CaseRun| {

@@ -21,6 +21,10 @@ pub fn port_of(kind: Kind) -> PortOf {
     match kind {
         Kind::TrappedAir => at("line.compliance", Adds, &["pressure_pa"]),
         Kind::Leak => at("line.outflow", Adds, &["pressure_pa"]),
+        Kind::ChamberLeak | Kind::ChamberGap | Kind::ChamberOrifice => at("line.outflow", Adds, &["pressure_pa"]),
+        Kind::RubberYeoh | Kind::RubberMooneyRivlin | Kind::RubberOgden | Kind::RubberGent => {
+            at("muscle.wall", Adds, &["elongation_m"])
+        }
         Kind::LineRestriction => at("line.resistance", Scales, &["flow_m3_s"]),
         Kind::ThermalExpansion => at("line.outflow", Adds, &["time_s"]),
         Kind::PlungerBacklash => at("plunger", Adds, &["plunger_m"]),

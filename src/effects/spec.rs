@@ -11,6 +11,15 @@ pub enum Kind {
     ThermalExpansion,
     PlungerBacklash,
     SealFriction,
+    /// Gas that leaves a closed chamber: through a conductance, a gap, an orifice.
+    ChamberLeak,
+    ChamberGap,
+    ChamberOrifice,
+    /// What a rubber's law has beyond the neo-Hookean, in the shape of other laws.
+    RubberYeoh,
+    RubberMooneyRivlin,
+    RubberOgden,
+    RubberGent,
     Viscoelasticity,
     MullinsSoftening,
     CoilPreload,

@@ -26,7 +26,8 @@ pub struct EffectTable {
 }
 
 fn names(_: &mut SchemaGenerator) -> Schema {
-    let names: Vec<&str> = CATALOGUE.iter().map(|spec| spec.name).collect();
+    let mut names: Vec<&str> = CATALOGUE.iter().map(|spec| spec.name).collect();
+    names.dedup();
     json_schema!({ "type": "string", "enum": names })
 }
 

@@ -7,6 +7,7 @@ mod chain;
 mod chain_row;
 mod chain_solver;
 mod fluid;
+mod gas_leak;
 mod line;
 #[cfg(test)]
 mod transmission_line_tests;
@@ -15,4 +16,5 @@ pub use chain::{Chain, Port};
 pub use chain_row::{ChainRow, ChainRowMut};
 pub use chain_solver::ChainSolver;
 pub use fluid::Fluid;
+pub use gas_leak::GasLeak;
 pub use line::{Line, Syringe};

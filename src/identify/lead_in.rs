@@ -18,14 +18,17 @@ pub struct LeadIn {
     /// Share of the way at each of the times.
     shares: Vec<f64>,
     farthest_m: f64,
+    /// What is led there: `a plunger`.
+    input: &'static str,
 }
 
 impl LeadIn {
     /// The way to a scene's first input values (SI) at the time `start_s`; `None` for a run that begins at rest, or a scene
-    /// without plungers.
+    /// without plungers whose recordings are not said to begin in motion.
     pub fn before(scene: &Scene, start_s: f64, first: &[f64]) -> Option<Self> {
         let farthest_m = first.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        if scene.file.hydraulics.is_none() || farthest_m < AT_ZERO_M {
+        let has_plungers = scene.file.hydraulics.is_some();
+        if !(has_plungers || scene.file.simulation.recorded_in_motion) || farthest_m < AT_ZERO_M {
             return None;
         }
         let moving_s = farthest_m / SPEED_M_S;
@@ -36,6 +39,7 @@ impl LeadIn {
             times_s: (0..count).map(|i| start_s - total_s + at(i)).collect(),
             shares: (0..count).map(|i| (at(i) / moving_s).min(1.0)).collect(),
             farthest_m,
+            input: if has_plungers { "a plunger" } else { "an input" },
         })
     }
 
@@ -59,7 +63,8 @@ impl LeadIn {
     /// What a user should know of it.
     pub fn note(&self) -> String {
         format!(
-            "begins with a plunger at {:.3} mm: led there from zero, at {:.0} mm/s, before the recording",
+            "begins with {} at {:.3} mm: led there from zero, at {:.0} mm/s, before the recording",
+            self.input,
             1e3 * self.farthest_m,
             1e3 * SPEED_M_S
         )
@@ -69,6 +74,15 @@ impl LeadIn {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tendon_is_led_there_where_recordings_begin_in_motion() {
+        let catheter = Scene::load("tendon_catheter", &[]).expect("stock scene");
+        let way = LeadIn::before(&catheter, 0.0, &[2.0e-3]).expect("away from zero");
+        assert!(way.note().contains("begins with an input at 2.000 mm"), "{}", way.note());
+        let sheath = Scene::load("tendon_sheath", &[]).expect("stock scene");
+        assert_eq!(LeadIn::before(&sheath, 0.0, &[2.0]), None);
+    }
 
     #[test]
     fn a_plunger_is_led_to_where_the_recording_begins() {

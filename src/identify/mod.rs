@@ -5,9 +5,11 @@ mod fit;
 mod lead_in;
 mod levenberg_marquardt;
 pub mod loops;
+mod own_start;
 mod replay;
 
 pub use fit::{FitReport, FittedParameter, fit_rig_parameters};
 pub use lead_in::LeadIn;
 pub use levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise, minimise_with_slopes};
+pub use own_start::own_start;
 pub use replay::{IdentifyError, RecordedRun, check_channels, condition_overrides, lead_in, load_runs, replay};

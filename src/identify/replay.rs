@@ -6,7 +6,7 @@ use crate::recording::{
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
-use super::LeadIn;
+use super::{LeadIn, own_start};
 
 /// Why recordings cannot be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -132,7 +132,8 @@ pub fn replay(
     every: usize,
 ) -> Result<Recording, IdentifyError> {
     let plain = Scene::load(scene, overrides)?;
-    let conditions = condition_overrides(&plain, &run.run)?;
+    let mut conditions = condition_overrides(&plain, &run.run)?;
+    conditions.extend(own_start(&plain, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
     let scene = match conditions.is_empty() {
         true => plain,
         false => Scene::load(scene, &[overrides, &conditions].concat())?,

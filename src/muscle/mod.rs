@@ -27,7 +27,9 @@ mod coil;
 mod error;
 mod friction;
 mod material;
+mod rubber_term;
 mod section;
+mod strip;
 mod table;
 mod wall;
 
@@ -42,4 +44,5 @@ pub use coil::{Coil, SAFE_STRETCH, Stop, StopPush, YIELD_STRETCH, spring_rate};
 pub use error::MuscleError;
 pub use friction::{Friction, RateJacobian};
 pub use material::{Material, OgdenTerm};
+pub use rubber_term::RubberTerm;
 pub use wall::{ElongationRange, Wall, WallCondition, WallGeometry, WallState};

@@ -99,8 +99,10 @@ fn over_time(scene: &AffectedScene) -> Option<Panel> {
     })
 }
 
+/// Nothing where the input is time itself, as on a scene that nothing drives.
 fn over_input(scene: &AffectedScene) -> Option<Panel> {
-    Some(Panel { x_label: axis_label(&scene.input.0), ..output_over(&scene.input.1, scene) })
+    (scene.input.0 != "time_s")
+        .then(|| Panel { x_label: axis_label(&scene.input.0), ..output_over(&scene.input.1, scene) })
 }
 
 /// Lost fluid moves along the stock curve or nearly so; a force more leaves it.

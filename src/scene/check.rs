@@ -5,9 +5,8 @@ use std::path::Path;
 use crate::recording::parse_column;
 
 use super::check_muscles::check_make;
-use super::{
-    AxisSpec, ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, OutputSpec, Program, Quantity, SceneError, SceneFile,
-};
+use super::check_standalone;
+use super::{ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, OutputSpec, Program, Quantity, SceneError, SceneFile};
 
 /// Collects where in the file a value stands.
 pub(super) struct Place<'a> {
@@ -51,7 +50,7 @@ impl Place<'_> {
         Err(self.error(format!("{key} = {value} must be finite"), format!("give {key} a number in SI units")))
     }
 
-    fn known(&self, key: &str, name: &str, known: &[&str]) -> Result<(), SceneError> {
+    pub fn known(&self, key: &str, name: &str, known: &[&str]) -> Result<(), SceneError> {
         if known.contains(&name) {
             return Ok(());
         }
@@ -105,27 +104,13 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
         place.finite("force_n", load.force_n.unwrap_or(0.0))?;
         place.finite("torque_n_m", load.torque_n_m.unwrap_or(0.0))?;
     }
-    if let Some(axis) = &scene.axis {
-        check_axis(scene, axis, &at("[axis]".to_owned()))?;
-    }
+    check_standalone::check(scene, file)?;
     for calibrate in &scene.calibrate {
         check_range(calibrate.min, calibrate.max, &at(format!("[[calibrate]] \"{}\"", calibrate.key)))?;
     }
     check_outputs(scene, file)?;
     super::check_effects::check(scene, file)?;
     Ok(programs)
-}
-
-fn check_axis(scene: &SceneFile, axis: &AxisSpec, place: &Place) -> Result<(), SceneError> {
-    place.known("position_input", &axis.position_input, &input_names(scene))?;
-    if let Some(pressure) = &axis.pressure_input {
-        place.known("pressure_input", pressure, &input_names(scene))?;
-    }
-    place.not_negative("piston_area_m2", axis.piston_area_m2)?;
-    place.not_negative("mass_kg", axis.mass_kg)?;
-    place.not_negative("damping_n_s_m", axis.damping_n_s_m)?;
-    place.finite("offset_n", axis.offset_n)?;
-    place.positive("derivative_window_s", axis.derivative_window_s)
 }
 
 fn check_range(min: f64, max: f64, place: &Place) -> Result<(), SceneError> {
@@ -138,7 +123,7 @@ fn check_range(min: f64, max: f64, place: &Place) -> Result<(), SceneError> {
     ))
 }
 
-fn input_names(scene: &SceneFile) -> Vec<&str> {
+pub(super) fn input_names(scene: &SceneFile) -> Vec<&str> {
     scene.input.iter().map(|i| i.channel.as_str()).collect()
 }
 
@@ -258,9 +243,14 @@ fn check_muscle(scene: &SceneFile, muscle: &MuscleSpec, place: &Place) -> Result
 /// SI unit of each quantity; positions of joints may be angles or lengths.
 fn units_of(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::Elongation | Quantity::BodyX | Quantity::BodyY | Quantity::BodyZ => &["m"],
-        Quantity::SyringePressure | Quantity::MusclePressure => &["pa"],
-        Quantity::Pull | Quantity::Tension | Quantity::AxisForce => &["n"],
+        Quantity::Elongation
+        | Quantity::BodyX
+        | Quantity::BodyY
+        | Quantity::BodyZ
+        | Quantity::ArcTipX
+        | Quantity::ArcTipZ => &["m"],
+        Quantity::SyringePressure | Quantity::MusclePressure | Quantity::ChamberPressure => &["pa"],
+        Quantity::Pull | Quantity::Tension | Quantity::AxisForce | Quantity::StripForce => &["n"],
         Quantity::JointPosition => &["rad", "m"],
     }
 }

@@ -41,6 +41,9 @@ fn count(scene: &SceneFile, kind: ElementKind) -> usize {
 
 fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)> {
     let element = effect.element;
+    if let Some(answer) = on_standalone(scene, effect) {
+        return answer.and_then(|()| check_channel(scene, effect));
+    }
     let count = count(scene, element.kind);
     let on_axis = scene.axis.is_some() && matches!(effect.kind, Kind::SealFriction);
     if element.index >= count && !on_axis {
@@ -66,6 +69,47 @@ fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)
     if let Some(refusal) = without_effect(scene, effect) {
         return Err(refusal);
     }
+    check_channel(scene, effect)
+}
+
+/// What a strip or a chamber says to an effect: it has effects of its own; those of sensors are everywhere. `None` leaves the
+/// answer to what follows.
+fn on_standalone(scene: &SceneFile, effect: &Effect<f64>) -> Option<Result<(), (String, String)>> {
+    let of_rubber =
+        matches!(effect.kind, Kind::RubberYeoh | Kind::RubberMooneyRivlin | Kind::RubberOgden | Kind::RubberGent);
+    let of_gas = matches!(effect.kind, Kind::ChamberLeak | Kind::ChamberGap | Kind::ChamberOrifice);
+    let refuse = |what: &str, remedy: &str| Some(Err((what.to_owned(), remedy.to_owned())));
+    if effect.element.kind == ElementKind::Sensor {
+        return None;
+    }
+    if scene.strip.is_some() && (of_rubber || effect.kind == Kind::Viscoelasticity) || scene.chamber.is_some() && of_gas
+    {
+        return match effect.element.index {
+            0 => Some(Ok(())),
+            // Of another chamber ([chamber] number): a file may hold what was found of several.
+            _ if scene.chamber.is_some() => Some(Ok(())),
+            _ => refuse("there is one strip", "leave the number out of `element`"),
+        };
+    }
+    if scene.strip.is_some() {
+        return refuse("it is none of a [strip]", "a strip has viscoelasticity, rubber_law and the effects of sensors");
+    }
+    if scene.chamber.is_some() {
+        return refuse(
+            "it is none of a [chamber]",
+            "a chamber has leak (rate_1_s, laminar_rate_1_s, orifice_rate_1_s) and the effects of sensors",
+        );
+    }
+    if of_rubber {
+        return refuse("it needs a [strip]", "a muscle's wall has its law in [muscles.tube.material]: write it there");
+    }
+    if of_gas {
+        return refuse("it needs a [chamber]", "a leak of a line is given by conductance_m3_s_pa");
+    }
+    None
+}
+
+fn check_channel(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)> {
     if let Some(channel) = &effect.channel
         && !scene.output.iter().any(|o| o.channel == *channel)
     {

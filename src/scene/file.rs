@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file_channels::{CalibrateSpec, ConditionSpec, ExpectSpec, InputSpec, OutputSpec, ViewSpec};
 use super::file_muscles::{HydraulicsSpec, MuscleSpec, MusclesSpec};
+use super::file_standalone::{AxisSpec, ChamberSpec, StripSpec};
 use crate::effects::EffectTable;
 use crate::laws::LawTable;
 use crate::mechanism::{MechanismSpec, RouteSpec};
@@ -43,6 +44,13 @@ pub struct SceneFile {
     /// An axis moved at a recorded position that answers with a force; stands alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<AxisSpec>,
+    /// A strip of rubber pulled by a testing machine; stands alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strip: Option<StripSpec>,
+    /// Gas in a closed volume; stands alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chamber: Option<ChamberSpec>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub input: Vec<InputSpec>,
     pub output: Vec<OutputSpec>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -67,6 +75,10 @@ pub struct SimulationSpec {
     pub substeps: usize,
     /// Interval of the recording, s.
     pub output_interval_s: f64,
+    /// Recordings are pieces of longer runs: inputs are led from zero to where a recording begins, and its first moments, which
+    /// depend on what was before them, are not compared.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub recorded_in_motion: bool,
 }
 
 /// A cable: pulls when stretched, never pushes.
@@ -107,23 +119,4 @@ pub struct LoadSpec {
     pub force_n: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_n_m: Option<f64>,
-}
-
-/// `F = F0 + A p + c dx/dt + m d²x/dt²`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AxisSpec {
-    pub position_input: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pressure_input: Option<String>,
-    #[serde(default)]
-    pub piston_area_m2: f64,
-    #[serde(default)]
-    pub mass_kg: f64,
-    #[serde(default)]
-    pub damping_n_s_m: f64,
-    #[serde(default)]
-    pub offset_n: f64,
-    /// Width of the window over which speed and acceleration are taken from the recorded position, s.
-    pub derivative_window_s: f64,
 }

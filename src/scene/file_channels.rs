@@ -24,6 +24,9 @@ pub struct OutputSpec {
     /// The muscle, cable, joint or body whose quantity it is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of: Vec<String>,
+    /// Length of the rod that `of` bends, m; for `arc_tip_x` and `arc_tip_z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arc_length_m: Option<f64>,
     /// A recording's zero is its first sample: a comparison shifts the simulation to begin where the recording does.
     #[serde(default)]
     pub counts_from_start: bool,
@@ -51,6 +54,13 @@ pub enum Quantity {
     BodyZ,
     /// Force of the axis.
     AxisForce,
+    /// Force of the strip on its clamps.
+    StripForce,
+    /// Pressure of the closed chamber.
+    ChamberPressure,
+    /// Tip of a slender rod that a joint's angle bends to an arc of constant curvature: sideways, along.
+    ArcTipX,
+    ArcTipZ,
 }
 
 /// A known condition of a run: a key of `[[run]]` in recordings.toml and the scene keys it sets.

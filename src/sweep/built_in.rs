@@ -24,6 +24,7 @@ pub fn hidden_outputs(figure: Figure, of: &str) -> Vec<OutputSpec> {
         channel: channel(*quantity, of),
         quantity: *quantity,
         of: vec![of.to_owned()],
+        arc_length_m: None,
         counts_from_start: false,
     };
     quantities.iter().map(output).collect()

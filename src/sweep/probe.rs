@@ -149,6 +149,7 @@ mod tests {
             channel: "x_m".to_owned(),
             quantity: Quantity::JointPosition,
             of: vec![scene.file.muscle[0].joint.clone().expect("a joint")],
+            arc_length_m: None,
             counts_from_start: false,
         }];
         scene

@@ -6,9 +6,10 @@ use crate::mechanism::{Coordinate, CoordinateKind};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
-use super::axis::{Axis, AxisFriction, AxisNumbers};
+use super::arc::ArcSide;
 use super::laws::LawSensor;
 use super::plant::Drive;
+use super::standalone::{Answering, Standalone};
 use super::twin::sensor;
 use super::{Simulation, SystemError};
 
@@ -27,7 +28,9 @@ enum Reader {
         axis: usize,
         frame: Option<usize>,
     },
-    Axis(Axis, AxisFriction<f64>),
+    Standalone(Box<Answering<f64>>),
+    /// Tip of a rod bent to an arc by the joints' angle: its length, m, and whether sideways or along.
+    ArcTip(Vec<usize>, f64, ArcSide),
     /// Elongation of a displacement model: the pseudo-input that carries it.
     Displacement(usize),
 }
@@ -118,11 +121,8 @@ impl Reader {
                 let position = poses[*body].translation_m;
                 frame.map_or(position, |f| poses[f].to_local(position))[*axis]
             }),
-            Self::Axis(axis, friction) => {
-                let motion = axis.motion_at(|i, t| simulation.inputs[i].value(t), simulation.time_s);
-                let numbers: AxisNumbers<f64> = axis.numbers();
-                numbers.force_n(&motion) + friction.force_n(&motion)
-            }
+            Self::Standalone(element) => element.show(|i, t| simulation.inputs[i].value(t), simulation.time_s),
+            Self::ArcTip(joints, length_m, side) => side.of_tip(*length_m, joints.iter().map(|&j| state.y()[j]).sum()),
             Self::Displacement(input) => spans[*input].value,
         }
     }
@@ -158,10 +158,12 @@ fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
         Quantity::BodyX => body(simulation, output, 0)?,
         Quantity::BodyY => body(simulation, output, 1)?,
         Quantity::BodyZ => body(simulation, output, 2)?,
-        Quantity::AxisForce => {
-            let axis = axis(scene).ok_or_else(|| no_such(scene, output, "an [axis]"))?;
-            Reader::Axis(axis, AxisFriction::of(&effects(scene)))
+        Quantity::AxisForce | Quantity::StripForce | Quantity::ChamberPressure => {
+            let element =
+                Standalone::of(scene).ok_or_else(|| no_such(scene, output, "an element that stands alone"))?;
+            Reader::Standalone(Box::new(element.begin(std::iter::empty(), &effects(scene))))
         }
+        Quantity::ArcTipX | Quantity::ArcTipZ => arc_tip(simulation, output)?,
     })
 }
 
@@ -180,12 +182,16 @@ fn sensors(scene: &Scene, channel: &str) -> Vec<SensorHistory<f64>> {
     own.filter_map(|e| sensor(&e)).map(SensorHistory::new).collect()
 }
 
-pub(super) fn axis(scene: &Scene) -> Option<Axis> {
-    let spec = scene.file.axis.clone()?;
-    let input = |name: &str| scene.file.input.iter().position(|i| i.channel == name);
-    let position = input(&spec.position_input)?;
-    let pressure = spec.pressure_input.as_deref().and_then(input);
-    Some(Axis { spec, position, pressure })
+/// The tip of a rod that a joint bends.
+fn arc_tip(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, SystemError> {
+    let coordinates: Vec<&Coordinate> = simulation.mechanism.iter().flat_map(|m| m.coordinates()).collect();
+    let turns = |name: &String| coordinates.iter().position(|c| c.name == *name && c.kind == CoordinateKind::Angle);
+    let found: Option<Vec<usize>> = output.of.iter().map(turns).collect();
+    let side = ArcSide::of(output.quantity);
+    match (found, output.arc_length_m, side) {
+        (Some(found), Some(length_m), Some(side)) if !found.is_empty() => Ok(Reader::ArcTip(found, length_m, side)),
+        _ => Err(no_such(&simulation.scene, output, "these turning joints")),
+    }
 }
 
 fn joints(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, SystemError> {

@@ -33,7 +33,7 @@ pub struct Influence {
     /// Where the effect sits, and with which numbers at the first size.
     pub effect: Effect<f64>,
     pub time_s: Vec<f64>,
-    /// Column of the first input with its values, in its unit.
+    /// Column of the first input with its values, in its unit; the time where nothing drives the scene.
     pub input: (String, Vec<f64>),
     /// The effect's first number at each size.
     pub sizes: Vec<f64>,
@@ -157,9 +157,11 @@ impl<'a> Stage<'a> {
     }
 
     fn input(&self) -> Result<(String, Vec<f64>), SystemError> {
-        let column = self.scene.file.input[0].channel.clone();
-        let unit = parse_column(&column)?.unit;
-        Ok((column, self.run.inputs[0].iter().map(|&x| unit.from_si(x)).collect()))
+        let Some((input, values)) = self.scene.file.input.first().zip(self.run.inputs.first()) else {
+            return Ok(("time_s".to_owned(), self.run.times_s.clone()));
+        };
+        let unit = parse_column(&input.channel)?.unit;
+        Ok((input.channel.clone(), values.iter().map(|&x| unit.from_si(x)).collect()))
     }
 }
 
@@ -220,5 +222,12 @@ mod tests {
     fn a_scene_without_the_element_shows_nothing() {
         assert_eq!(of("muscle_bench", Kind::CableSlack), None);
         assert!(of("driven_axis", Kind::SealFriction).is_some());
+    }
+
+    #[test]
+    fn a_scene_that_nothing_drives_is_shown_over_time() {
+        let leak = of("closed_chamber", Kind::ChamberLeak).expect("a chamber leaks");
+        assert_eq!(leak.input, ("time_s".to_owned(), leak.time_s.clone()));
+        assert!(greatest_changes(&leak.output)[0] > 10.0, "{:?}", greatest_changes(&leak.output));
     }
 }

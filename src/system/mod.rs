@@ -20,7 +20,7 @@
 //! # }
 //! ```
 
-mod axis;
+mod arc;
 mod build;
 mod channels;
 mod contact;
@@ -47,12 +47,12 @@ mod rosenbrock;
 mod run;
 mod schedule;
 mod simulation;
+mod standalone;
 mod state;
 mod switching;
 mod tangents;
 mod twin;
 
-pub use axis::AxisNumber;
 pub use elastic::{Elastic, ElasticPoint};
 pub use energy::EnergyBook;
 pub use error::SystemError;
@@ -71,5 +71,6 @@ pub use rosenbrock::Stepper;
 pub use run::{Driver, RunError, record, record_driven, run};
 pub use schedule::Schedule;
 pub use simulation::Simulation;
+pub use standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber};
 pub use state::PlantState;
 pub use twin::{MuscleNumber, StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

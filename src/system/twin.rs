@@ -99,7 +99,7 @@ pub struct Twin {
     cable_names: Vec<String>,
     pretension_n: Vec<f64>,
     initial_load_n: Vec<f64>,
-    axis: Option<super::axis::Axis>,
+    standalone: Option<super::standalone::Standalone>,
     /// Greatest step, s.
     pub step_s: f64,
 }
@@ -164,7 +164,7 @@ impl Twin {
             cable_names: bare.file.cable.iter().map(|c| c.name.clone()).collect(),
             pretension_n: bare.file.cable.iter().map(|c| c.pretension_n).collect(),
             initial_load_n: bare.makes.iter().map(|m| m.initial_load_n).collect(),
-            axis: super::channels::axis(&bare),
+            standalone: super::standalone::Standalone::of(&bare),
             step_s: GREATEST_STEP_S.min(STEP_ANGLE / fastest_rad_s(&lumped.plant)),
             plant: lumped.plant,
             state: lumped.state,
@@ -183,8 +183,8 @@ impl Twin {
 
     /// Simulates; returns each output at the run's times, in the unit of its column. `None` when it diverges.
     pub fn simulate<D: Scalar>(&self, run: &TwinRun, setting: &TwinSetting<D>) -> Option<Vec<Vec<D>>> {
-        if let Some(axis) = &self.axis {
-            return Some(output::axis_series(axis, &self.outputs, run, setting));
+        if let Some(element) = &self.standalone {
+            return Some(output::standalone_series(element, &self.outputs, run, setting));
         }
         let mut sensors = Sensors::new(&self.outputs, setting);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];

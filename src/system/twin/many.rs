@@ -29,7 +29,7 @@ impl Twin {
     /// Simulates every setting as [`Twin::simulate`] would, but together what can be: settings that differ in their sensors
     /// alone are simulated once, those that differ in numbers side by side, groups on all threads.
     pub fn simulate_many(&self, run: &TwinRun, settings: &[TwinSetting<f64>]) -> Vec<Outputs> {
-        if self.axis.is_some() {
+        if self.standalone.is_some() {
             return settings.par_iter().map(|setting| self.simulate(run, setting)).collect();
         }
         let mut bodies: Vec<TwinSetting<f64>> = Vec::with_capacity(settings.len());

@@ -2,15 +2,16 @@
 
 use crate::effects::{Effect, Kind, Sensor, SensorHistory};
 use crate::laws::Law;
-use crate::recording::parse_column;
+use crate::recording::{PiecewiseLinear, parse_column};
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
 use crate::system::PlantState;
 use crate::system::SystemError;
-use crate::system::axis::{Axis, AxisFriction, AxisNumbers};
+use crate::system::arc::ArcSide;
 use crate::system::channels::sensor_laws;
 use crate::system::laws::LawSensor;
 use crate::system::plant::{Drive, InputSpan, Plant};
+use crate::system::standalone::Standalone;
 
 use super::lump::Lumped;
 use super::{TwinParameter, TwinRun, TwinSetting};
@@ -25,7 +26,9 @@ enum Reader {
     Tension(usize),
     /// Coordinates and the share of each that is asked for.
     Joints(Vec<(usize, f64)>),
-    Axis,
+    Standalone,
+    /// The tip of a rod of a length that these coordinates bend.
+    ArcTip(Vec<(usize, f64)>, f64, ArcSide),
 }
 
 /// A channel with the SI units in one of its unit.
@@ -51,7 +54,10 @@ impl TwinOutput {
             },
             Reader::Tension(c) => plant.cable(*c, state, inputs, 0.0).2,
             Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y()[*i] * *share).sum(),
-            Reader::Axis => D::constant(f64::NAN),
+            Reader::Standalone => D::constant(f64::NAN),
+            Reader::ArcTip(parts, length_m, side) => {
+                side.of_tip(*length_m, parts.iter().map(|(i, share)| state.y()[*i] * *share).sum())
+            }
         };
         value / self.factor
     }
@@ -59,7 +65,7 @@ impl TwinOutput {
     /// The coordinates that it shows, with the share of each; none for anything but joints.
     pub fn joints(&self) -> &[(usize, f64)] {
         match &self.reader {
-            Reader::Joints(parts) => parts,
+            Reader::Joints(parts) | Reader::ArcTip(parts, ..) => parts,
             _ => &[],
         }
     }
@@ -76,7 +82,11 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
         Quantity::Pull => muscle.map(Reader::Pull),
         Quantity::Tension => scene.file.cable.iter().position(|c| c.name == of).map(Reader::Tension),
         Quantity::JointPosition => Some(Reader::Joints(joints(spec, lumped))),
-        Quantity::AxisForce => Some(Reader::Axis),
+        Quantity::AxisForce | Quantity::StripForce | Quantity::ChamberPressure => Some(Reader::Standalone),
+        Quantity::ArcTipX | Quantity::ArcTipZ => {
+            let side = ArcSide::of(spec.quantity);
+            side.zip(spec.arc_length_m).map(|(side, length_m)| Reader::ArcTip(joints(spec, lumped), length_m, side))
+        }
         Quantity::BodyX | Quantity::BodyY | Quantity::BodyZ => None,
     };
     let reader = reader.ok_or_else(|| SystemError::Name {
@@ -152,27 +162,27 @@ pub(in crate::system) fn sensor<D: Scalar>(effect: &Effect<D>) -> Option<Sensor<
     })
 }
 
-/// An axis answers algebraically but for its friction.
-pub(super) fn axis_series<D: Scalar>(
-    axis: &Axis,
+/// What an element that stands alone shows over a run.
+pub(super) fn standalone_series<D: Scalar>(
+    element: &Standalone,
     outputs: &[TwinOutput],
     run: &TwinRun,
     setting: &TwinSetting<D>,
 ) -> Vec<Vec<D>> {
-    let mut numbers: AxisNumbers<D> = axis.numbers();
-    for (parameter, value) in &setting.parameters {
-        if let TwinParameter::Axis(which) = parameter {
-            numbers.put(*which, *value);
-        }
-    }
-    let mut friction = AxisFriction::of(&setting.effects);
+    let numbers = setting.parameters.iter().filter_map(|(parameter, value)| match parameter {
+        TwinParameter::Standalone(which) => Some((*which, *value)),
+        _ => None,
+    });
+    let mut answering = element.begin(numbers, &setting.effects);
     let mut sensors = Sensors::new(outputs, setting);
-    let motion = axis.motion(&run.times_s, &run.inputs);
+    let lines: Vec<Option<PiecewiseLinear>> =
+        run.inputs.iter().map(|x| PiecewiseLinear::new(&run.times_s, x)).collect();
+    let input = |i: usize, t: f64| lines[i].as_ref().map_or(0.0, |line| line.value(t));
     let mut series = vec![Vec::with_capacity(run.times_s.len()); outputs.len()];
-    for (k, &time) in run.times_s.iter().enumerate() {
-        let force = numbers.force_n(&motion[k]) + friction.force_n(&motion[k]);
+    for &time in &run.times_s {
+        let value = answering.show(input, time);
         for (output, series) in outputs.iter().zip(&mut series) {
-            series.push(sensors.show(output, time, force / output.factor));
+            series.push(sensors.show(output, time, value / output.factor));
         }
     }
     series

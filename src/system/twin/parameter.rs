@@ -6,7 +6,8 @@ use crate::muscle::Material;
 use crate::scalar::Scalar;
 use crate::scene::{MuscleSpec, muscles_set_by};
 use crate::system::plant::{Drive, MusclePlant, Plant};
-use crate::system::{AxisNumber, Elastic};
+use crate::system::standalone::Standalone;
+use crate::system::{Elastic, StandaloneNumber};
 
 use super::Twin;
 
@@ -18,7 +19,7 @@ pub enum TwinParameter {
     CableStiffness(usize),
     /// Coordinates whose springs it sets, each with the share of one hinge in the coordinate.
     JointStiffness(Vec<(usize, f64)>),
-    Axis(AxisNumber),
+    Standalone(StandaloneNumber),
     /// A parameter of a law of the scene: both by index.
     Law(usize, usize),
     /// A parameter of a law on what a channel shows: output, law on it, parameter.
@@ -69,13 +70,10 @@ pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
     if let Some((number, muscles)) = muscle_number(&twin.muscles, key) {
         return Some(P::Muscle(number, muscles));
     }
-    Some(match key {
-        "axis.piston_area_m2" => P::Axis(AxisNumber::PistonArea),
-        "axis.damping_n_s_m" => P::Axis(AxisNumber::Damping),
-        "axis.offset_n" => P::Axis(AxisNumber::Offset),
-        "axis.mass_kg" => P::Axis(AxisNumber::Mass),
-        _ => return resolve_named(twin, key),
-    })
+    if let Some(number) = Standalone::number(key) {
+        return Some(P::Standalone(number));
+    }
+    resolve_named(twin, key)
 }
 
 /// Keys with a name or a number in them: cables, joint springs.
@@ -117,7 +115,7 @@ impl TwinParameter {
             Self::JointStiffness(springs) => {
                 springs.iter().for_each(|(i, share)| plant.coordinates.stiffness[*i] = value * *share);
             }
-            Self::Axis(_) | Self::SensorLaw(..) => {}
+            Self::Standalone(_) | Self::SensorLaw(..) => {}
             Self::Law(law, parameter) => {
                 if let Some(laws) = &mut plant.laws {
                     laws.set(*law, *parameter, value);

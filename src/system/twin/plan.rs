@@ -29,7 +29,7 @@ impl Twin {
     /// The plan is made at one setting and then kept for others nearby: a response that is planned anew at every
     /// setting would not be smooth. `None` when the simulation diverges.
     pub fn plan(&self, run: &TwinRun, setting: &TwinSetting<f64>, tolerance: &[Option<f64>]) -> Option<StepPlan> {
-        if self.axis.is_some() {
+        if self.standalone.is_some() {
             return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
         }
         let (plant, state) = self.prepare(setting);

@@ -15,7 +15,7 @@ impl Twin {
     /// Such a joint lies where its last swing left it, or follows one cable through the other's slack: the smallest difference decides
     /// which, and no model can foretell it. `None` when the simulation diverges.
     pub fn unheld(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> Option<Vec<Vec<bool>>> {
-        if self.axis.is_some() {
+        if self.standalone.is_some() {
             return Some(vec![vec![false; run.times_s.len()]; self.outputs.len()]);
         }
         let mut holds: Vec<Vec<f64>> = Vec::with_capacity(run.times_s.len());

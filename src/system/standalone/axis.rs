@@ -1,15 +1,14 @@
 //! An axis moved at a recorded position that answers with a force.
 
 use crate::effects::{Effect, Kind};
-use crate::recording::PiecewiseLinear;
 use crate::scalar::Scalar;
-use crate::scene::AxisSpec;
+use crate::scene::{AxisSpec, Scene};
 
 /// `F = F0 + A p + c v + m a`, with `v` and `a` as central differences of the recorded position over a window `w`:
 /// `v = (x(t + w/2) - x(t - w/2))/w`, `a = (x(t + w) - 2 x(t) + x(t - w))/w²`. A window of a few samples keeps the
 /// position's quantisation out of them.
 #[derive(Clone, Debug)]
-pub(super) struct Axis {
+pub(in crate::system) struct Axis {
     pub spec: AxisSpec,
     pub position: usize,
     pub pressure: Option<usize>,
@@ -17,7 +16,7 @@ pub(super) struct Axis {
 
 /// The numbers of an axis, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct AxisNumbers<D> {
+pub(in crate::system) struct AxisNumbers<D> {
     piston_area_m2: D,
     mass_kg: D,
     damping_n_s_m: D,
@@ -35,7 +34,7 @@ pub enum AxisNumber {
 
 /// The axis at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct AxisMotion {
+pub(in crate::system) struct AxisMotion {
     pub position_m: f64,
     pub speed_m_s: f64,
     pub acceleration_m_s2: f64,
@@ -43,6 +42,15 @@ pub(super) struct AxisMotion {
 }
 
 impl Axis {
+    /// That of a scene, if it has one.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let spec = scene.file.axis.clone()?;
+        let input = |name: &str| scene.file.input.iter().position(|i| i.channel == name);
+        let position = input(&spec.position_input)?;
+        let pressure = spec.pressure_input.as_deref().and_then(input);
+        Some(Self { spec, position, pressure })
+    }
+
     /// The scene's numbers.
     pub fn numbers<D: Scalar>(&self) -> AxisNumbers<D> {
         AxisNumbers {
@@ -63,13 +71,6 @@ impl Axis {
             acceleration_m_s2: (x(time_s + w) - 2.0 * x(time_s) + x(time_s - w)) / (w * w),
             pressure_pa: self.pressure.map_or(0.0, |i| input(i, time_s)),
         }
-    }
-
-    /// The motion at sampled times.
-    pub fn motion(&self, times_s: &[f64], inputs: &[Vec<f64>]) -> Vec<AxisMotion> {
-        let lines: Vec<Option<PiecewiseLinear>> = inputs.iter().map(|x| PiecewiseLinear::new(times_s, x)).collect();
-        let value = |i: usize, t: f64| lines[i].as_ref().map_or(0.0, |l| l.value(t));
-        times_s.iter().map(|&t| self.motion_at(value, t)).collect()
     }
 }
 
@@ -95,7 +96,7 @@ impl<D: Scalar> AxisNumbers<D> {
 
 /// Dry friction of the axis' seals: `(F_c + f_p p) z`, `dz/dx = (sgn - z)/s` along the recorded way.
 #[derive(Clone, Debug)]
-pub(super) struct AxisFriction<D> {
+pub(in crate::system) struct AxisFriction<D> {
     /// Level, growth with pressure, presliding; state.
     seals: Vec<([D; 3], D)>,
     position_m: Option<f64>,
