@@ -135,11 +135,33 @@ fn val_relaxation_of_a_held_strip_is_named() {
     assert!(force.rmse_corrected < 0.067, "{force:?}");
 }
 
+/// Pieces of one second, cut out of a longer run: a lag of 50 to 60 ms is documented, of which kind nobody can say.
 #[test]
 fn val_a_late_tip_of_a_catheter_is_named() {
-    let Some(folder) = real("catheter_tendon_multisine") else { return };
+    let Some(folder) = real("catheter_tendon_multisine_filtered") else { return };
     let d = answer(load(&folder));
-    named(&d, "sensor_lag", "sensor");
+    let lag = named(&d, "sensor_lag", "sensor");
+    let late_s = lag.parameters.get("time_constant_s").or(lag.parameters.get("delay_s")).expect("a time").value;
+    assert!((0.04..0.09).contains(&late_s), "{late_s}");
     let tip = d.fit.channels["tip_x_mm"];
-    assert!(tip.rmse_corrected < 0.5 * tip.rmse_baseline, "{tip:?}");
+    assert!(tip.rmse_corrected < 0.3 * tip.rmse_baseline, "{tip:?}");
+}
+
+/// Whether its tip is late or its rod heavily damped is left open; a delay beside a cubic gain leaves 1.48 mm.
+#[test]
+fn val_a_late_tip_of_a_catheter_is_foretold() {
+    let Some(folder) = real("catheter_tendon_multisine") else { return };
+    let tip = answer(load(&folder)).fit.channels["tip_x_mm"];
+    assert!(tip.rmse_corrected < 0.4 * tip.rmse_baseline, "{tip:?}");
+}
+
+/// Seven chambers in one folder: the two that leak empty are named, each with a leak of its own.
+#[test]
+fn val_chambers_that_leak_are_named() {
+    let Some(folder) = real("chamber_leak") else { return };
+    let d = answer(load(&folder));
+    named(&d, "leak", "line_6");
+    named(&d, "leak", "line_7");
+    let pressure = d.fit.channels["pressure_kpa"];
+    assert!(pressure.rmse_corrected < 0.03 * pressure.rmse_baseline, "{pressure:?}");
 }

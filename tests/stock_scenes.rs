@@ -6,7 +6,7 @@ use smam::scene::{Override, Scene};
 use smam::system::{Schedule, Simulation, judge, record};
 
 /// Scenes with a plant of hydraulics, muscles or tendons; gripping has contact phases and is judged apart.
-const SMOOTH: [&str; 9] = [
+const SMOOTH: [&str; 10] = [
     "muscle_bench",
     "muscle_free",
     "muscle_lift",
@@ -16,6 +16,7 @@ const SMOOTH: [&str; 9] = [
     "bending_catheter",
     "pressure_muscle",
     "tendon_sheath",
+    "tendon_catheter",
 ];
 
 fn run(name: &str, overrides: &[Override]) -> (Simulation, Recording) {

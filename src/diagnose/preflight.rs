@@ -26,7 +26,8 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
     }
     inputs(case, &mut found);
     channels(case, &mut found);
-    if found.unusable.is_empty() {
+    // A scene that nothing drives stands still: its spread says nothing of units.
+    if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
         scales(case, problem, &mut found);
     }
     found

@@ -124,7 +124,8 @@ mod tests {
             ("closed_chamber", "chamber.start_pressure_pa=-2e5", "[chamber]: start_pressure_pa = -200000 lies below"),
             ("closed_chamber", "chamber.reads=\"bar\"", "gauge"),
             ("tendon_catheter", "output.0.arc_length_m=0.0", "\"tip_x_mm\": arc_length_m = 0 must be > 0"),
-            ("closed_chamber", "output.0.quantity=\"strip_force\"", "does not fit the quantity"),
+            ("closed_chamber", "chamber.number=0", "[chamber]: number = 0 must be > 0"),
+            ("closed_chamber", "output.0.quantity=\"strip_force\"", "the scene has no [strip] that could show"),
         ];
         for (scene, change, expected) in cases {
             let change_read = Override::parse(change).expect("written rightly");
