@@ -53,6 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         quantity: Quantity::JointPosition,
         of: vec![joint.to_owned()],
         counts_from_start: false,
+        arc_length_m: None,
     }));
     file.expect.clear();
     file.view = ViewSpec::default();
