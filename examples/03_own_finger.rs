@@ -52,7 +52,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         channel: format!("{joint}_deg"),
         quantity: Quantity::JointPosition,
         of: vec![joint.to_owned()],
-        arc_length_m: None,
         counts_from_start: false,
         arc_length_m: None,
     }));
