@@ -61,6 +61,9 @@ impl PartialEq for Wanted<'_> {
 /// Screens all slots at a fit and refits the best laws beside it. `None` where the fit cannot be simulated.
 pub(super) fn propose(problem: &Problem, from: &Fit, say: &dyn Fn(String)) -> Option<Proposals> {
     let all = slots(problem.case, from);
+    if all.is_empty() {
+        return None;
+    }
     let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
