@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn every_number_of_the_catalogue_has_its_unit_or_needs_none() {
-        let plain = ["kappa", "_ratio", "_coefficient", "gain_error", "_power", "decades", "alpha"];
+        let plain = ["kappa", "_ratio", "_coefficient", "gain_error", "_power", "decades", "alpha", "inverse_limit"];
         for p in CATALOGUE.iter().flat_map(|spec| spec.parameters) {
             let needs_none = plain.iter().any(|end| p.key.ends_with(end));
             assert_eq!(Scale::of(p.key, None, 1.0).symbol.is_empty(), needs_none, "{}", p.key);
