@@ -92,8 +92,8 @@ fn column(recording: &Recording, name: &str, mut with: impl FnMut(f64) -> f64) -
 fn bad_recordings_get_a_reason_and_no_diagnosis() {
     type Change = fn(f64) -> f64;
     let cases: [(&str, Change, &str); 5] = [
-        ("pressure_kpa", |v| v * 1000.0, "factor of 1000"),
-        ("elongation_mm", |v| v * 1e-3, "factor of 1/1000"),
+        ("pressure_kpa", |v| v * 1000.0, "say unit = \"Pa\""),
+        ("elongation_mm", |v| v * 1e-3, "say unit = \"m\""),
         ("elongation_mm", |_| 4.2, "constant"),
         ("elongation_mm", |v| -v, "runs against the scene"),
         ("plunger_mm", |_| 0.5, "no input ever moves"),

@@ -7,7 +7,7 @@ use std::io::{Cursor, Write as _};
 use std::path::Path;
 use std::process::{Command, Output};
 
-use smam::recording::{LoadedRun, RecordingSet};
+use smam::recording::{LoadedRun, RecordingSet, read_recording};
 use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 
@@ -278,6 +278,16 @@ fn messy_12_a_workbook() {
         rows += "</row>";
     }
     holds("a.xlsx", &workbook(&rows));
+}
+
+#[test]
+fn a_stray_cell_far_away_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("far.xlsx");
+    fs::write(&file, workbook("<row r=\"1048576\"><c r=\"XFD1048576\"><v>1</v></c></row>")).expect("written");
+    let message = read_recording(&file).expect_err("refused").to_string();
+    assert!(message.contains("1048576 rows and 16384 columns"), "{message}");
+    assert!(message.contains("delete the stray cells"), "{message}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use smam::report::diagnosis_page;
 use super::CliError;
 use super::changes::Changes;
 use super::diagnose_view::Shown;
-use super::files::take_folder;
+use super::files::{is_same_file, take_folder};
 use super::import::recordings;
 
 /// Arguments of `smam diagnose`.
@@ -93,6 +93,7 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
         case.leave_out(step.step());
     }
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
+    refuse_scene_in_use(&case, &out)?;
     let _held = take_folder(&out)?;
     let start = Instant::now();
     let progress = |line: String| match arguments.timings {
@@ -110,6 +111,17 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     shown.show(&outcome, &out)?;
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
     Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// An answer holds a scene.toml and a baseline.toml: they must not take the place of the scene that is diagnosed.
+fn refuse_scene_in_use(case: &Case, out: &Path) -> Result<(), CliError> {
+    let in_use =
+        ["scene.toml", "baseline.toml"].into_iter().find(|name| is_same_file(&out.join(name), &case.scene.path));
+    let Some(name) = in_use else { return Ok(()) };
+    Err(CliError::Usage(format!(
+        "--out {}: {name} there is the scene of these recordings\n  remedy: give the answer a folder of its own",
+        out.display()
+    )))
 }
 
 /// What --threads takes: 0 would mean all cores, and a slip of the finger would start threads until the machine stands.

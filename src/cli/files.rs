@@ -28,3 +28,8 @@ pub fn take_folder(path: &Path) -> Result<Held, CliError> {
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     write_whole(path, text).map_err(|source| CliError::Write { file: path.to_owned(), source })
 }
+
+/// Whether two paths lead to one file that is there.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}

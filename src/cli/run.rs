@@ -15,6 +15,7 @@ use smam::system::{
 
 use super::angles::Angles;
 use super::changes::Changes;
+use super::files::is_same_file;
 use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
@@ -142,6 +143,13 @@ fn drive_from_input(arguments: &RunArguments, simulation: &mut Simulation) -> Re
 }
 
 fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Schedule, CliError> {
+    let scene = &simulation.scene().path;
+    if arguments.output.as_ref().is_some_and(|output| is_same_file(output, scene)) {
+        return Err(CliError::Usage(format!(
+            "--output {}: this is the scene\n  remedy: name another file",
+            scene.display()
+        )));
+    }
     let spec = simulation.scene().file.simulation;
     let limit = arguments.duration;
     if let Some(d) = limit.filter(|d| !(*d > 0.0 && d.is_finite())) {
@@ -183,10 +191,6 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
 
 /// As many as a scene may ask for.
 const MOST_SAMPLES: f64 = 1e8;
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
-}
 
 /// Whether a plunger's first value is not the scene's zero.
 fn begins_away(scene: &Scene, recording: &Recording) -> bool {

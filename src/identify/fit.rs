@@ -4,7 +4,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::recording::{RecordingSet, Role};
-use crate::scene::{CalibrateSpec, Override, Scene, calibration_key};
+use crate::scene::{CalibrateSpec, Override, Scene, set_the_same};
 
 use super::levenberg_marquardt::{Bounds, LmOptions, minimise};
 use super::replay::{IdentifyError, RecordedRun, check_channels, replay};
@@ -66,7 +66,7 @@ pub fn fit_rig_parameters(
 ) -> Result<FitReport, IdentifyError> {
     let base = Scene::load(scene, overrides)?;
     check_channels(set, &base)?;
-    let given = |spec: &CalibrateSpec| overrides.iter().any(|o| calibration_key(&o.key) == calibration_key(&spec.key));
+    let given = |spec: &CalibrateSpec| overrides.iter().any(|o| set_the_same(&base.file.muscle, &o.key, &spec.key));
     let free: Vec<&CalibrateSpec> = base.file.calibrate.iter().filter(|c| c.belongs_to_rig && !given(c)).collect();
     if free.is_empty() || runs.is_empty() {
         return Ok(FitReport::default());

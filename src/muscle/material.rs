@@ -58,7 +58,23 @@ impl Material<f64> {
         if let Material::Gent { jm, .. } = self {
             positive("jm", *jm)?;
         }
+        if let Some(number) = self.numbers().into_iter().find(|n| !n.is_finite()) {
+            return Err(MuscleError::Parameter {
+                name: "a number of the material's law",
+                value: number,
+                rule: "finite",
+            });
+        }
         positive("shear modulus, Pa", self.shear_modulus_pa())
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        match *self {
+            Material::NeoHookean { c1_pa } => vec![c1_pa],
+            Material::Yeoh { c1_pa, c2_pa, c3_pa } => vec![c1_pa, c2_pa, c3_pa],
+            Material::Ogden { terms } => terms.iter().flat_map(|t| [t.mu_pa, t.alpha]).collect(),
+            Material::Gent { mu_pa, jm } => vec![mu_pa, jm],
+        }
     }
 }
 

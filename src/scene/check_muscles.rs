@@ -42,6 +42,9 @@ pub(super) fn check_make(m: &MusclesSpec, file: &Path, named: &dyn Fn(&str) -> S
     m.friction.as_ref().map_or(Ok(()), |friction| check_friction(friction, &at("[muscles.friction]")))
 }
 
+/// Outer over inner diameter, at most: a wall is cut into layers of equal ratio.
+const THICKEST: f64 = 1e3;
+
 fn check_tube<'a>(tube: &TubeSpec, at: impl Fn(&str) -> Place<'a>) -> Result<(), SceneError> {
     const STIFF: &str = "give it a number that is not negative, in SI units";
     let place = at("[muscles.tube]");
@@ -54,6 +57,15 @@ fn check_tube<'a>(tube: &TubeSpec, at: impl Fn(&str) -> Place<'a>) -> Result<(),
                 tube.outer_diameter_m, tube.inner_diameter_m
             ),
             "give the diameters in m, outer larger than inner",
+        ));
+    }
+    if tube.outer_diameter_m > THICKEST * tube.inner_diameter_m {
+        return Err(place.error(
+            format!(
+                "outer_diameter_m = {:e} is more than {THICKEST} times inner_diameter_m = {:e}",
+                tube.outer_diameter_m, tube.inner_diameter_m
+            ),
+            "give both diameters in m",
         ));
     }
     check_area_growth(tube, &place)?;

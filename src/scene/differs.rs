@@ -36,6 +36,9 @@ fn make(common: &MusclesSpec, muscle: &MuscleSpec, file: &Path) -> Result<Muscle
         let message = format!("{}: {}", e.path(), e.inner().message());
         place.error(message, "give keys of [muscles], spelled as there: { tube.material.c1_pa = 3.1e5 }")
     })?;
+    if muscle.cable.is_some() {
+        place.positive("end_mass_kg", make.end_mass_kg)?;
+    }
     check_make(&make, file, &|table| {
         let own = table.trim_start_matches("[muscles").trim_end_matches(']');
         format!("{}{own}", place.table)
@@ -47,7 +50,12 @@ fn make(common: &MusclesSpec, muscle: &MuscleSpec, file: &Path) -> Result<Muscle
 fn put_over(table: &mut Table, own: &Table) {
     for (key, value) in own {
         match (table.get_mut(key), value) {
-            (Some(Value::Table(inner)), Value::Table(value)) => put_over(inner, value),
+            // Another law of the material has numbers of its own.
+            (Some(Value::Table(inner)), Value::Table(value))
+                if value.get("law").is_none_or(|l| inner.get("law") == Some(l)) =>
+            {
+                put_over(inner, value);
+            }
             (Some(slot), value) => *slot = coerced(value, slot),
             (None, value) => {
                 table.insert(key.clone(), value.clone());
@@ -70,6 +78,16 @@ pub(crate) fn muscles_set_by<'a>(muscles: &[MuscleSpec], key: &'a str) -> Option
     let common = key.strip_prefix("muscles.")?;
     let set = muscles.iter().enumerate().filter(|(_, m)| !is_own(m, common));
     Some((set.map(|(i, _)| i).collect(), Cow::Borrowed(key)))
+}
+
+/// Whether two keys set the same number: of the scene, or of a muscle that both reach.
+pub(crate) fn set_the_same(muscles: &[MuscleSpec], a: &str, b: &str) -> bool {
+    let (a, b) = (super::calibration_key(a), super::calibration_key(b));
+    let both = muscles_set_by(muscles, &a).zip(muscles_set_by(muscles, &b));
+    let meet = |((of_a, key_a), (of_b, key_b)): &((Vec<usize>, Cow<str>), (Vec<usize>, Cow<str>))| {
+        key_a == key_b && of_a.iter().any(|m| of_b.contains(m))
+    };
+    a == b || both.as_ref().is_some_and(meet)
 }
 
 /// Whether a muscle has a value of its own under a key of `[muscles]`.
@@ -144,11 +162,41 @@ mod tests {
                 "[[muscle]] \"muscle_1\" differs.tube.coil: turns = 0 must be > 0",
             ),
             ("muscle.muscle_1.differs.linear={stiffness_n_m=1.0, pressure_gain_m2=0.0}", "exactly one of"),
+            ("muscle.muscle_1.differs.end_mass_kg=0.0", "[[muscle]] \"muscle_1\" differs: end_mass_kg = 0 must be > 0"),
+            ("muscle.muscle_1.differs.tube.material.c3_pa=nan", "a number of the material's law = NaN must be finite"),
+            ("muscle.muscle_1.differs.tube.outer_diameter_m=1e300", "is more than 1000 times inner_diameter_m"),
         ];
         for (change, expected) in cases {
             let message = load(&[change]).expect_err("refused");
             assert!(message.contains(expected), "{message}");
         }
+    }
+
+    #[test]
+    fn another_law_of_the_material_has_its_own_numbers() {
+        let gent = "muscle.muscle_2.differs.tube.material={ law = 'gent', mu_pa = 5e5, jm = 80.0 }";
+        let scene = load(&[gent]).expect("loads");
+        assert!(matches!(scene.makes[1].tube.as_ref().expect("a tube").material, crate::muscle::Material::Gent { .. }));
+        assert_eq!(scene.makes[0].tube, scene.file.muscles.as_ref().expect("muscles").tube);
+    }
+
+    #[test]
+    fn a_name_comes_before_an_index() {
+        let scene = load(&["muscle.0.name='1'", "muscle.1.differs.rest_length_m=0.06"]).expect("loads");
+        let lengths: Vec<f64> = scene.makes.iter().map(|m| m.rest_length_m).collect();
+        assert_eq!(lengths[0], 0.06);
+        assert_ne!(lengths[1], 0.06);
+        assert_eq!(scene.number("muscle.1.differs.rest_length_m"), Some(0.06));
+    }
+
+    #[test]
+    fn keys_of_one_number_are_the_same() {
+        let muscles = load(&["muscle.muscle_2.differs.rest_length_m=0.06"]).expect("loads").file.muscle;
+        let is_same = |a: &str, b: &str| super::set_the_same(&muscles, a, b);
+        assert!(is_same("tube_c1_pa", "muscle.muscle_1.differs.tube.material.c1_pa"));
+        assert!(is_same("muscle.0.differs.damping_n_s_m", "muscle.muscle_1.differs.damping_n_s_m"));
+        assert!(!is_same("muscles.rest_length_m", "muscle.muscle_2.differs.rest_length_m"));
+        assert!(!is_same("muscle.muscle_1.differs.damping_n_s_m", "muscle.muscle_2.differs.damping_n_s_m"));
     }
 
     #[test]

@@ -34,7 +34,7 @@ mod program;
 mod schema;
 
 pub use check_laws::Candidate;
-pub(crate) use differs::muscles_set_by;
+pub(crate) use differs::{muscles_set_by, set_the_same};
 pub use error::SceneError;
 pub use file::*;
 pub use file_channels::*;

@@ -198,14 +198,14 @@ pub(super) fn entry_name(entry: &Value) -> Option<&str> {
     entry.get("name").or_else(|| entry.get("channel"))?.as_str()
 }
 
-/// What stands under a segment of a key; of a list the entry of this index or name.
+/// What stands under a segment of a key; of a list the entry of this name or index.
 pub(super) fn child<'a>(value: &'a mut Value, segment: &str) -> Option<&'a mut Value> {
     match value {
         Value::Table(table) => table.get_mut(segment),
-        Value::Array(list) => match segment.parse::<usize>() {
-            Ok(index) => list.get_mut(index),
-            Err(_) => list.iter_mut().find(|item| entry_name(item) == Some(segment)),
-        },
+        Value::Array(list) => {
+            let named = list.iter().position(|item| entry_name(item) == Some(segment));
+            list.get_mut(named.or_else(|| segment.parse().ok())?)
+        }
         _ => None,
     }
 }

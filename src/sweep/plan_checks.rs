@@ -85,7 +85,9 @@ pub(super) fn check_keys(file: &SweepFile, base: &Scene) -> Result<(), SweepErro
         let refuse = |message: String, remedy: &str| {
             Err(SweepError::Vary { key: key.to_owned(), message, remedy: remedy.to_owned() })
         };
-        let Some(value) = base.value(&calibration_key(key)) else {
+        // What differs for one muscle need not stand there: it is what all have.
+        let common = || base.number(key).map(|number| number.to_string());
+        let Some(value) = base.value(&calibration_key(key)).or_else(common) else {
             let message = format!("the scene has no such key{}", did_you_mean(key, &names));
             return refuse(message, "`smam check SCENE --keys` lists them");
         };

@@ -129,8 +129,9 @@ fn time_unit(stated: Option<&'static FileUnit>, interval: f64) -> (&'static File
     let of = |name: &str| file_unit(name).filter(|unit| unit.si_suffix == "s");
     let (seconds, milli, micro) = (of("s"), of("ms"), of("us"));
     match stated {
-        Some(unit) if unit.factor < 1.0 || interval * unit.factor < SLOW_S => (unit, "as its name says"),
-        _ => {
+        // A unit that is stated holds: what reads slow is noted when the file is read.
+        Some(unit) => (unit, "as its name says"),
+        None => {
             let by_size = if interval >= SLOW_MS {
                 micro
             } else if interval >= SLOW_S {
@@ -190,7 +191,8 @@ fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     // What cannot be read at all is said when what was written is read.
     let Ok(faults) = clock_faults(file, &layout.options) else { return true };
     let most = if sureness == Sureness::Assumed { 0 } else { faults.rows / FEWEST_ROWS };
-    if faults.restarts > most {
+    // A clock that hardly ever moves is none.
+    if faults.restarts > most || faults.rows - faults.repeats.min(faults.rows) < FEWEST_ROWS {
         return false;
     }
     layout.options.split_at_restart = faults.restarts > 0;

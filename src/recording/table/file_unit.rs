@@ -59,6 +59,7 @@ pub const FILE_UNITS: &[FileUnit] = &[
     unit("s", &["sec", "secs", "second", "seconds"], "s", 1.0),
     unit("ms", &["msec", "millisecond", "milliseconds"], "s", 1e-3),
     unit("us", &["µs", "μs", "microsecond", "microseconds"], "s", 1e-6),
+    unit("ns", &["nsec", "nanosecond", "nanoseconds"], "s", 1e-9),
     unit("min", &["minute", "minutes"], "s", 60.0),
     unit("h", &["hr", "hour", "hours"], "s", 3600.0),
     unit("Hz", &["hz"], "hz", 1.0),

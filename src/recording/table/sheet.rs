@@ -21,6 +21,7 @@ pub(super) fn each_row(bytes: &[u8], options: &FileOptions, take: &mut Take<'_>)
         }
         None => names.first().cloned().ok_or_else(|| unreadable("it has no sheet"))?,
     };
+    refuse_huge(&mut book, &name)?;
     let range = book.worksheet_range(&name).map_err(|e| unreadable(&e.to_string()))?;
     let first = range.start().map_or(0, |(row, _)| row as usize);
     let skipped = match options.header {
@@ -34,6 +35,26 @@ pub(super) fn each_row(bytes: &[u8], options: &FileOptions, take: &mut Take<'_>)
         }
     }
     Ok(())
+}
+
+/// Cells of the rectangle around all that a sheet holds, at most: the reader makes room for each.
+const MOST_CELLS: u64 = 20_000_000;
+
+/// Refuses a sheet in which a stray cell far away would ask for more memory than there is.
+fn refuse_huge(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<(), Problem> {
+    let mut cells = book.worksheet_cells_reader(name).map_err(|e| unreadable(&e.to_string()))?;
+    let (mut rows, mut columns) = (0, 0);
+    while let Some(cell) = cells.next_cell().map_err(|e| unreadable(&e.to_string()))? {
+        let (row, column) = cell.get_position();
+        (rows, columns) = (rows.max(u64::from(row) + 1), columns.max(u64::from(column) + 1));
+    }
+    if rows * columns <= MOST_CELLS {
+        return Ok(());
+    }
+    Err(Problem::new(format!(
+        "has a sheet \"{name}\" of {rows} rows and {columns} columns, more than {MOST_CELLS} cells\n  remedy: delete the stray cells \
+         beside and below the table, or save the sheet as CSV"
+    )))
 }
 
 fn unreadable(why: &str) -> Problem {
