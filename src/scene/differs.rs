@@ -83,11 +83,10 @@ pub(crate) fn muscles_set_by<'a>(muscles: &[MuscleSpec], key: &'a str) -> Option
 /// Whether two keys set the same number: of the scene, or of a muscle that both reach.
 pub(crate) fn set_the_same(muscles: &[MuscleSpec], a: &str, b: &str) -> bool {
     let (a, b) = (super::calibration_key(a), super::calibration_key(b));
-    let both = muscles_set_by(muscles, &a).zip(muscles_set_by(muscles, &b));
-    let meet = |((of_a, key_a), (of_b, key_b)): &((Vec<usize>, Cow<str>), (Vec<usize>, Cow<str>))| {
-        key_a == key_b && of_a.iter().any(|m| of_b.contains(m))
-    };
-    a == b || both.as_ref().is_some_and(meet)
+    a == b
+        || muscles_set_by(muscles, &a)
+            .zip(muscles_set_by(muscles, &b))
+            .is_some_and(|((of_a, a), (of_b, b))| a == b && of_a.iter().any(|m| of_b.contains(m)))
 }
 
 /// Whether a muscle has a value of its own under a key of `[muscles]`.
