@@ -191,8 +191,9 @@ fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     // What cannot be read at all is said when what was written is read.
     let Ok(faults) = clock_faults(file, &layout.options) else { return true };
     let most = if sureness == Sureness::Assumed { 0 } else { faults.rows / FEWEST_ROWS };
-    // A clock that hardly ever moves is none.
-    if faults.restarts > most || faults.rows - faults.repeats.min(faults.rows) < FEWEST_ROWS {
+    // A clock that stands still is none.
+    let is_still = faults.repeats > 0 && faults.repeats + 1 >= faults.rows;
+    if faults.restarts > most || is_still {
         return false;
     }
     layout.options.split_at_restart = faults.restarts > 0;
