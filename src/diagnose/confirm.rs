@@ -77,7 +77,8 @@ pub(super) fn take_back_unplayable(whole: &Problem, mut found: Found, warnings: 
 /// Takes back one by one the effects without which open runs that no fit has seen are predicted as well: they only filled in for the
 /// others' laws.
 pub(super) fn prune(open: &Problem, mut found: Found, variants: &[Variant], say: &dyn Fn(String)) -> Found {
-    if open.case.is_without(Step::CrossValidation) {
+    // Of a single run one half says little of the other: it may have gone on, to where nothing was before.
+    if open.case.is_without(Step::CrossValidation) || open.runs.len() < 2 {
         return found;
     }
     while found.best.model.effects.len() > 1 {
