@@ -181,7 +181,10 @@ mod tests {
 
     #[test]
     fn a_name_comes_before_an_index() {
-        let scene = load(&["muscle.0.name='1'", "muscle.1.differs.rest_length_m=0.06"]).expect("loads");
+        let path = crate::stock::builtin("scenes/antagonistic_pulley.toml").expect("it is carried");
+        let text = crate::stock::read_text(&path).expect("a text").replace("\"muscle_1\"", "\"1\"");
+        let own = Override::parse("muscle.1.differs.rest_length_m=0.06").expect("written rightly");
+        let scene = Scene::parse(&text, &path, &[own]).expect("loads");
         let lengths: Vec<f64> = scene.makes.iter().map(|m| m.rest_length_m).collect();
         assert_eq!(lengths[0], 0.06);
         assert_ne!(lengths[1], 0.06);
