@@ -131,8 +131,7 @@ fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<F
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
 fn leaves_something(open: &Problem, fit: &Fit) -> bool {
-    open.residuals(&fit.model, &fit.x).is_none_or(|residuals| {
-        let (excess, error) = noise::structured_excess(&residuals, open.noise);
+    noise::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
 }

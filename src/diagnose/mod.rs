@@ -282,6 +282,10 @@ fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &d
     Explained { found, proof, noise, warnings, ..explained }
 }
 
+/// Said where nothing is left to be named of the open runs.
+const SEALED_ALONE: &str = "the open runs are explained down to their noise: what is left shows in the sealed runs alone, and cannot be \
+    named from the others; record more runs of their kind, or hold back another one (use = \"holdout\" in recordings.toml)";
+
 /// Names what was found and where, and proposes what to record next.
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
@@ -303,12 +307,9 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         _ if found.withheld.is_some() && is_open_set => Verdict::UnknownPhysics,
         _ => verdict::verdict(&found, &effects, excess, is_open_set),
     };
-    if verdict == Verdict::UnknownPhysics && !open_is_loud(&case, &noise, &found) {
-        warnings.push(
-            "the open runs are explained down to their noise: what is left shows in the sealed runs alone, and cannot be named \
-             from the others; record more runs of their kind, or hold back another one (use = \"holdout\" in recordings.toml)"
-                .to_owned(),
-        );
+    let is_modelled = complete.model.effects.iter().any(|e| e.kind.is_hypothetical());
+    if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
+        warnings.push(SEALED_ALONE.to_owned());
     }
     warnings.extend(figures::on_bounds(&case, &complete));
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
@@ -323,8 +324,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         scene: case.scene_name.clone(),
         recordings: case.folders.clone(),
         verdict,
-        modelled: (verdict == Verdict::UnknownPhysics)
-            .then(|| complete.model.effects.iter().any(|e| e.kind.is_hypothetical())),
+        modelled: (verdict == Verdict::UnknownPhysics).then_some(is_modelled),
         summary: String::new(),
         detection: figures::detection(&case, &noise, &found, excess),
         location,
@@ -364,11 +364,7 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
 /// Whether the open runs hold more than noise that the best does not explain.
 fn open_is_loud(case: &Case, noise: &[Noise], found: &Found) -> bool {
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    let residuals = open.residuals(&found.best.model, &found.best.x);
-    residuals.is_none_or(|r| {
-        let (excess, error) = noise::structured_excess(&r, noise);
-        verdict::is_loud(excess, error)
-    })
+    noise::left(&open, &found.best).is_none_or(|(excess, error)| verdict::is_loud(excess, error))
 }
 
 /// Residuals with what was found, and how much of baseline and best is more than noise.

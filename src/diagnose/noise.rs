@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 
 use super::case::{Case, CaseRun};
+use super::fit::{Fit, Problem};
 use crate::recording::figures::range;
 use crate::recording::{median, median_interval_s, noise_sd};
 
@@ -259,6 +260,11 @@ pub fn structured_excess(residuals: &[Vec<Vec<f64>>], noise: &[Noise]) -> (f64, 
         variance += count.powi(2) * own.min(2.0).powi(2) * noise.far_variance(count.max(1.0));
     }
     if weight == 0.0 { (0.0, f64::INFINITY) } else { (sum / weight, variance.sqrt() / weight) }
+}
+
+/// The same of what a fit leaves; `None` where it cannot be simulated.
+pub(super) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f64)> {
+    Some(structured_excess(&problem.residuals(&fit.model, &fit.x)?, problem.noise))
 }
 
 #[cfg(test)]

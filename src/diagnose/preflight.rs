@@ -3,6 +3,7 @@
 use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
+use crate::recording::figures::{correlation, spread};
 use crate::recording::{BySize, noise_sd, strays, unit_by_size};
 
 /// Fewer samples than this say nothing.
@@ -177,20 +178,4 @@ fn other_zero(column: &str, off: f64) -> String {
 
 fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)))
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-fn spread(values: &[f64]) -> f64 {
-    let m = mean(values);
-    (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-/// Of two series; 0 where one does not move.
-pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let (ma, mb) = (mean(a), mean(b));
-    let product: f64 = a.iter().zip(b).map(|(x, y)| (x - ma) * (y - mb)).sum::<f64>() / a.len().max(1) as f64;
-    product / (spread(a) * spread(b)).max(f64::MIN_POSITIVE)
 }

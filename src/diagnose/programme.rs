@@ -15,7 +15,7 @@
 //! # }
 //! ```
 
-use super::preflight::correlation;
+use crate::recording::figures::correlation;
 use crate::recording::{Channel, Recording, RecordingError, parse_column};
 
 /// Sampling interval, s, and the time over which the plungers go from rest into the programme.

@@ -1,5 +1,6 @@
 //! The state at which a run starts, where only the recording knows it.
 
+use crate::recording::figures::line_of_best_fit;
 use crate::recording::{Recording, RecordingError};
 use crate::scene::{Override, Quantity, Scene};
 
@@ -24,13 +25,12 @@ pub fn own_start(scene: &Scene, recording: &Recording) -> Result<Vec<Override>, 
 fn start(times_s: &[f64], values: &[f64]) -> Option<f64> {
     let begin_s = *times_s.first()?;
     let first = times_s.iter().zip(values).take_while(|(t, _)| **t - begin_s <= READ_S);
-    let known: Vec<(f64, f64)> = first.filter(|(_, v)| v.is_finite()).map(|(t, v)| (t - begin_s, *v)).collect();
-    let n = known.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| known.iter().map(of).sum::<f64>() / n;
-    let (t, v) = (mean(&|k| k.0), mean(&|k| k.1));
-    let (spread, common) = (mean(&|k| (k.0 - t).powi(2)), mean(&|k| (k.0 - t) * (k.1 - v)));
-    let slope = if spread > 0.0 { common / spread } else { 0.0 };
-    Some(v - slope * t).filter(|start| start.is_finite())
+    let known = first.filter(|(_, v)| v.is_finite()).map(|(t, v)| (t - begin_s, *v));
+    let (times_s, values): (Vec<f64>, Vec<f64>) = known.unzip();
+    match values[..] {
+        [only] => Some(only),
+        _ => Some(line_of_best_fit(&times_s, &values).offset).filter(|start| start.is_finite()),
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Units by size: a channel that moves a thousand times as far as its simulation is in another unit.
 
+use super::figures::{correlation, spread};
 use super::noise_sd;
 use super::table::{FILE_UNITS, FileUnit};
 use super::{Unit, parse_column};
@@ -87,17 +88,12 @@ pub fn motion_ratio(time_s: &[f64], measured: &[f64], simulated: &[f64]) -> Opti
     const NOISE_ALONE: f64 = 3.0;
     /// A channel that does not follow its simulation moves for another reason.
     const FOLLOWS: f64 = 0.3;
-    let both: Vec<(f64, f64)> =
-        measured.iter().zip(simulated).map(|(m, s)| (*m, *s)).filter(|(m, s)| m.is_finite() && s.is_finite()).collect();
-    let count = both.len() as f64;
-    let mean = both.iter().fold((0.0, 0.0), |(m, s), pair| (m + pair.0 / count, s + pair.1 / count));
-    let sum = |product: &dyn Fn(f64, f64) -> f64| {
-        both.iter().map(|(m, s)| product(m - mean.0, s - mean.1)).sum::<f64>() / count
-    };
-    let (measured_sd, simulated_sd) = (sum(&|m, _| m * m).sqrt(), sum(&|_, s| s * s).sqrt());
-    let correlation = sum(&|m, s| m * s) / (measured_sd * simulated_sd);
-    let is_noise = noise_sd(time_s, measured).is_some_and(|noise| measured_sd < NOISE_ALONE * noise);
-    (both.len() >= LEAST_SAMPLES && !is_noise && correlation > FOLLOWS).then_some(measured_sd / simulated_sd)
+    let both = measured.iter().zip(simulated).filter(|(m, s)| m.is_finite() && s.is_finite());
+    let (own, other): (Vec<f64>, Vec<f64>) = both.unzip();
+    let moved = spread(&own);
+    let is_noise = noise_sd(time_s, measured).is_some_and(|noise| moved < NOISE_ALONE * noise);
+    let follows = own.len() >= LEAST_SAMPLES && !is_noise && correlation(&own, &other) > FOLLOWS;
+    follows.then(|| moved / spread(&other))
 }
 
 #[cfg(test)]

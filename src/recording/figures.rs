@@ -37,6 +37,17 @@ pub fn rms(values: &[f64]) -> f64 {
     values.quadratic_mean()
 }
 
+/// Standard deviation about their mean; 0 of none.
+pub fn spread(values: &[f64]) -> f64 {
+    if values.is_empty() { 0.0 } else { values.population_std_dev() }
+}
+
+/// Correlation of two series of one length; 0 where one does not move.
+pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let covariance = if a.is_empty() { 0.0 } else { a.population_covariance(b) };
+    covariance / (spread(a) * spread(b)).max(f64::MIN_POSITIVE)
+}
+
 /// A line over points, and how much of their scatter it explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
@@ -75,6 +86,14 @@ mod tests {
         assert!((found.slope - 2.0).abs() < 1e-12 && (found.offset - 1.0).abs() < 1e-12);
         assert!((found.r_squared - 1.0).abs() < 1e-12);
         assert_eq!(enclosed(&[0.0, 0.0, 1.0, 1.0], &[0.0, 1.0, 1.0, 0.0]).abs(), 1.0);
+    }
+
+    #[test]
+    fn series_are_alike_against_each_other_or_still() {
+        let moves = [1.0, 2.0, 4.0];
+        assert!((correlation(&moves, &moves.map(|v| 5.0 - 2.0 * v)) + 1.0).abs() < 1e-12);
+        assert_eq!((correlation(&moves, &[3.0; 3]), correlation(&[], &[]), spread(&[])), (0.0, 0.0, 0.0));
+        assert!((spread(&[1.0, 3.0]) - 1.0).abs() < 1e-12);
     }
 
     #[test]

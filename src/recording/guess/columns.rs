@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::survey::median;
-use super::super::table::{FileUnit, Label, cell_number, clock_faults, file_unit, is_stamp, label};
+use super::super::table::{Label, cell_number, clock_faults, file_unit, is_stamp, label};
 use super::super::{TIME_COLUMN, parse_column};
 use super::layout::Layout;
 use super::likeness::{is_time, likeness};
@@ -109,38 +109,29 @@ fn declare_time(layout: &mut Layout, at: usize, label: &Label, sureness: Surenes
     let mut intervals: Vec<f64> = times(layout, at).windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
     let interval = median(&mut intervals).unwrap_or(0.0);
     let stated = layout.options.time_unit.or(label.unit.filter(|unit| unit.si_suffix == "s"));
-    let unit = if is_stamped { None } else { Some(time_unit(stated, interval)) };
+    // A unit that is stated holds: what reads slow is noted when the file is read.
+    let unit = if is_stamped { None } else { stated.or_else(|| file_unit(by_size(interval))) };
+    let by = if stated.is_some() { "as its name says" } else { "by the size of its intervals" };
     let what = match unit {
         None => format!("time: \"{name}\", stamps of date or time of day"),
-        Some((unit, by)) => format!("time: \"{name}\" in {} ({by})", unit.name),
+        Some(unit) => format!("time: \"{name}\" in {} ({by})", unit.name),
     };
-    let by_size = matches!(unit, Some((_, by)) if by != "as its name says");
-    layout.said.push(Said { what, sureness: if by_size { sureness.min(Sureness::Likely) } else { sureness } });
+    let is_guessed = unit.is_some() && stated.is_none();
+    layout.said.push(Said { what, sureness: if is_guessed { sureness.min(Sureness::Likely) } else { sureness } });
     if name != TIME_COLUMN {
         layout.options.time_column = Some(name);
     }
     // What the name itself says need not be said again; a row of units is not read for it.
     let says_itself = super::super::table::label(&layout.names[at]).unit.map(|u| u.name);
-    layout.options.time_unit = unit.map(|(unit, _)| unit).filter(|unit| says_itself.unwrap_or("s") != unit.name);
+    layout.options.time_unit = unit.filter(|unit| says_itself.unwrap_or("s") != unit.name);
 }
 
-fn time_unit(stated: Option<&'static FileUnit>, interval: f64) -> (&'static FileUnit, &'static str) {
-    // The table has both.
-    let of = |name: &str| file_unit(name).filter(|unit| unit.si_suffix == "s");
-    let (seconds, milli, micro) = (of("s"), of("ms"), of("us"));
-    match stated {
-        // A unit that is stated holds: what reads slow is noted when the file is read.
-        Some(unit) => (unit, "as its name says"),
-        None => {
-            let by_size = if interval >= SLOW_MS {
-                micro
-            } else if interval >= SLOW_S {
-                milli
-            } else {
-                seconds
-            };
-            (by_size.or(seconds).unwrap_or(&super::super::table::FILE_UNITS[0]), "by the size of its intervals")
-        }
+/// The unit that the size of a clock's intervals speaks for.
+fn by_size(interval: f64) -> &'static str {
+    match interval {
+        SLOW_MS.. => "us",
+        SLOW_S.. => "ms",
+        _ => "s",
     }
 }
 
