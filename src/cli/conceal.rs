@@ -55,6 +55,10 @@ enum HidingName {
     Several,
     /// Something that the catalogue does not hold
     Unlisted,
+    /// A law that nobody chose: port, variable, form and size are drawn
+    Law,
+    /// Two of them, or one beside an effect of the catalogue
+    Laws,
 }
 
 /// Runs the command.
@@ -87,6 +91,8 @@ fn hiding(asked: Option<HidingName>, seed: u64) -> Hiding {
         Some(HidingName::One) => Hiding::One,
         Some(HidingName::Several) => Hiding::Several,
         Some(HidingName::Unlisted) => Hiding::Unlisted,
+        Some(HidingName::Law) => Hiding::Law,
+        Some(HidingName::Laws) => Hiding::Laws,
         None => Hiding::drawn(seed),
     }
 }

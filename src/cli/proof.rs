@@ -21,7 +21,8 @@ use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
 #[derive(Args)]
 #[command(after_help = "Examples:
   smam proof --cases 20 --seed 42                 your own seed; goes on where it was when started again
-  smam proof --cases 20 --seed 42 --without pressure")]
+  smam proof --cases 20 --seed 42 --without pressure
+  smam proof --cases 20 --laws --seed 42          laws that nobody chose, at ports that nobody chose")]
 pub struct ProofArguments {
     /// Cases in which something is missing
     #[arg(long, default_value_t = 20)]
@@ -29,6 +30,9 @@ pub struct ProofArguments {
     /// Cases in which nothing is [default: as many]
     #[arg(long)]
     nothing: Option<usize>,
+    /// Hide laws that nobody chose: port, variable, form and size are drawn, on the three rigs in turn; none that hide nothing
+    #[arg(long)]
+    laws: bool,
     /// Of everything that is drawn
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -53,7 +57,12 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
             "--cases 0: there is nothing to prove\n  remedy: ask for one case or more".to_owned(),
         ));
     }
-    let planned = Plan { hiding: arguments.cases, nothing, seed: arguments.seed }.cases();
+    let plan = if arguments.laws {
+        Plan { hiding: 0, nothing: arguments.nothing.unwrap_or(0), laws: arguments.cases, seed: arguments.seed }
+    } else {
+        Plan { hiding: arguments.cases, nothing, laws: 0, seed: arguments.seed }
+    };
+    let planned = plan.cases();
     let folders = Folders::below(&arguments.out);
     let (folders, out) = match arguments.without.and_then(|s| s.to_possible_value()) {
         Some(step) => {
@@ -141,6 +150,11 @@ impl Run<'_> {
         Ok(rows)
     }
 
+    /// Whether the experiment that an answer proposes is tried. Of drawn laws it is not: that asks for time that their search needs.
+    fn is_tried(&self, hiding: Hiding) -> bool {
+        !matches!(hiding, Hiding::Nothing | Hiding::Law | Hiding::Laws) && self.without.is_none()
+    }
+
     /// Diagnoses a case unless its answer is there, opens its seal, and tries the experiment of an ambiguous answer.
     fn answer(&self, name: &str, seal: &str, out: &Path) -> Result<Row, ProofError> {
         if !self.folders.is_answered(name) {
@@ -148,7 +162,7 @@ impl Run<'_> {
         }
         let truth = open(name, seal, self.folders)?;
         let mut row = row(&truth, self.folders)?;
-        if row.verdict == Verdict::Ambiguous && row.hiding != Hiding::Nothing && self.without.is_none() {
+        if row.verdict == Verdict::Ambiguous && self.is_tried(row.hiding) {
             eprintln!("the proposed experiment, and a random one, for {name}");
             row.settled = settle(&truth, self.folders, &out.join("experiments"))?;
         }

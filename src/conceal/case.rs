@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ConcealError;
 use super::begin::{Begun, is_shown, log_uniform};
+use super::drawn::DrawnLaw;
 use super::noise::ChannelNoise;
 use super::plant::Plant;
 use super::programme::{Drive, SAMPLE_S, Wave};
@@ -32,6 +33,10 @@ pub enum Hiding {
     Several,
     /// Not in the catalogue.
     Unlisted,
+    /// One law that nobody chose.
+    Law,
+    /// Two of them, or one beside an effect of the catalogue.
+    Laws,
 }
 
 impl Hiding {
@@ -84,7 +89,12 @@ pub struct Drawn {
     /// File name and contents.
     pub runs: Vec<(String, Recording)>,
     pub holdout: Recording,
+    /// The same programme with more stroke, where a law is hidden and the rig can follow.
+    pub larger: Option<Recording>,
 }
+
+/// Stroke of that programme over that of the others.
+const LARGER: f64 = 1.5;
 
 /// Draws a case and makes its recordings.
 ///
@@ -141,7 +151,10 @@ pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, Co
     }
     let whole = Truth { decoys: pressure_only(&truth.decoys), ..truth.clone() };
     let holdout = record(&whole, &begun.unseen, begun_s, None, &mut random)?;
-    Ok(Drawn { truth, runs, holdout })
+    let is_law = matches!(hiding, Hiding::Law | Hiding::Laws);
+    let longer: Vec<Drive> = begun.unseen.iter().map(|d| d.scaled(LARGER)).collect();
+    let larger = is_law.then(|| record(&whole, &longer, begun_s, None, &mut random).ok()).flatten();
+    Ok(Drawn { truth, runs, holdout, larger })
 }
 
 /// The holdout is whole; what the rig does not record it does not record there either.
@@ -151,6 +164,7 @@ fn pressure_only(decoys: &[Decoy]) -> Vec<Decoy> {
 
 fn draw_secrets(rig: Rig, hiding: Hiding, no_pressure: bool, random: &mut ChaCha8Rng) -> Vec<Secret> {
     let count = match hiding {
+        Hiding::Law | Hiding::Laws => return draw_laws(rig, hiding == Hiding::Laws, no_pressure, random),
         Hiding::Nothing => 0,
         Hiding::One | Hiding::Unlisted => 1,
         Hiding::Several => {
@@ -170,6 +184,22 @@ fn draw_secrets(rig: Rig, hiding: Hiding, no_pressure: bool, random: &mut ChaCha
         if secrets.iter().all(|s| s.name != secret.name) {
             secrets.push(secret);
         }
+    }
+    secrets
+}
+
+/// One law; or two at different places, or one beside an effect of the catalogue.
+fn draw_laws(rig: Rig, is_several: bool, no_pressure: bool, random: &mut ChaCha8Rng) -> Vec<Secret> {
+    let mut secrets = vec![DrawnLaw::draw(rig, random)];
+    if !is_several {
+        return secrets;
+    }
+    if random.random_bool(0.5) {
+        secrets.extend(draw_secrets(rig, Hiding::One, no_pressure, random));
+    }
+    while secrets.len() < 2 {
+        let second = DrawnLaw::draw(rig, random);
+        secrets.extend((second.name != secrets[0].name).then_some(second));
     }
     secrets
 }

@@ -4,9 +4,12 @@
 //! the laws, noise with colour. It imports nothing of the simulation or the diagnosis, and the diagnosis imports nothing
 //! of it.
 
+mod acting;
 mod begin;
 mod case;
 mod ceiling;
+mod drawn;
+mod form;
 mod hidden;
 mod laws;
 mod more;
@@ -26,6 +29,8 @@ use std::path::PathBuf;
 
 pub use case::{Decoy, Drawn, Hiding, Truth, draw, sensor_noise};
 pub use ceiling::{Ceiling, ceiling};
+pub use drawn::{DrawnLaw, Place, Reads, Remembers};
+pub use form::Form;
 pub use more::{record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;

@@ -1,6 +1,8 @@
 //! The concealing plant: the stock rigs as ordinary differential equations in the order of `physics.md`, with places for
 //! whatever may be hidden in them. Nothing here is shared with the simulation that diagnoses.
 
+use super::acting::{Acting, Acts, LAW_SCALE, LAW_STATES, Seen};
+use super::drawn::Place;
 use super::hidden::{MechanismSecrets, MuscleSecrets};
 use super::laws::{boiling, far_pressure_pa, far_volume_m3, preload, softening};
 use super::stock::{
@@ -62,6 +64,7 @@ pub struct Plant {
     pub calibration: Calibration,
     pub muscles: Vec<MuscleSecrets>,
     pub mechanism: MechanismSecrets,
+    pub laws: Vec<Acting>,
     /// Time since the first run began, s: some things age.
     pub begun_s: f64,
 }
@@ -71,7 +74,7 @@ const HINGES: f64 = 8.0;
 impl Plant {
     pub fn new(rig: Rig, calibration: Calibration) -> Self {
         let muscles = vec![MuscleSecrets::default(); rig.muscles()];
-        Self { rig, calibration, muscles, mechanism: MechanismSecrets::default(), begun_s: 0.0 }
+        Self { rig, calibration, muscles, mechanism: MechanismSecrets::default(), laws: Vec::new(), begun_s: 0.0 }
     }
 
     fn joints(&self) -> &'static [Joint] {
@@ -92,14 +95,19 @@ impl Plant {
         self.muscles.len() * MUSCLE_STATES
     }
 
-    pub fn states(&self) -> usize {
+    fn first_law(&self) -> usize {
         self.first_joint() + self.joints().len() * JOINT_STATES
+    }
+
+    pub fn states(&self) -> usize {
+        self.first_law() + self.laws.len() * LAW_STATES
     }
 
     /// What one unit of each scaled state stands for, SI.
     pub fn scales(&self) -> Vec<f64> {
         let mut scales = MUSCLE_SCALE.repeat(self.muscles.len());
         scales.extend(JOINT_SCALE.repeat(self.joints().len()));
+        scales.extend(LAW_SCALE.repeat(self.laws.len()));
         scales
     }
 
@@ -120,19 +128,65 @@ impl Plant {
         for (i, joint) in self.joints().iter().enumerate() {
             x[self.first_joint() + i * JOINT_STATES] = joint.rest_rad;
         }
+        for (i, own) in self.laws.iter().enumerate() {
+            let at = self.first_law() + i * LAW_STATES;
+            let start = own.start(&self.seen(own.muscle, 0.0, &x));
+            x[at..at + LAW_STATES].copy_from_slice(&start);
+        }
         x
     }
 
     /// `dx/dt`, SI, with the plungers at these positions and speeds.
     pub fn rates(&self, t: f64, x: &[f64], plungers: &[Plunger], dx: &mut [f64]) {
-        let tensions = self.tensions(x);
+        let acts = self.acts(t, x);
+        let tensions = self.tensions(x, &acts);
         for (i, plunger) in plungers.iter().enumerate() {
             let own = i * MUSCLE_STATES..(i + 1) * MUSCLE_STATES;
-            self.muscle_rates(i, t, &x[own.clone()], *plunger, tensions[i], &mut dx[own]);
+            self.muscle_rates((i, &acts[i]), t, &x[own.clone()], *plunger, tensions[i], &mut dx[own]);
         }
         for i in 0..self.joints().len() {
-            self.joint_rates(i, x, tensions, dx);
+            self.joint_rates(i, x, tensions, &acts, dx);
         }
+        for (i, own) in self.laws.iter().enumerate() {
+            let at = self.first_law() + i * LAW_STATES;
+            let further: f64 = (0..self.joints().len())
+                .map(|j| {
+                    let lever = self.lever_m(own.muscle, j);
+                    lever * (acts[own.muscle].scale(Place::Lever) - 1.0) * x[self.first_joint() + j * JOINT_STATES + 1]
+                })
+                .sum();
+            let seen = self.seen(own.muscle, t, x);
+            own.rates(&seen, &x[at..at + LAW_STATES], further, &mut dx[at..at + LAW_STATES]);
+        }
+    }
+
+    /// What laws can read around a muscle; the tension is that without laws.
+    fn seen(&self, muscle: usize, t: f64, x: &[f64]) -> Seen {
+        let m = &x[muscle * MUSCLE_STATES..];
+        let joint = |state: usize| if self.joints().is_empty() { 0.0 } else { x[self.first_joint() + state] };
+        Seen {
+            elongation_m: m[E],
+            speed_m_s: m[V],
+            near_pa: self.near_pressure_pa(m[V_S]),
+            far_pa: far_pressure_pa(&self.muscles[muscle], m[V_M]),
+            flow_m3_s: m[Q],
+            tension_n: self.tensions(x, &[Acts::NEUTRAL; 2])[muscle],
+            angle_rad: joint(0),
+            angular_speed_rad_s: joint(1),
+            time_s: t,
+        }
+    }
+
+    /// What the drawn laws do to the terms of each muscle.
+    fn acts(&self, t: f64, x: &[f64]) -> [Acts; 2] {
+        let mut acts = [Acts::NEUTRAL; 2];
+        for (i, own) in self.laws.iter().enumerate() {
+            let at = self.first_law() + i * LAW_STATES;
+            let seen = self.seen(own.muscle, t, x);
+            let whose = if own.law.place.is_of_joint() { 0 } else { own.muscle };
+            own.join(&seen, &x[at..at + LAW_STATES], &mut acts[whose]);
+        }
+        acts
     }
 
     /// Outputs of the rig in its columns' units, before any sensor's error.
@@ -150,10 +204,10 @@ impl Plant {
     pub fn more_outputs(&self, t: f64, x: &[f64]) -> Vec<f64> {
         match self.rig {
             Rig::MuscleBench => {
-                let (s, x) = (&self.muscles[0], &x[..MUSCLE_STATES]);
-                vec![self.pull(s, t, x, far_pressure_pa(s, x[V_M]))]
+                let (s, m) = (&self.muscles[0], &x[..MUSCLE_STATES]);
+                vec![self.pull((s, &self.acts(t, x)[0]), t, m, far_pressure_pa(s, m[V_M]))]
             }
-            Rig::AntagonisticPulley => self.tensions(x).to_vec(),
+            Rig::AntagonisticPulley => self.tensions(x, &self.acts(t, x)).to_vec(),
             Rig::BendingCatheter => Vec::new(),
         }
     }
@@ -170,42 +224,55 @@ impl Plant {
     }
 
     /// Tension of each muscle's cable; on the bench the string's load.
-    fn tensions(&self, x: &[f64]) -> [f64; 2] {
+    fn tensions(&self, x: &[f64], acts: &[Acts; 2]) -> [f64; 2] {
         if self.rig == Rig::MuscleBench {
             return [STRING_LOAD_N, 0.0];
         }
         let mut tensions = [0.0; 2];
         for (i, tension) in tensions.iter_mut().enumerate() {
             let muscle = &x[i * MUSCLE_STATES..];
-            let mut stretch = self.rig.start_elongation_m() - muscle[E] - self.mechanism.slack_m[i];
+            let (lever, stiffness) = (acts[i].scale(Place::Lever), acts[i].scale(Place::CableStiffness));
+            let mut stretch = self.rig.start_elongation_m() - muscle[E] - self.mechanism.slack_m[i] - acts[i].travel_m;
             let mut rate = -muscle[V];
             for (j, joint) in self.joints().iter().enumerate() {
                 let at = self.first_joint() + j * JOINT_STATES;
                 stretch -= self.lever_m(i, j) * (x[at] - joint.rest_rad);
-                rate -= self.lever_m(i, j) * x[at + 1];
+                rate -= self.lever_m(i, j) * lever * x[at + 1];
             }
             if stretch > 0.0 {
-                *tension = (CABLE_N_M * stretch + CABLE_N_S_M * rate).max(0.0);
+                *tension = (CABLE_N_M * stiffness * stretch + CABLE_N_S_M * rate).max(0.0);
             }
         }
         tensions
     }
 
-    fn muscle_rates(&self, i: usize, t: f64, x: &[f64], plunger: Plunger, tension: f64, dx: &mut [f64]) {
+    fn muscle_rates(
+        &self,
+        (i, acts): (usize, &Acts),
+        t: f64,
+        x: &[f64],
+        plunger: Plunger,
+        tension: f64,
+        dx: &mut [f64],
+    ) {
         let (s, c) = (&self.muscles[i], &self.calibration);
         let ripple = s.ripple_m * std::f64::consts::TAU * s.ripple_hz * (std::f64::consts::TAU * s.ripple_hz * t).cos();
         let piston_m_s = piston_speed(s, x, plunger, dx) + ripple;
         let (near_pa, far_pa) = (self.near_pressure_pa(x[V_S]), far_pressure_pa(s, x[V_M]));
         dx[BARREL] = if s.barrel_s > 0.0 { (s.barrel_m3_pa * near_pa - x[BARREL]) / s.barrel_s } else { 0.0 };
-        dx[V_S] = SYRINGE_AREA_M2 * piston_m_s - dx[BARREL] - x[Q];
+        // The volumes stand for pressures: a compliance that a law scales fills as much more slowly.
+        let kept = SYRINGE_AREA_M2 * piston_m_s - dx[BARREL] - x[Q] - acts.add(Place::SyringeFlow);
+        dx[V_S] = kept / acts.scale(Place::SyringeCompliance);
         let returning = if x[Q] < 0.0 { s.return_restriction } else { 0.0 };
         let resistance =
             line_resistance() * (1.0 + (s.restriction + returning) * (1.0 + s.restriction_growth_s_m3 * x[Q].abs()));
-        dx[Q] = (near_pa - far_pa - resistance * x[Q]) / line_inertance();
-        let taken = COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]) * x[V];
-        dx[V_M] = x[Q] - taken - self.lost_flow(s, t, far_pa);
+        let dropped = resistance * acts.scale(Place::Resistance) * x[Q] + acts.add(Place::PressureDrop);
+        dx[Q] = (near_pa - far_pa - dropped) / line_inertance();
+        let taken = COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]) * acts.scale(Place::Area) * x[V];
+        let kept = x[Q] - taken - self.lost_flow(s, t, far_pa) - acts.add(Place::Outflow);
+        dx[V_M] = kept / acts.scale(Place::LineCompliance);
         dx[E] = x[V];
-        dx[V] = (tension + s.load_n - self.pull(s, t, x, far_pa)) / END_MASS_KG;
+        dx[V] = (tension + s.load_n - self.pull((s, acts), t, x, far_pa)) / END_MASS_KG;
         dx[Z] = (x[V] - x[V].abs() * x[Z]) / c.presliding_length_m;
         memories(s, c, x, dx);
     }
@@ -223,39 +290,47 @@ impl Plant {
     }
 
     /// Pull of a muscle on its end, N.
-    fn pull(&self, s: &MuscleSecrets, t: f64, x: &[f64], pressure_pa: f64) -> f64 {
+    fn pull(&self, (s, acts): (&MuscleSecrets, &Acts), t: f64, x: &[f64], pressure_pa: f64) -> f64 {
         let c = &self.calibration;
         let age_s = self.begun_s + t;
-        let e = x[E] - x[SET];
+        let e = x[E] - x[SET] - acts.add(Place::RestLength);
         let (wall, energy) = pull_and_energy(c.tube_c1_pa, e);
-        let coil = COIL_STIFFNESS_N_M * (1.0 - s.coil_loss_1_s * age_s) * e + preload(s, x[E]);
+        let wound = COIL_STIFFNESS_N_M * (1.0 - s.coil_loss_1_s * age_s) * acts.scale(Place::Coil);
+        let coil = wound * e + preload(s, x[E]);
         let fibre = if age_s < s.fibre_breaks_s { s.fibre_n_m * e } else { 0.0 };
         let branch = |(k, _): (f64, f64), dashpot: f64| {
             let stretch = x[E] - dashpot;
             k * stretch * (1.0 + s.branch_hardening_1_m2 * stretch * stretch)
         };
         let branches = branch(s.branches[0], x[BRANCH]) + branch(s.branches[1], x[BRANCH_2]);
-        let friction = (c.friction_m0_n + c.friction_m1_n_pa * pressure_pa.max(0.0)) * x[Z];
+        let level = (c.friction_m0_n + c.friction_m1_n_pa * pressure_pa.max(0.0)) * acts.scale(Place::Friction);
+        let friction = level * x[Z];
         let rate = s.rate_force_n * (x[V] / 2e-4).asinh();
         let closed = if x[E] < 0.0 { (-CLOSED_COIL_N_M * x[E] - CLOSED_COIL_N_S_M * x[V]).max(0.0) } else { 0.0 };
-        let pushed = pressure_pa * COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]);
-        wall * softening(s, x[GREATEST] - energy) + coil + fibre + branches + s.cubic_n_m3 * e.powi(3) + friction + rate
-            - pushed
-            + AXIAL_DAMPING_N_S_M * x[V]
+        let pushed = pressure_pa * COIL_AREA_M2 * (1.0 + 2.0 * s.area_growth_1_m * x[E]) * acts.scale(Place::Area);
+        let wall = wall * softening(s, x[GREATEST] - energy) * acts.scale(Place::Wall);
+        wall + coil + fibre + branches + s.cubic_n_m3 * e.powi(3) + friction + rate - pushed
+            + AXIAL_DAMPING_N_S_M * acts.scale(Place::Damping) * x[V]
             - closed
+            + acts.add(Place::Pull)
     }
 
-    fn joint_rates(&self, i: usize, x: &[f64], tensions: [f64; 2], dx: &mut [f64]) {
+    fn joint_rates(&self, i: usize, x: &[f64], tensions: [f64; 2], acts: &[Acts; 2], dx: &mut [f64]) {
         let joint = self.joints()[i];
         let at = self.first_joint() + i * JOINT_STATES;
         let (angle, speed, sliding) = (x[at], x[at + 1], x[at + 2]);
         let m = &self.mechanism;
-        let mut torque = -joint.damping * speed - joint.stiffness * (angle - joint.rest_rad);
+        // Laws of the joint are those of the first.
+        let own = if i == 0 { acts[0] } else { Acts::NEUTRAL };
+        let mut torque = own.add(Place::Torque)
+            - joint.damping * own.scale(Place::JointDamping) * speed
+            - joint.stiffness * own.scale(Place::JointStiffness) * (angle - joint.rest_rad);
         if angle < 0.0 {
             torque -= joint.closed_n_m_rad * angle;
         }
         for (muscle, tension) in tensions.iter().enumerate().take(self.muscles.len()) {
-            torque += self.lever_m(muscle, i) * tension * self.capstan_share(i, angle, speed, sliding);
+            let passed = acts[muscle].scale(Place::Lever) * acts[muscle].scale(Place::Transmission);
+            torque += self.lever_m(muscle, i) * passed * tension * self.capstan_share(i, angle, speed, sliding);
         }
         if i == 0 {
             torque += self.hidden_torque(angle, speed, sliding, tensions);

@@ -18,6 +18,11 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// The same with so many times the stroke.
+    pub fn scaled(&self, by: f64) -> Self {
+        Self { positions_m: self.positions_m.iter().map(|x| by * x).collect() }
+    }
+
     /// The plunger so long after sample `k`, within the interval that begins there.
     pub fn after(&self, k: usize, since_s: f64) -> Plunger {
         let speed_m_s = (self.positions_m[k + 1] - self.positions_m[k]) / SAMPLE_S;

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::acting::Acting;
+use super::drawn::DrawnLaw;
 use super::plant::Plant;
 use super::stock::Rig;
 
@@ -24,6 +26,9 @@ pub struct Secret {
     pub second: f64,
     /// The muscle it sits on, from 0.
     pub muscle: usize,
+    /// Of one that nobody thought of: what was drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<DrawnLaw>,
 }
 
 /// Where a secret sits.
@@ -167,6 +172,7 @@ impl Secret {
             size: kind.typical * unit,
             second: (kind.second.0 * kind.second.1).sqrt(),
             muscle,
+            law: None,
         }
     }
 
@@ -177,6 +183,7 @@ impl Secret {
 
     /// Puts the physics into a plant; what a sensor does is put upon its channel later.
     pub fn install(&self, plant: &mut Plant) {
+        plant.laws.extend(self.law.map(|law| Acting { law, size: self.size, muscle: self.muscle }));
         if let Some(kind) = KINDS.iter().find(|k| k.name == self.name) {
             (kind.install)(plant, self);
         }

@@ -57,6 +57,12 @@ pub struct Sizing {
     basis: DMatrix<f64>,
 }
 
+/// Sizes that a secret may have.
+fn bounds(secret: &Secret) -> (f64, f64) {
+    let largest = KINDS.iter().find(|k| k.name == secret.name).map_or(f64::INFINITY, |k| k.largest);
+    secret.law.map_or((-largest, largest), |law| law.bounds())
+}
+
 /// Share by which each calibrated number, or size, is moved for its slope.
 const SHARE: f64 = 0.01;
 /// Every so many samples are weighed: misfits are slow.
@@ -80,12 +86,12 @@ impl Sizing {
     /// # Errors
     /// A plant that the solver cannot follow.
     pub fn scale(&self, secret: &mut Secret, wanted: f64) -> Result<(), ConcealError> {
-        let largest = KINDS.iter().find(|k| k.name == secret.name).map_or(f64::INFINITY, |k| k.largest);
+        let (least, largest) = bounds(secret);
         for _ in 0..ROUNDS {
             let left = self.left(secret)?;
             let excess = left.norm_squared() / left.len() as f64;
             let factor = (wanted / excess.max(1e-12)).sqrt().clamp(0.02, 30.0);
-            secret.size = (secret.size * factor).clamp(-largest, largest);
+            secret.size = (secret.size * factor).clamp(least, largest);
             if (0.8..1.25).contains(&factor) {
                 break;
             }

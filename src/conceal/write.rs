@@ -11,7 +11,7 @@ use crate::files::write_whole;
 /// Folder of sealed answers inside a folder of cases.
 pub const SEALED: &str = "sealed";
 
-/// Writes `NAME/` (recordings), `NAME.holdout.csv` (kept back) and `sealed/NAME.json` (the answer) into `folder`; returns
+/// Writes `NAME/` (recordings), `NAME.holdout.csv` and, of a law, `NAME.larger.csv` (kept back) and `sealed/NAME.json` (the answer) into `folder`; returns
 /// the seal.
 ///
 /// # Errors
@@ -26,6 +26,9 @@ pub fn write_case(drawn: &Drawn, folder: &Path) -> Result<String, ConcealError> 
         recording.write_csv(&own.join(file))?;
     }
     drawn.holdout.write_csv(&folder.join(format!("{name}.holdout.csv")))?;
+    if let Some(larger) = &drawn.larger {
+        larger.write_csv(&folder.join(format!("{name}.larger.csv")))?;
+    }
     write(&sealed, &text)?;
     // Last: a folder with this file is whole.
     write(&own.join("recordings.toml"), &recordings_toml(drawn))?;

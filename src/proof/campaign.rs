@@ -17,7 +17,7 @@ use crate::files::write_whole;
 /// use smam::conceal::Hiding;
 /// use smam::proof::Plan;
 ///
-/// let cases = Plan { hiding: 60, nothing: 60, seed: 1 }.cases();
+/// let cases = Plan { hiding: 60, nothing: 60, laws: 0, seed: 1 }.cases();
 /// // Half hide nothing, and so do half of any first part.
 /// let nothing = |count: usize| cases[..count].iter().filter(|case| case.hiding == Hiding::Nothing).count();
 /// assert_eq!((cases.len(), nothing(120), nothing(40)), (120, 60, 20));
@@ -28,6 +28,8 @@ pub struct Plan {
     pub hiding: usize,
     /// Cases in which nothing is.
     pub nothing: usize,
+    /// Cases that hide laws which nobody chose, after the others.
+    pub laws: usize,
     pub seed: u64,
 }
 
@@ -48,14 +50,25 @@ impl Plan {
     pub fn cases(&self) -> Vec<Planned> {
         let count = self.hiding + self.nothing;
         let mut nothing_so_far = 0;
-        (0..count)
-            .map(|i| {
-                let nothing_due = (i + 1) * self.nothing / count.max(1);
-                let is_nothing = nothing_due > nothing_so_far;
-                nothing_so_far = nothing_due;
-                self.case(i, is_nothing)
-            })
-            .collect()
+        let others = (0..count).map(|i| {
+            let nothing_due = (i + 1) * self.nothing / count.max(1);
+            let is_nothing = nothing_due > nothing_so_far;
+            nothing_so_far = nothing_due;
+            self.case(i, is_nothing)
+        });
+        others.chain((0..self.laws).map(|i| self.law_case(i))).collect()
+    }
+
+    /// Rigs in turn; of ten cases eight hide one law, the others two, or one beside an effect of the catalogue.
+    fn law_case(&self, index: usize) -> Planned {
+        let seed = !self.seed.wrapping_mul(1_000_003).wrapping_add(index as u64);
+        let is_one = ChaCha8Rng::seed_from_u64(seed).random_bool(0.8);
+        Planned {
+            name: format!("l{}_{index:05}", self.seed),
+            rig: Rig::ALL[index % Rig::ALL.len()],
+            hiding: if is_one { Hiding::Law } else { Hiding::Laws },
+            seed,
+        }
     }
 
     fn case(&self, index: usize, is_nothing: bool) -> Planned {
@@ -96,6 +109,10 @@ impl Folders {
 
     pub fn holdout(&self, name: &str) -> PathBuf {
         self.cases.join(format!("{name}.holdout.csv"))
+    }
+
+    pub fn larger(&self, name: &str) -> PathBuf {
+        self.cases.join(format!("{name}.larger.csv"))
     }
 
     /// File that is written last of an answer.
@@ -154,13 +171,13 @@ mod tests {
 
     #[test]
     fn any_first_part_of_a_plan_is_a_fair_one() {
-        let cases = Plan { hiding: 60, nothing: 60, seed: 1 }.cases();
+        let cases = Plan { hiding: 60, nothing: 60, laws: 0, seed: 1 }.cases();
         let nothing = |part: &[Planned]| part.iter().filter(|c| c.hiding == Hiding::Nothing).count();
         assert_eq!(cases.len(), 120);
         assert_eq!(nothing(&cases), 60);
         assert_eq!(nothing(&cases[..40]), 20);
         assert!(Hiding::Nothing != cases[0].hiding || Hiding::Nothing != cases[1].hiding);
-        let longer = Plan { hiding: 100, nothing: 100, seed: 1 }.cases();
+        let longer = Plan { hiding: 100, nothing: 100, laws: 0, seed: 1 }.cases();
         assert_eq!(longer[17], cases[17]);
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::law_metrics::law_metrics;
 use super::row::Row;
 use super::settle::{After, Settled};
 use crate::conceal::{Hiding, Rig};
@@ -26,7 +27,7 @@ pub const VISIBLE: f64 = 0.1;
 
 /// Which way a figure should go.
 #[derive(Clone, Copy)]
-enum Goal {
+pub(super) enum Goal {
     AtLeast(f64),
     AtMost(f64),
 }
@@ -71,6 +72,7 @@ impl Goal {
 /// #   effects: Vec::new(),
 /// #   excess: 0.0,
 /// #   gap_closed: None,
+/// #   law: None,
 /// #   settled: None,
 ///     // ...
 /// };
@@ -105,10 +107,12 @@ pub fn metrics(rows: &[Row]) -> Vec<Metric> {
     all.push(share(wrong, &select(rows, |_| true), Row::is_confidently_wrong, Goal::AtMost(0.02)));
     all.push(sizes(&one));
     all.push(times(rows));
-    all
+    let laws = law_metrics(rows);
+    let has_others = rows.iter().any(|r| !matches!(r.hiding, Hiding::Law | Hiding::Laws));
+    if has_others { all.into_iter().chain(laws).collect() } else { laws }
 }
 
-fn select(rows: &[Row], is: impl Fn(&Row) -> bool) -> Vec<&Row> {
+pub(super) fn select(rows: &[Row], is: impl Fn(&Row) -> bool) -> Vec<&Row> {
     rows.iter().filter(|r| is(r)).collect()
 }
 
@@ -167,7 +171,7 @@ fn figure(
     Metric { key: key.to_owned(), what: what.to_owned(), target, value, interval, cases, is_met: goal.is_met(value) }
 }
 
-fn share(names: (&str, &str), rows: &[&Row], is: impl Fn(&Row) -> bool, goal: Goal) -> Metric {
+pub(super) fn share(names: (&str, &str), rows: &[&Row], is: impl Fn(&Row) -> bool, goal: Goal) -> Metric {
     let (count, hits) = (rows.len(), rows.iter().filter(|r| is(r)).count());
     figure(names, hits as f64 / count as f64, wilson(hits, count), count, goal.words(true), goal)
 }
@@ -209,19 +213,22 @@ fn mean_set(sets: &[&Row]) -> Metric {
 
 /// Median and tenth percentile of the gap closed where something listed is hidden (what is not listed no scene can hold), with the order statistics that bound them at 95 %.
 fn gaps(listed: &[&Row]) -> [Metric; 2] {
-    let mut values: Vec<f64> =
+    let values: Vec<f64> =
         listed.iter().filter(|r| r.is_detected() && r.excess >= VISIBLE).filter_map(|r| r.gap_closed).collect();
+    [
+        order(("gap_median", "gap closed on what was kept back, median"), &values, 0.5, Goal::AtLeast(0.95)),
+        order(("gap_tenth", "gap closed on what was kept back, 10th percentile"), &values, 0.1, Goal::AtLeast(0.8)),
+    ]
+}
+
+/// A quantile, with the order statistics that bound it at 95 %.
+pub(super) fn order(names: (&str, &str), values: &[f64], q: f64, goal: Goal) -> Metric {
+    let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     let count = values.len();
     let at = |q: f64| values.get(((count.max(1) - 1) as f64 * q.clamp(0.0, 1.0)) as usize).copied().unwrap_or(f64::NAN);
-    let one = |names: (&str, &str), q: f64, goal: Goal| {
-        let half = 1.96 * (q * (1.0 - q) / count.max(1) as f64).sqrt();
-        figure(names, at(q), [at(q - half), at(q + half)], count, goal.words(true), goal)
-    };
-    [
-        one(("gap_median", "gap closed on what was kept back, median"), 0.5, Goal::AtLeast(0.95)),
-        one(("gap_tenth", "gap closed on what was kept back, 10th percentile"), 0.1, Goal::AtLeast(0.8)),
-    ]
+    let half = 1.96 * (q * (1.0 - q) / count.max(1) as f64).sqrt();
+    figure(names, at(q), [at(q - half), at(q + half)], count, goal.words(true), goal)
 }
 
 /// Ambiguous answers that one more run settles rightly: the proposed one, one drawn, and the proposed one without the

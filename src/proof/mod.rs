@@ -5,7 +5,9 @@
 
 mod campaign;
 mod curves;
+mod found_law;
 mod holdout;
+mod law_metrics;
 mod metrics;
 mod row;
 mod settle;
@@ -15,6 +17,7 @@ use std::path::PathBuf;
 
 pub use campaign::{Folders, Plan, Planned, answer_case, conceal_case};
 pub use curves::{Share, detection, naming, reliability};
+pub use found_law::FoundLaw;
 pub use metrics::{Metric, VISIBLE, metrics};
 pub use row::{Answered, Row, open, row};
 pub use settle::{After, Settled, settle};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ProofError;
 use super::campaign::Folders;
+use super::found_law::{FoundLaw, found_law};
 use super::holdout::gap_on_holdout;
 use super::settle::Settled;
 use crate::conceal::{Decoy, Hiding, Rig, SEALED, Secret, Truth, seal};
@@ -49,6 +50,9 @@ pub struct Row {
     pub excess: f64,
     /// Share of the gap between baseline and noise that is closed on the recording kept back.
     pub gap_closed: Option<f64>,
+    /// Of a drawn law: what was found of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<FoundLaw>,
     /// What the proposed experiment made of an ambiguous answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settled: Option<Settled>,
@@ -67,8 +71,8 @@ impl Row {
         let count = self.secrets.len();
         let fits = match self.hiding {
             Hiding::Nothing => count == 0,
-            Hiding::One | Hiding::Unlisted => count == 1,
-            Hiding::Several => count > 1,
+            Hiding::One | Hiding::Unlisted | Hiding::Law => count == 1,
+            Hiding::Several | Hiding::Laws => count > 1,
         };
         if !fits {
             return Some(format!("{}: {count} secrets where `hiding` is {:?}", self.name, self.hiding));
@@ -117,6 +121,7 @@ pub fn row(truth: &Truth, folders: &Folders) -> Result<Row, ProofError> {
     let folder = folders.answers.join(&truth.name);
     if truth.hiding != Hiding::Nothing && folder.join("scene.toml").is_file() {
         row.gap_closed = Some(gap_on_holdout(truth, &folder, &folders.holdout(&truth.name))?);
+        row.law = found_law(truth, &folder, &folders.larger(&truth.name))?;
     }
     Ok(row)
 }
@@ -140,6 +145,7 @@ pub(super) fn row_of_answer(truth: &Truth, folders: &Folders) -> Result<Row, Pro
         effects: diagnosis.effects.iter().map(|e| answered(e, truth)).collect(),
         excess: diagnosis.detection.excess_chi2_per_sample,
         gap_closed: None,
+        law: None,
         settled: None,
         seconds: folders.seconds(&truth.name),
     })

@@ -33,6 +33,7 @@ pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
     }
     by_misfit(&mut text, rows);
     by_effect(&mut text, rows);
+    drawn_laws(&mut text, rows);
     reliability_table(&mut text, rows);
     wrong(&mut text, rows);
     text
@@ -113,6 +114,38 @@ fn is_wrong(r: &Row) -> bool {
         Hiding::Unlisted => r.is_confidently_wrong(),
         Hiding::One => r.is_detected() && !r.first().is_some_and(|e| e.is(&r.secrets[0])),
         Hiding::Several => r.is_confidently_wrong(),
+        Hiding::Law | Hiding::Laws => r.is_confidently_wrong(),
+    }
+}
+
+/// Every law that nobody chose, with what was found of it.
+fn drawn_laws(text: &mut String, rows: &[Row]) {
+    if rows.iter().all(|r| r.law.is_none()) {
+        return;
+    }
+    text.push_str(
+        "\n### Laws that nobody chose\n\n| case | excess | hidden | answered | place | both | curve | gap | larger | s |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for (r, law) in rows.iter().filter_map(|r| Some((r, r.law.as_ref()?))) {
+        let rank = |rank: Option<usize>| rank.map_or("-".to_owned(), |n| n.to_string());
+        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.3}"));
+        let _ = writeln!(
+            text,
+            "| {} {} | {:.2} | `{}` | {:?}: {} | {} | {} | {} | {} | {} | {:.0} |",
+            r.name,
+            r.rig.scene(),
+            r.excess,
+            law.hidden,
+            r.verdict,
+            law.answered.as_ref().map_or("nothing".to_owned(), |a| format!("`{a}`")),
+            rank(law.port_rank),
+            rank(law.rank),
+            number(law.curve_error),
+            number(r.gap_closed),
+            number(law.gap_larger),
+            r.seconds.unwrap_or(f64::NAN)
+        );
     }
 }
 
