@@ -40,6 +40,9 @@ pub struct DiagnoseArguments {
     /// Open the Rerun viewer on the same
     #[arg(long)]
     view: bool,
+    /// Predict this specimen from the others alone: all its runs are held back, their stated conditions kept
+    #[arg(long, value_name = "SPECIMEN")]
+    transfer: Option<String>,
     /// Leave a step out, to see what it is worth
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
@@ -89,6 +92,9 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     let scene = arguments.scene.as_deref();
     let sets = folders.iter().map(|path| recordings(path, scene)).collect::<Result<Vec<_>, _>>()?;
     let mut case = Case::of_sets(&sets, &folders, scene, &overrides)?;
+    if let Some(specimen) = &arguments.transfer {
+        case.transfer(specimen)?;
+    }
     if let Some(step) = arguments.without {
         case.leave_out(step.step());
     }

@@ -24,6 +24,9 @@ pub struct Diagnosis {
     pub effects: Vec<NamedEffect>,
     /// Values of the calibrated parameters with the effects in place, SI.
     pub calibration: BTreeMap<String, Estimate>,
+    /// Where runs of several specimens are diagnosed together: the calibrated numbers of each.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub specimens: BTreeMap<String, SpecimenNumber>,
     pub fit: Proof,
     pub next_experiment: NextExperiment,
     pub warnings: Vec<String>,
@@ -113,6 +116,14 @@ pub struct Form {
     pub law: String,
     /// By how much its chi² is higher, in units of what the best leaves.
     pub score_difference: f64,
+}
+
+/// A calibrated number as each specimen has it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SpecimenNumber {
+    pub values: BTreeMap<String, Estimate>,
+    /// Whether two of them are further apart than chance allows.
+    pub differs: bool,
 }
 
 /// A law over one variable, SI, with the ends of its 95 % band.

@@ -25,7 +25,9 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
             (p.min, p.max) = widened(p.min, p.max);
             warnings.push(format!(
                 "{} met the end of its range, which was widened to {:.3e} .. {:.3e}",
-                p.key, p.min, p.max
+                p.title(),
+                p.min,
+                p.max
             ));
         }
         fit = self::fit(case, &noise, Some(&fit.x))?;
@@ -33,7 +35,7 @@ pub(super) fn baseline(case: &mut Case) -> Result<Baseline, DiagnoseError> {
     let residuals = problem(case, &noise).residuals(&fit.model, &fit.x).ok_or_else(diverges)?;
     noise = estimate(case, &residuals);
     plan_steps(case, &noise, Some(&fit.x)).ok_or_else(diverges)?;
-    case.leave_out_unheld(&fit.model.setting(case, &fit.x)).ok_or_else(diverges)?;
+    case.leave_out_unheld(&fit.model.settings(case, &fit.x)).ok_or_else(diverges)?;
     let fit = self::fit(case, &noise, Some(&fit.x))?;
     Ok(Baseline { fit, noise, warnings })
 }
@@ -49,8 +51,8 @@ fn widened(min: f64, max: f64) -> (f64, f64) {
 fn plan_steps(case: &mut Case, noise: &[Noise], near: Option<&[f64]>) -> Option<()> {
     let model = Model::baseline();
     let start = problem(case, noise).start(&model, near);
-    let setting = model.setting(case, &start);
-    case.plan_steps(&setting, noise)
+    let settings = model.settings(case, &start);
+    case.plan_steps(&settings, noise)
 }
 
 fn diverges() -> DiagnoseError {

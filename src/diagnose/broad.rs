@@ -51,7 +51,7 @@ pub(super) fn broaden(
 /// Baseline, what was found and that with a broad relaxation, all fitted with the steps that the last needs.
 fn with_steps_of_broad(case: &mut Case, noise: &[Noise], found: &Found, placed: &Placed) -> Option<[Fit; 3]> {
     let broad = as_broad(&open_runs(case, noise), &found.best, placed)?;
-    case.plan_steps(&broad.model.setting(case, &broad.x), noise)?;
+    case.plan_steps(&broad.model.settings(case, &broad.x), noise)?;
     let problem = open_runs(case, noise);
     let again = |fit: &Fit| problem.fit(&fit.model, &fit.x);
     Some([again(&found.baseline)?, again(&found.best)?, again(&broad)?])

@@ -39,6 +39,8 @@ pub struct CaseRun {
     pub measured: Vec<Vec<f64>>,
     /// Of each channel, how many values were left out because next to nothing held the joint that they show.
     pub unheld: Vec<usize>,
+    /// Which sample, or set-up, it was recorded on, if that is stated.
+    pub specimen: Option<String>,
     pub is_sealed: bool,
     /// Of the sealed end of a run: what was measured before it. A free zero is decided there.
     pub open_part: Option<Vec<Vec<f64>>>,
@@ -90,6 +92,8 @@ impl Direction {
 pub struct CaseParameter {
     pub key: String,
     pub parameter: TwinParameter,
+    /// Where several were recorded: the specimen whose number it is.
+    pub specimen: Option<String>,
     pub min: f64,
     pub max: f64,
     pub start: f64,
@@ -116,25 +120,25 @@ pub struct Case {
 }
 
 impl Case {
-    /// Plans the fast model's steps at a setting, so that what they leave out vanishes in the noise.
+    /// Plans the fast model's steps at a setting for each run, so that what they leave out vanishes in the noise.
     /// `None` when the fast model diverges.
-    pub fn plan_steps(&mut self, setting: &TwinSetting<f64>, noise: &[Noise]) -> Option<()> {
+    pub fn plan_steps(&mut self, settings: &[TwinSetting<f64>], noise: &[Noise]) -> Option<()> {
         let count = self.scene.file.output.len();
         let mut tolerance = vec![None; count];
         for (channel, noise) in self.channels.iter().zip(noise) {
             tolerance[channel.output] = Some(STEP_TOLERANCE * noise.sd);
         }
-        let plan = |run: &mut CaseRun| -> Option<()> {
+        let plan = |(run, setting): (&mut CaseRun, &TwinSetting<f64>)| -> Option<()> {
             run.drive.plan = Some(run.twin.plan(&run.drive, setting, &tolerance)?);
             Some(())
         };
-        self.runs.par_iter_mut().map(plan).collect()
+        self.runs.par_iter_mut().zip(settings).map(plan).collect()
     }
 
-    /// Leaves out what a joint shows while next to nothing holds it, at a setting. `None` when the fast model diverges.
-    pub fn leave_out_unheld(&mut self, setting: &TwinSetting<f64>) -> Option<()> {
+    /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the fast model diverges.
+    pub fn leave_out_unheld(&mut self, settings: &[TwinSetting<f64>]) -> Option<()> {
         let unheld: Vec<_> =
-            self.runs.par_iter().map(|r| r.twin.unheld(&r.drive, setting)).collect::<Option<Vec<_>>>()?;
+            self.runs.par_iter().zip(settings).map(|(r, s)| r.twin.unheld(&r.drive, s)).collect::<Option<Vec<_>>>()?;
         for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
             run.unheld.resize(self.channels.len(), 0);
             for (c, channel) in self.channels.iter().enumerate() {

@@ -66,6 +66,7 @@ impl Case {
         case.leave_out_empty();
         case.leave_out_unrecorded();
         case.seal();
+        case.untie();
         Ok(case)
     }
 
@@ -114,6 +115,7 @@ impl Case {
         self.runs.push(CaseRun {
             file: run.run.file.clone(),
             measured,
+            specimen: run.run.specimen.clone(),
             is_sealed: run.run.run_use == Some(RunUse::Holdout),
             unheld: Vec::new(),
             open_part: None,
@@ -265,6 +267,7 @@ fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, Diagnose
         Ok(CaseParameter {
             key: spec.key.clone(),
             parameter,
+            specimen: None,
             min: spec.min,
             max: spec.max,
             start: start.clamp(spec.min, spec.max),

@@ -9,12 +9,18 @@ use crate::stock;
 use super::case::Case;
 use super::fit::Fit;
 
-/// The scene with the numbers of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
+/// The scene of a specimen (or of the only one) with the numbers of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
 /// scene may stand anywhere.
 ///
 /// # Errors
 /// A fitted number that the scene's own checks refuse.
-pub fn fitted_scene(case: &Case, fit: &Fit, suffix: &str, title: &str) -> Result<String, SceneError> {
+pub fn fitted_scene(
+    case: &Case,
+    fit: &Fit,
+    specimen: Option<&str>,
+    suffix: &str,
+    title: &str,
+) -> Result<String, SceneError> {
     let mut file = case.scene.file.clone();
     if let Some(mechanism) = &mut file.mechanism {
         let urdf = stock::join(case.scene.folder(), &mechanism.urdf);
@@ -23,17 +29,17 @@ pub fn fitted_scene(case: &Case, fit: &Fit, suffix: &str, title: &str) -> Result
     file.name = format!("{}_{suffix}", file.name);
     file.title = title.to_owned();
     file.expect.clear();
-    let text = with_numbers(case, fit, file)?;
+    let text = with_numbers(case, fit, specimen, file)?;
     Scene::parse(&text, &case.scene.path, &[])?;
     Ok(text)
 }
 
-/// The scene of a run, its conditions kept, with the numbers of a fit.
+/// The scene of a run of a specimen, its conditions kept, with the numbers of a fit.
 ///
 /// # Errors
 /// A fitted number that the scene's own checks refuse.
-pub fn corrected_run_scene(case: &Case, fit: &Fit, base: &Scene) -> Result<Scene, SceneError> {
-    Scene::parse(&with_numbers(case, fit, base.file.clone())?, &case.scene.path, &[])
+pub fn corrected_run_scene(case: &Case, fit: &Fit, specimen: Option<&str>, base: &Scene) -> Result<Scene, SceneError> {
+    Scene::parse(&with_numbers(case, fit, specimen, base.file.clone())?, &case.scene.path, &[])
 }
 
 /// A law under a name that no other has.
@@ -44,7 +50,7 @@ fn with_own_name(law: LawTable, others: &[LawTable]) -> LawTable {
     LawTable { name: name.unwrap_or_default(), ..law }
 }
 
-fn with_numbers(case: &Case, fit: &Fit, mut file: SceneFile) -> Result<String, SceneError> {
+fn with_numbers(case: &Case, fit: &Fit, specimen: Option<&str>, mut file: SceneFile) -> Result<String, SceneError> {
     let effects = fit.model.effects_at(&fit.x[case.parameters.len()..]);
     file.law.retain(|law| !law.candidate);
     for effect in &effects {
@@ -55,8 +61,8 @@ fn with_numbers(case: &Case, fit: &Fit, mut file: SceneFile) -> Result<String, S
     }
     let refuse = |message: String| SceneError::Syntax { file: case.scene.path.clone(), message };
     let mut table: Table = Table::try_from(&file).map_err(|e| refuse(e.to_string()))?;
-    for (p, value) in case.parameters.iter().zip(&fit.x) {
-        Override::number(&p.key, *value).apply(&mut table)?;
+    for (p, value) in case.numbers_of(specimen, &fit.x) {
+        Override::number(&p.key, value).apply(&mut table)?;
     }
     toml::to_string(&table).map_err(|e| refuse(e.to_string()))
 }

@@ -41,6 +41,12 @@ pub enum DiagnoseError {
     Parameter { file: PathBuf, key: String },
     #[error("the scene cannot be simulated with what was recorded: {0}\n  remedy: try `smam compare` on the folder")]
     Simulation(String),
+    #[error(
+        "no specimen \"{name}\" stands beside others{}\n  remedy: name each run's in recordings.toml ([[run]] specimen = \"sample 1\") \
+         and give one of them",
+        match known.is_empty() { true => String::new(), false => format!(": there are {}", known.join(", ")) }
+    )]
+    Specimen { name: String, known: Vec<String> },
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]
     Write { file: PathBuf, source: std::io::Error },
 }

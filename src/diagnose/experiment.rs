@@ -196,8 +196,8 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
     alone.runs.truncate(1);
     let Some(run) = alone.runs.first_mut() else { return Ok(None) };
     (run.drive, run.lead_in, run.measured, run.open_part) = (drive, 0, blank, None);
-    let setting = best.model.setting(case, &best.x);
-    Ok(alone.plan_steps(&setting, noise).and_then(|()| alone.runs.pop()))
+    let settings = best.model.settings(&alone, &best.x);
+    Ok(alone.plan_steps(&settings, noise).and_then(|()| alone.runs.pop()))
 }
 
 /// An added sensor is worth a word when it multiplies the separation by this.

@@ -38,7 +38,7 @@ pub(super) fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> 
         let (value, half) = (fit.x[i], fit.half_width(i));
         Estimate { value, ci95: [value - half, value + half] }
     };
-    case.parameters.iter().enumerate().map(|(i, p)| (p.key.clone(), estimate(i))).collect()
+    case.parameters.iter().enumerate().map(|(i, p)| (p.title(), estimate(i))).collect()
 }
 
 /// What to say of calibrated numbers that ended on an end of their range, which is not a zero.
@@ -48,7 +48,7 @@ pub(super) fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
         format!(
             "{} ended on an end of its range, {value:.3e} of {:.3e} .. {:.3e}: its interval says nothing; give [[calibrate]] a \
              wider range, or look for what else makes the scene want it",
-            p.key, p.min, p.max
+            p.title(), p.min, p.max
         )
     });
     words.collect()

@@ -47,12 +47,22 @@ pub fn write_answer_with(outcome: &Outcome, more: &[(&str, &str)], folder: &Path
             staged.push(stage(name, text?.as_bytes())?);
         }
     }
+    for specimen in outcome.case.specimens().into_iter().skip(1) {
+        if let Some(text) = outcome.scene_text_of(Some(specimen)) {
+            staged.push(stage(&format!("scene_{}.toml", file_word(specimen)), text?.as_bytes())?);
+        }
+    }
     staged.push(stage(LAST, format!("{json}\n").as_bytes())?);
     remove_former(folder)?;
     staged.into_iter().try_for_each(|file| {
         let path = file.path().to_owned();
         file.place().map_err(|source| DiagnoseError::Write { file: path, source })
     })
+}
+
+/// A specimen's name as part of a file's.
+fn file_word(specimen: &str) -> String {
+    specimen.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect()
 }
 
 fn csv(recording: &Recording) -> io::Result<Vec<u8>> {

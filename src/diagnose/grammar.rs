@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::effects::{Element, Fitted, Kind, LawId, Range};
 use crate::laws::{
-    Acts, Address, Carrier, Law, LawTable, PORTS, ParameterTable, Port, PortSpec, Quantity, Surroundings,
+    Acts, Address, Carrier, Law, LawTable, PORTS, ParameterTable, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
 };
 
 use crate::scene::Candidate;
@@ -13,6 +13,7 @@ use super::candidates::Variant;
 use super::case::Case;
 use super::fit::Fit;
 use super::model::Placed;
+use super::reading::{Reading, readings};
 
 /// A shape over `x`, the variable over its scale.
 #[derive(Clone, Copy, Debug)]
@@ -24,10 +25,16 @@ pub struct Shape {
     pub has_scale: bool,
     /// Whether it is one of those of which curves are made up when slots are screened.
     pub is_basis: bool,
+    /// Whether a number `p` in it is fitted as well.
+    has_number: bool,
 }
 
 const fn shape(text: &'static str, at: fn(f64) -> f64, has_scale: bool, is_basis: bool) -> Shape {
-    Shape { text, at, has_scale, is_basis }
+    Shape { text, at, has_scale, is_basis, has_number: false }
+}
+
+const fn with_number(text: &'static str, at: fn(f64) -> f64, has_scale: bool) -> Shape {
+    Shape { text, at, has_scale, is_basis: true, has_number: true }
 }
 
 /// What a law is in that depends on nothing: a number of the rig that is another than the scene says.
@@ -50,6 +57,27 @@ pub const SHAPES: [Shape; 14] = [
     shape("exp(-x^2)", |x| (-x * x).exp(), true, false),
     shape("(x > 1)", |x| f64::from(u8::from(x > 1.0)), true, false),
 ];
+
+/// Shapes that are tried over a variable where none of the others leaves only noise. `p` is a number that is fitted; the function
+/// has it as it begins, [`P`].
+const MORE_SHAPES: [Shape; 4] = [
+    with_number("abs(x)^p", |x| x.abs().powf(P), false),
+    with_number("x*abs(x)^p", |x| x * x.abs().powf(P), false),
+    shape("sin(x)", f64::sin, true, true),
+    with_number("exp(-(x - p)^2)", |x| (-(x - P).powi(2)).exp(), true),
+];
+const P: f64 = 1.5;
+/// What `p` may be.
+const P_RANGE: Range = Range { min: 0.1, max: 4.0 };
+
+/// How far the grammar reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// A shape over a variable.
+    Plain,
+    /// More shapes, products of two variables, and what is remembered of one.
+    Wide,
+}
 
 /// Variables that are tried at a port without a number in the name.
 fn variables(spec: &PortSpec) -> &'static [Quantity] {
@@ -89,6 +117,9 @@ pub struct Slot {
     pub port: Port,
     /// Empty where the law depends on nothing.
     pub variable: String,
+    /// What of the variable the shape is over.
+    pub reading: Reading,
+    shapes: &'static [Shape],
     /// Unit scale of the variable: half of the greatest that it reaches.
     pub scale: f64,
     /// The variable in each open run.
@@ -106,13 +137,20 @@ impl Slot {
 
     /// The shapes that its law may have.
     pub fn shapes(&self) -> &'static [Shape] {
-        if self.is_constant() { std::slice::from_ref(&CONSTANT) } else { &SHAPES }
+        self.shapes
     }
 
     /// Those of which its curve is made up when slots are screened.
     pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
         let is_constant = self.is_constant();
-        self.shapes().iter().filter(move |s| s.is_basis || is_constant)
+        // What is remembered is many: a straight line and a parabola must do.
+        let most = if self.reading == Reading::Plain { usize::MAX } else { 2 };
+        self.shapes().iter().filter(move |s| s.is_basis || is_constant).take(most)
+    }
+
+    /// Name of its law.
+    pub fn name(&self) -> String {
+        format!("{}{}", self.address.replace('.', "_"), self.reading.word())
     }
 
     /// Name of the element that it belongs to, as answers have it.
@@ -123,15 +161,40 @@ impl Slot {
 
 impl PartialEq for Slot {
     fn eq(&self, other: &Self) -> bool {
-        (&self.address, &self.variable) == (&other.address, &other.variable)
+        (&self.address, &self.variable, &self.reading) == (&other.address, &other.variable, &other.reading)
     }
 }
 
-/// All slots of a case's scene: those whose variable moves in its open runs, and those that depend on nothing.
-pub fn slots(case: &Case, from: &Fit) -> Vec<Slot> {
+/// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.
+pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
     let mut slots = over_variables(case, from);
-    slots.extend(constants(case));
+    match reach {
+        Reach::Plain => slots.extend(constants(case)),
+        Reach::Wide => {
+            let more = slots.iter().flat_map(|slot| beyond(case, slot, &slots)).collect::<Vec<_>>();
+            slots.iter_mut().for_each(|slot| slot.shapes = &MORE_SHAPES);
+            slots.extend(more);
+        }
+    }
     slots
+}
+
+/// Slots at the place of one over a variable: its products, and what is remembered of it.
+fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
+    let quantity = |slot: &Slot| Some(QUANTITIES.iter().find(|q| q.name() == slot.variable)?.quantity);
+    let here: Vec<&Slot> = all.iter().filter(|slot| slot.address == own.address).collect();
+    let known: Vec<(Quantity, f64)> = here.iter().filter_map(|s| Some((quantity(s)?, s.scale))).collect();
+    let Some(variable) = quantity(own) else { return Vec::new() };
+    let slot = |reading: Reading| {
+        let other = reading.other().and_then(|q| here.iter().find(|slot| quantity(slot) == Some(q)));
+        let runs = case.runs.iter().filter(|run| !run.is_sealed).enumerate();
+        let series: Vec<Vec<f64>> = runs
+            .map(|(r, run)| reading.series(&own.series[r], other.map_or(&[][..], |o| &o.series[r]), &run.drive.times_s))
+            .collect();
+        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        (greatest > 0.0).then(|| Slot { reading, series, scale: 0.5 * greatest, shapes: &SHAPES, ..own.clone() })
+    };
+    readings(variable, &known).into_iter().filter_map(slot).collect()
 }
 
 /// Slots of laws that depend on nothing. What acts in the fluid as it did before adds no number of its own: a steady flow or pressure
@@ -146,7 +209,9 @@ fn constants(case: &Case) -> Vec<Slot> {
     let slot = |(port, address): (Port, String)| {
         let (injected, typical) = injected(case, &address, port)?;
         let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();
-        Some(Slot { address, port, variable: String::new(), scale: 1.0, series, injected, typical })
+        let shapes = std::slice::from_ref(&CONSTANT);
+        let (variable, reading) = (String::new(), Reading::Plain);
+        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, injected, typical })
     };
     each.filter_map(slot).collect()
 }
@@ -173,9 +238,10 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
         }
     }
     let laws: Vec<Law> = asked.iter().map(|(law, ..)| law.clone()).collect();
-    let setting = from.model.setting(case, &from.x);
     let open = case.runs.iter().filter(|run| !run.is_sealed);
-    let Some(visited) = open.map(|run| run.twin.visited(&run.drive, &setting, &laws)).collect::<Option<Vec<_>>>()
+    let Some(visited) = open
+        .map(|run| run.twin.visited(&run.drive, &from.model.setting(case, run, &from.x), &laws))
+        .collect::<Option<Vec<_>>>()
     else {
         return Vec::new();
     };
@@ -183,7 +249,8 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
         let series: Vec<Vec<f64>> = visited.iter().map(|run| run[i].clone()).collect();
         let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let (injected, typical) = injected(case, &address, port)?;
-        (greatest > 0.0).then_some(Slot { address, port, variable, scale: 0.5 * greatest, series, injected, typical })
+        let (reading, shapes, scale) = (Reading::Plain, &SHAPES[..], 0.5 * greatest);
+        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, injected, typical })
     };
     asked.into_iter().enumerate().filter_map(slot).collect()
 }
@@ -255,7 +322,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let (acts, unit, typical) = action(slot.port)?;
     let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
     let name = format!("scale{ending}");
-    let x = format!("({}/{name})", slot.variable);
+    let x = slot.reading.text(&slot.variable, &name);
     let own = if slot.is_constant() { "a".to_owned() } else { format!("a * {}", spelled(shape.text, &x)) };
     let mut parameter = BTreeMap::new();
     let number = |value: f64, unit: Option<&str>| ParameterTable {
@@ -267,16 +334,22 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     if !slot.is_constant() {
         parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
     }
+    if shape.has_number {
+        parameter.insert("p".to_owned(), number(P, Some("1")));
+    }
+    let more = slot.reading.parameter();
+    parameter.extend(more.iter().map(|(name, table, _)| (name.clone(), table.clone())));
     let (adds, scales) = match acts {
         Acts::Adds => (Some(own), None),
         Acts::Scales => (None, Some(format!("1 + {own}"))),
     };
     let table = LawTable {
-        name: slot.address.replace('.', "_"),
+        name: slot.name(),
         port: slot.address.clone(),
         adds,
         scales,
         parameter,
+        state: slot.reading.states(&slot.variable),
         ..LawTable::default()
     };
     let law = table.law(&Surroundings::default()).ok()?;
@@ -284,9 +357,11 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let numbers: Vec<Fitted> = law
         .parameters
         .iter()
-        .map(|p| match p.name == "a" {
-            true => Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true },
-            false => Fitted {
+        .map(|p| match (p.name.as_str(), &more) {
+            ("a", _) => Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true },
+            ("p", _) => Fitted { typical: P, range: P_RANGE, is_fitted: true },
+            (own, Some((name, table, is_fitted))) if own == name => around(table.value, *is_fitted),
+            _ => Fitted {
                 typical: scale,
                 range: Range { min: 0.02 * slot.scale, max: 50.0 * slot.scale },
                 is_fitted: shape.has_scale,
@@ -296,6 +371,11 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let placed = written(case, &table, &law, &numbers, size);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
+}
+
+/// A number that may be fifty times as great or as small.
+fn around(typical: f64, is_fitted: bool) -> Fitted {
+    Fitted { typical, range: Range { min: 0.02 * typical, max: 50.0 * typical }, is_fitted }
 }
 
 /// A law that the scene proposes, tried from its own numbers. A parameter without a range has that of its scale.
@@ -315,7 +395,7 @@ pub fn candidate(case: &Case, own: &Candidate) -> Variant {
 
 /// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
 fn ending(variable: &str) -> &str {
-    let spec = crate::laws::QUANTITIES.iter().find(|q| q.name() == variable);
+    let spec = QUANTITIES.iter().find(|q| q.name() == variable);
     let own = spec.map_or(0, |q| q.ending.len());
     if own == 0 { "" } else { &variable[variable.len() - own - 1..] }
 }

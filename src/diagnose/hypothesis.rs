@@ -6,6 +6,7 @@ use crate::effects::{Kind, port_of};
 
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
+use super::grammar::Reach;
 use super::noise::{self, Noise};
 use super::refits::{foretells, foretells_runs};
 use super::search::{Found, MOST_EFFECTS, least_gain};
@@ -25,6 +26,8 @@ const SEEN: f64 = 3.0;
 /// Laws are called equally good within so much chi², in units of the dispersion, and within this share of what they explain.
 const SAME_CHI2: f64 = 10.0;
 const SAME_SHARE: f64 = 5e-4;
+/// What a letter of a law costs among forms that are equally good, in units of the criterion.
+const PER_LETTER: f64 = 0.02;
 /// Forms that an answer names beside its own, at most.
 const MOST_FORMS: usize = 4;
 
@@ -124,9 +127,15 @@ fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<F
     let criterion = Criterion::of(open, [Some(first), None, None]);
     let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (before - first.cost);
     let same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
-    let best = *same.iter().min_by(|a, b| criterion.at(a).total_cmp(&criterion.at(b)))?;
+    let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
+    let best = *same.iter().min_by(|a, b| price(a).total_cmp(&price(b)))?;
     let others = same.iter().filter(|f| f.model.effects != best.model.effects).take(MOST_FORMS);
     Some((best.clone(), others.map(|f| (*f).clone()).collect()))
+}
+
+/// Length of the last effect's law as text: of forms that do the same the shorter stands.
+fn letters(fit: &Fit) -> usize {
+    fit.model.effects.last().map_or(0, |e| e.spec().law.len())
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
@@ -147,7 +156,11 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
         if is_explained || is_all || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
-        let Some(proposals) = propose(open, &here, say) else { break };
+        let Some(mut proposals) = propose(open, &here, Reach::Plain, say) else { break };
+        let Some(first) = proposals.fits.first() else { break };
+        if lawful.is_none() && leaves_something(open, first) {
+            proposals.fits = wider(open, &here, proposals.fits, say);
+        }
         let Some(first) = proposals.fits.first() else { break };
         if here.cost - first.cost < least_gain(open.samples()) {
             break;
@@ -158,6 +171,14 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
         lawful = Some(Lawful { best, forms, located });
     }
     lawful
+}
+
+/// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
+fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, say: &dyn Fn(String)) -> Vec<Fit> {
+    let Some(wide) = propose(open, from, Reach::Wide, say) else { return plain };
+    let criterion = Criterion::of(open, [plain.first(), wide.fits.first(), None]);
+    let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
+    if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
 }
 
 /// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + numbers ln(samples)`.

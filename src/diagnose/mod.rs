@@ -55,12 +55,14 @@ mod on_full;
 mod preflight;
 pub mod programme;
 mod prove;
+mod reading;
 mod refits;
 mod screening;
 mod seal;
 mod search;
 mod settle;
 mod side_by_side;
+mod specimen;
 mod steady;
 mod summary;
 mod swaps;
@@ -129,8 +131,16 @@ impl Outcome {
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
     pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
+        self.scene_text_of(self.case.specimens().first().copied())
+    }
+
+    /// The corrected scene of one of several specimens.
+    ///
+    /// # Errors
+    /// A fitted number that the scene's own checks refuse.
+    pub fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, crate::scene::SceneError>> {
         let fit = self.complete.as_ref()?;
-        Some(corrected::fitted_scene(&self.case, fit, "corrected", &self.diagnosis.summary))
+        Some(corrected::fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
     }
 
     /// The scene calibrated to the open runs, with no effect added, as text: what everything found is compared with.
@@ -139,7 +149,8 @@ impl Outcome {
     /// A fitted number that the scene's own checks refuse.
     pub fn baseline_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
         let fit = self.baseline.as_ref()?;
-        Some(corrected::fitted_scene(&self.case, fit, "calibrated", "Calibrated, nothing added"))
+        let specimen = self.case.specimens().first().copied();
+        Some(corrected::fitted_scene(&self.case, fit, specimen, "calibrated", "Calibrated, nothing added"))
     }
 }
 
@@ -290,7 +301,9 @@ const SEALED_ALONE: &str = "the open runs are explained down to their noise: wha
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
-    let complete = complete(&whole, &found);
+    // A specimen that is predicted from others has no say in their numbers.
+    let fitted = if case.is_transfer() { Sealed::Open } else { Sealed::Both };
+    let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);
@@ -312,6 +325,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         warnings.push(SEALED_ALONE.to_owned());
     }
     warnings.extend(figures::on_bounds(&case, &complete));
+    let specimens = specimen::numbers(&case, &complete);
+    warnings.extend(specimen::words(&case, &specimens));
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = match verdict {
@@ -330,6 +345,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         location,
         effects,
         calibration: figures::calibration(&case, &complete),
+        specimens,
         fit: proof,
         next_experiment: experiment.next,
         warnings,
@@ -388,6 +404,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         location: Location::default(),
         effects: Vec::new(),
         calibration: BTreeMap::new(),
+        specimens: BTreeMap::new(),
         fit: Proof::default(),
         next_experiment: NextExperiment::none(
             "the recordings say nothing yet: see the warnings for what to record instead",

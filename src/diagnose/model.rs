@@ -111,12 +111,17 @@ impl Model {
 }
 
 impl Model {
-    /// What the fast model is given; `x` holds the calibration, then the fitted numbers of the effects.
-    pub(super) fn setting(&self, case: &Case, x: &[f64]) -> TwinSetting<f64> {
-        let parameters = case.parameters.iter().zip(x).map(|(p, &v)| (p.parameter.clone(), v)).collect();
+    /// What the fast model is given for a run; `x` holds the calibration, then the fitted numbers of the effects.
+    pub(super) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> TwinSetting<f64> {
+        let parameters = case.twin_parameters(run, x);
         let mut effects = case.known_effects.clone();
         effects.extend(self.effects_at(&x[case.parameters.len()..]));
         TwinSetting { parameters, effects }
+    }
+
+    /// The same for every run of a case.
+    pub(super) fn settings(&self, case: &Case, x: &[f64]) -> Vec<TwinSetting<f64>> {
+        case.runs.iter().map(|run| self.setting(case, run, x)).collect()
     }
 }
 
@@ -130,7 +135,7 @@ pub(super) struct Response {
 
 /// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
 pub(super) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
-    simulate_many(case, run, &[model.setting(case, x)]).pop()?
+    simulate_many(case, run, &[model.setting(case, run, x)]).pop()?
 }
 
 /// Simulates a run at several settings; the compared channels of each.
@@ -188,7 +193,7 @@ pub(super) fn respond(case: &Case, run: &CaseRun, model: &Model, x: &[f64], prob
             Sides::Both => (ahead, end(-probe.step), 2.0 * probe.step),
         });
     }
-    let settings: Vec<_> = jobs.iter().map(|x| model.setting(case, x)).collect();
+    let settings: Vec<_> = jobs.iter().map(|x| model.setting(case, run, x)).collect();
     let series = simulate_many(case, run, &settings).into_iter().collect::<Option<Vec<_>>>()?;
     let slopes = ends.into_iter().map(|(ahead, behind, way)| slope(&series[ahead], &series[behind], way)).collect();
     Some(Response { values: series[0].clone(), slopes })

@@ -154,7 +154,7 @@ pub(super) fn signatures(
 /// The part of each signature that stands in one run.
 fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<Option<DVector<f64>>> {
     let case = problem.case;
-    let base = fit.model.setting(case, &fit.x);
+    let base = fit.model.setting(case, run, &fit.x);
     let tried = trials.iter().map(|trial| {
         let mut setting = base.clone();
         let mut values = trial.variant.values.clone();

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::case::CaseRun;
 use super::fit::{Fit, Problem};
-use super::grammar::{Shape, Slot, slots, variant};
+use super::grammar::{Reach, Shape, Slot, slots, variant};
 use super::model::{Model, Sides};
 use super::normal::Number;
 use super::screening::orthogonal;
@@ -59,8 +59,8 @@ impl PartialEq for Wanted<'_> {
 }
 
 /// Screens all slots at a fit and refits the best laws beside it. `None` where the fit cannot be simulated.
-pub(super) fn propose(problem: &Problem, from: &Fit, say: &dyn Fn(String)) -> Option<Proposals> {
-    let all = slots(problem.case, from);
+pub(super) fn propose(problem: &Problem, from: &Fit, reach: Reach, say: &dyn Fn(String)) -> Option<Proposals> {
+    let all = slots(problem.case, from, reach);
     if all.is_empty() {
         return None;
     }
@@ -109,7 +109,7 @@ const SHAPES_OF_PLACE: usize = 2;
 
 /// Laws over the variables of an effect, in its place, that explain as much of what `from` leaves as `best` does; cheapest first.
 pub(super) fn alternatives(problem: &Problem, from: &Fit, best: &Fit, variables: &[&str]) -> Vec<Fit> {
-    let mut all = slots(problem.case, from);
+    let mut all = slots(problem.case, from, Reach::Plain);
     all.retain(|slot| variables.contains(&slot.variable.as_str()));
     let Some(known) = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both) else { return Vec::new() };
     let basis = known.slopes.clone().qr().q();
@@ -147,7 +147,7 @@ fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
         true => variables.is_empty(),
         false => variables.iter().any(|v| v.name() == slot.variable),
     };
-    law.address.to_string() == slot.address && is_over
+    law.name == slot.name() && is_over
 }
 
 fn address(located: &[Located]) -> &str {
@@ -276,7 +276,7 @@ impl Shown<'_> {
     /// The part of each signature that stands in one run.
     fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
         let problem = self.problem;
-        let setting = self.from.model.setting(problem.case, &self.from.x);
+        let setting = self.from.model.setting(problem.case, run, &self.from.x);
         let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
         let mut ports: Vec<&Slot> = Vec::new();
         for w in wanted {
@@ -315,7 +315,9 @@ impl Shown<'_> {
 /// The slots of single elements that a slot is made up of: itself, or those of its port on every element.
 fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> {
     let is_part = move |other: &&Slot| {
-        other.port == slot.port && other.variable == slot.variable && other.address != slot.address
+        let is_same =
+            (other.port, &other.variable, other.reading.word()) == (slot.port, &slot.variable, slot.reading.word());
+        is_same && other.reading.is_like(&slot.reading) && other.address != slot.address
     };
     let is_whole = crate::laws::Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
     let others: Vec<&Slot> = if is_whole { all.iter().filter(is_part).collect() } else { Vec::new() };

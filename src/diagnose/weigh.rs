@@ -59,9 +59,9 @@ pub(super) fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<
     let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
     let noise = noise::estimate(case, &residuals);
     let weights_hold = noise.iter().zip(former).all(|(new, old)| new.is_near(old));
-    let setting = found.best.model.setting(case, &found.best.x);
-    case.plan_steps(&setting, &noise)?;
-    case.leave_out_unheld(&setting)?;
+    let settings = found.best.model.settings(case, &found.best.x);
+    case.plan_steps(&settings, &noise)?;
+    case.leave_out_unheld(&settings)?;
     let problem = open_runs(case, &noise);
     let start = problem.fit(&found.best.model, &found.best.x)?;
     let start = problem.fit_afresh(&start.model, &start.x, start.cost).unwrap_or(start);

@@ -85,9 +85,10 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
 pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     let own = written(&fit.model.effects[at])?;
     let [variable] = own.law.variables()[..] else { return None };
-    let setting = fit.model.setting(case, &fit.x);
-    let visited =
-        case.runs.iter().filter_map(|run| run.twin.visited(&run.drive, &setting, std::slice::from_ref(&own.law)));
+    let visited = case.runs.iter().filter_map(|run| {
+        let setting = fit.model.setting(case, run, &fit.x);
+        run.twin.visited(&run.drive, &setting, std::slice::from_ref(&own.law))
+    });
     let (low, high) = visited
         .flatten()
         .flatten()

@@ -64,6 +64,8 @@ pub struct Run {
     pub conditions: BTreeMap<String, f64>,
     /// Declared outputs that this run was recorded without: a sensor that was added later.
     pub not_recorded: Vec<String>,
+    /// Which sample, or set-up, it was recorded on: calibrated numbers are each one's own.
+    pub specimen: Option<String>,
     /// How its file is laid out.
     pub layout: FileOptions,
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 const FORMAT: i64 = 1;
 pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
 pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
-pub(super) const RUN_KEYS: [&str; 3] = ["file", "use", "not_recorded"];
+pub(super) const RUN_KEYS: [&str; 4] = ["file", "use", "not_recorded", "specimen"];
 
 pub(super) fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
     match top.number("format")? {
@@ -84,6 +84,12 @@ pub(super) fn runs(
         if !seen.insert(run.file.clone()) {
             return Err(keys.error("the file is listed twice\n  remedy: remove one [[run]]"));
         }
+        let named = runs.first().map_or(run.specimen.is_some(), |first: &Run| first.specimen.is_some());
+        if run.specimen.is_some() != named {
+            return Err(keys.error(
+                "some runs name a specimen and others do not\n  remedy: give each [[run]] one: specimen = \"sample 1\"",
+            ));
+        }
         runs.push(run);
     }
     Ok(runs)
@@ -107,6 +113,7 @@ fn run(keys: &Keys<'_>, channels: &[ChannelSpec], layout: &FileOptions) -> Resul
         file: keys.required_text("file", "sine.csv")?.to_owned(),
         run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
         not_recorded: not_recorded(keys, channels)?,
+        specimen: keys.text("specimen")?.map(str::to_owned),
         layout: file_options(keys, layout)?,
         conditions,
     })

@@ -124,6 +124,10 @@ fn run() -> Value {
             "description": "Declared outputs that this run was recorded without.",
         }),
     );
+    keys.insert(
+        "specimen".to_owned(),
+        text("Which sample, or set-up, it was recorded on: calibrated numbers are each one's own in a diagnosis."),
+    );
     json!({
         "type": "object",
         "description": "A run. Keys other than these are known conditions: numbers whose names end in their unit.",

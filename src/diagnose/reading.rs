@@ -1,0 +1,193 @@
+//! What a law's shape is over: a variable, what is remembered of it, its product with another.
+
+use std::collections::BTreeMap;
+
+use crate::laws::{ParameterTable, Quantity, StateTable};
+
+/// What stands in the place of the variable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading {
+    /// The variable itself.
+    Plain,
+    /// Its product with another variable over its scale.
+    Times(Quantity, f64),
+    /// The variable behind by a lag, s, and how far it is ahead of that.
+    Behind(f64),
+    Ahead(f64),
+    /// The greatest magnitude so far.
+    Greatest,
+    /// The variable while it rises, by the sign of its rate.
+    Rising(Quantity),
+}
+
+/// Lags that are tried, s.
+const LAGS_S: [f64; 3] = [0.5, 5.0, 50.0];
+
+/// The rate of a variable, where the rig has it as one.
+fn rate(of: Quantity) -> Option<Quantity> {
+    match of {
+        Quantity::Elongation => Some(Quantity::Speed),
+        Quantity::Angle => Some(Quantity::AngularSpeed),
+        Quantity::Plunger => Some(Quantity::PlungerSpeed),
+        _ => None,
+    }
+}
+
+/// Whether anything of it can be remembered that it does not tell itself.
+fn has_past(of: Quantity) -> bool {
+    !matches!(of, Quantity::Time | Quantity::Speed | Quantity::AngularSpeed | Quantity::PlungerSpeed | Quantity::Flow)
+}
+
+/// Everything but the variable itself, for variable `own` of these, whose scales stand beside them.
+pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
+    // Each product once.
+    let later = all.iter().skip_while(|(q, _)| *q != own).skip(1);
+    let mut found: Vec<Reading> = later.map(|(q, scale)| Reading::Times(*q, *scale)).collect();
+    if has_past(own) {
+        found.extend(LAGS_S.map(Reading::Behind));
+        found.extend(LAGS_S.map(Reading::Ahead));
+        found.push(Reading::Greatest);
+    }
+    found.extend(rate(own).filter(|r| all.iter().any(|(q, _)| q == r)).map(Reading::Rising));
+    found
+}
+
+impl Reading {
+    /// Ending of the law's name.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Plain => "",
+            Self::Times(..) => "_product",
+            Self::Behind(_) => "_behind",
+            Self::Ahead(_) => "_ahead",
+            Self::Greatest => "_greatest",
+            Self::Rising(_) => "_rising",
+        }
+    }
+
+    /// Whether it is the same but for its scale: that of a variable is another on each element.
+    pub fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Times(a, _), Self::Times(b, _)) => a == b,
+            _ => self == other,
+        }
+    }
+
+    /// The other variable that it needs.
+    pub fn other(&self) -> Option<Quantity> {
+        match self {
+            Self::Times(q, _) | Self::Rising(q) => Some(*q),
+            _ => None,
+        }
+    }
+
+    /// What the shape is over in a run: from the variable, the other one, and their times.
+    pub fn series(&self, own: &[f64], other: &[f64], times_s: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Plain => own.to_vec(),
+            Self::Times(_, scale) => own.iter().zip(other).map(|(x, y)| x * y / scale).collect(),
+            Self::Behind(lag_s) => behind(own, times_s, *lag_s),
+            Self::Ahead(lag_s) => own.iter().zip(behind(own, times_s, *lag_s)).map(|(x, s)| x - s).collect(),
+            Self::Greatest => {
+                let mut greatest = 0.0_f64;
+                own.iter()
+                    .map(|x| {
+                        greatest = greatest.max(x.abs());
+                        greatest
+                    })
+                    .collect()
+            }
+            Self::Rising(_) => own.iter().zip(other).map(|(x, v)| if *v > 0.0 { *x } else { 0.0 }).collect(),
+        }
+    }
+
+    /// What the shape is over as text: `(NAME/SCALE)`.
+    pub fn text(&self, variable: &str, scale: &str) -> String {
+        match self {
+            Self::Plain => format!("({variable}/{scale})"),
+            Self::Times(q, _) => format!("({variable}/{scale}*({}/other{}))", q.spec().name(), ending(*q)),
+            Self::Behind(_) | Self::Greatest => format!("(s/{scale})"),
+            Self::Ahead(_) => format!("(({variable} - s)/{scale})"),
+            Self::Rising(q) => format!("({variable}/{scale}*({} > 0))", q.spec().name()),
+        }
+    }
+
+    /// The states that the text needs.
+    pub fn states(&self, variable: &str) -> BTreeMap<String, StateTable> {
+        let own = match self {
+            Self::Behind(_) | Self::Ahead(_) => StateTable {
+                rate: Some(format!("({variable} - s)/lag_s")),
+                start: Some(variable.to_owned()),
+                ..StateTable::default()
+            },
+            Self::Greatest => StateTable { greatest: Some(format!("abs({variable})")), ..StateTable::default() },
+            _ => return BTreeMap::new(),
+        };
+        BTreeMap::from([("s".to_owned(), own)])
+    }
+
+    /// The parameter that the text needs beside size and scale, whether it is fitted, and its value to begin with.
+    pub fn parameter(&self) -> Option<(String, ParameterTable, bool)> {
+        let number = |value: f64, unit: Option<&str>| ParameterTable {
+            value,
+            unit: unit.map(str::to_owned),
+            ..ParameterTable::default()
+        };
+        match self {
+            Self::Times(q, scale) => {
+                let ending = ending(*q);
+                let unit = ending.is_empty().then_some("1");
+                Some((format!("other{ending}"), number(*scale, unit), false))
+            }
+            Self::Behind(lag_s) | Self::Ahead(lag_s) => Some(("lag_s".to_owned(), number(*lag_s, None), true)),
+            _ => None,
+        }
+    }
+}
+
+/// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
+fn ending(of: Quantity) -> String {
+    let ending = of.spec().ending;
+    if ending.is_empty() { String::new() } else { format!("_{ending}") }
+}
+
+/// First-order lag of a series that goes straight from sample to sample; it starts where the series does.
+fn behind(series: &[f64], times_s: &[f64], lag_s: f64) -> Vec<f64> {
+    let mut state = series.first().copied().unwrap_or(0.0);
+    let mut before = (state, times_s.first().copied().unwrap_or(0.0));
+    let follow = |(&x, &t): (&f64, &f64)| {
+        let h = t - before.1;
+        if h > 0.0 {
+            let slope = (x - before.0) / h;
+            state = x - lag_s * slope + (state - before.0 + lag_s * slope) * (-h / lag_s).exp();
+        }
+        before = (x, t);
+        state
+    };
+    series.iter().zip(times_s).map(follow).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ramp_is_followed_by_the_lag() {
+        let times: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
+        let late = behind(&times, &times, 0.5);
+        assert!((times[1999] - late[1999] - 0.5).abs() < 1e-9);
+        // A step's answer is exponential, on uneven times as well.
+        let step: Vec<f64> = times.iter().map(|t| f64::from(u8::from(*t > 0.0))).collect();
+        let answer = behind(&step, &times, 2.0);
+        assert!((answer[201] - (1.0 - (-1.0_f64).exp())).abs() < 3e-3, "{}", answer[201]);
+    }
+
+    #[test]
+    fn products_stand_once_and_time_has_no_past() {
+        let all = [(Quantity::Elongation, 0.01), (Quantity::Speed, 0.1), (Quantity::Time, 10.0)];
+        let of = |q: Quantity| readings(q, &all);
+        assert_eq!(of(Quantity::Time), Vec::new());
+        assert_eq!(of(Quantity::Speed), [Reading::Times(Quantity::Time, 10.0)]);
+        assert!(of(Quantity::Elongation).contains(&Reading::Rising(Quantity::Speed)));
+    }
+}
