@@ -7,7 +7,7 @@ target=${CARGO_TARGET_DIR:-target}
 smam=$target/release/smam
 rerun_version=0.36.3 # that of Cargo.toml: the file format changes between minor releases
 
-say() { printf '\n== %s\n' "$*"; }
+say() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
 
 # where_it_can VARIABLE COMMAND...: runs a check whose exit code 77 says that something it needs is not here. That is no failure
 # at a desk; where it must be here (in CI, which sets VARIABLE), it is.

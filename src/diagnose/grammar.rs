@@ -337,7 +337,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     if shape.has_number {
         parameter.insert("p".to_owned(), number(P, Some("1")));
     }
-    let more = slot.reading.parameter();
+    let more = slot.reading.parameter(&slot.variable);
     parameter.extend(more.iter().map(|(name, table, _)| (name.clone(), table.clone())));
     let (adds, scales) = match acts {
         Acts::Adds => (Some(own), None),

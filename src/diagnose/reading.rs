@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::laws::{ParameterTable, Quantity, StateTable};
+use crate::laws::{ParameterTable, QUANTITIES, Quantity, StateTable};
 
 /// What stands in the place of the variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,10 +18,16 @@ pub enum Reading {
     Greatest,
     /// The variable while it rises, by the sign of its rate.
     Rising(Quantity),
+    /// How far the variable is ahead of a play of this width.
+    Play(f64),
+    /// What dry friction remembers: it follows the variable (whose rate stands beside it) and slips at this distance.
+    Slip(Quantity, f64),
 }
 
 /// Lags that are tried, s.
 const LAGS_S: [f64; 3] = [0.5, 5.0, 50.0];
+/// Widths and distances that are tried, in scales of the variable.
+const WIDTHS: [f64; 2] = [0.1, 0.4];
 
 /// The rate of a variable, where the rig has it as one.
 fn rate(of: Quantity) -> Option<Quantity> {
@@ -40,6 +46,7 @@ fn has_past(of: Quantity) -> bool {
 
 /// Everything but the variable itself, for variable `own` of these, whose scales stand beside them.
 pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
+    let scale = all.iter().find(|(q, _)| *q == own).map_or(1.0, |(_, scale)| *scale);
     // Each product once.
     let later = all.iter().skip_while(|(q, _)| *q != own).skip(1);
     let mut found: Vec<Reading> = later.map(|(q, scale)| Reading::Times(*q, *scale)).collect();
@@ -47,8 +54,12 @@ pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
         found.extend(LAGS_S.map(Reading::Behind));
         found.extend(LAGS_S.map(Reading::Ahead));
         found.push(Reading::Greatest);
+        found.extend(WIDTHS.map(|w| Reading::Play(w * scale)));
     }
-    found.extend(rate(own).filter(|r| all.iter().any(|(q, _)| q == r)).map(Reading::Rising));
+    if let Some(rate) = rate(own).filter(|r| all.iter().any(|(q, _)| q == r)) {
+        found.push(Reading::Rising(rate));
+        found.extend(WIDTHS.map(|w| Reading::Slip(rate, w * scale)));
+    }
     found
 }
 
@@ -62,6 +73,8 @@ impl Reading {
             Self::Ahead(_) => "_ahead",
             Self::Greatest => "_greatest",
             Self::Rising(_) => "_rising",
+            Self::Play(_) => "_play",
+            Self::Slip(..) => "_slip",
         }
     }
 
@@ -69,6 +82,8 @@ impl Reading {
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Times(a, _), Self::Times(b, _)) => a == b,
+            // Widths are counted in scales.
+            (Self::Play(_), Self::Play(_)) | (Self::Slip(..), Self::Slip(..)) => true,
             _ => self == other,
         }
     }
@@ -76,7 +91,7 @@ impl Reading {
     /// The other variable that it needs.
     pub fn other(&self) -> Option<Quantity> {
         match self {
-            Self::Times(q, _) | Self::Rising(q) => Some(*q),
+            Self::Times(q, _) | Self::Rising(q) | Self::Slip(q, _) => Some(*q),
             _ => None,
         }
     }
@@ -98,6 +113,8 @@ impl Reading {
                     .collect()
             }
             Self::Rising(_) => own.iter().zip(other).map(|(x, v)| if *v > 0.0 { *x } else { 0.0 }).collect(),
+            Self::Play(width) => own.iter().zip(followed(own, 0.5 * width)).map(|(x, s)| x - s).collect(),
+            Self::Slip(_, distance) => slipping(own, *distance),
         }
     }
 
@@ -106,8 +123,8 @@ impl Reading {
         match self {
             Self::Plain => format!("({variable}/{scale})"),
             Self::Times(q, _) => format!("({variable}/{scale}*({}/other{}))", q.spec().name(), ending(*q)),
-            Self::Behind(_) | Self::Greatest => format!("(s/{scale})"),
-            Self::Ahead(_) => format!("(({variable} - s)/{scale})"),
+            Self::Behind(_) | Self::Greatest | Self::Slip(..) => format!("(s/{scale})"),
+            Self::Ahead(_) | Self::Play(_) => format!("(({variable} - s)/{scale})"),
             Self::Rising(q) => format!("({variable}/{scale}*({} > 0))", q.spec().name()),
         }
     }
@@ -120,6 +137,20 @@ impl Reading {
                 start: Some(variable.to_owned()),
                 ..StateTable::default()
             },
+            Self::Play(_) => StateTable {
+                play_of: Some(variable.to_owned()),
+                width: Some(width(variable)),
+                start: Some(variable.to_owned()),
+                ..StateTable::default()
+            },
+            Self::Slip(rate, _) => {
+                let rate = rate.spec().name();
+                StateTable {
+                    rate: Some(format!("{rate} - abs({rate})*s/{}", width(variable))),
+                    start: Some(format!("0*{variable}")),
+                    ..StateTable::default()
+                }
+            }
             Self::Greatest => StateTable { greatest: Some(format!("abs({variable})")), ..StateTable::default() },
             _ => return BTreeMap::new(),
         };
@@ -127,7 +158,7 @@ impl Reading {
     }
 
     /// The parameter that the text needs beside size and scale, whether it is fitted, and its value to begin with.
-    pub fn parameter(&self) -> Option<(String, ParameterTable, bool)> {
+    pub fn parameter(&self, variable: &str) -> Option<(String, ParameterTable, bool)> {
         let number = |value: f64, unit: Option<&str>| ParameterTable {
             value,
             unit: unit.map(str::to_owned),
@@ -139,10 +170,41 @@ impl Reading {
                 let unit = ending.is_empty().then_some("1");
                 Some((format!("other{ending}"), number(*scale, unit), false))
             }
+            Self::Play(own) | Self::Slip(_, own) => Some((width(variable), number(*own, None), true)),
             Self::Behind(lag_s) | Self::Ahead(lag_s) => Some(("lag_s".to_owned(), number(*lag_s, None), true)),
             _ => None,
         }
     }
+}
+
+/// Name of a width that is counted in a variable's unit.
+fn width(variable: &str) -> String {
+    let of = QUANTITIES.iter().find(|q| q.name() == variable).map(|q| q.quantity);
+    format!("width{}", of.map_or(String::new(), ending))
+}
+
+/// What follows a series with a dead zone of so much to each side; it starts where the series does.
+fn followed(series: &[f64], half: f64) -> Vec<f64> {
+    let mut state = series.first().copied().unwrap_or(0.0);
+    let follow = |x: &f64| {
+        state = state.clamp(x - half, x + half);
+        state
+    };
+    series.iter().map(follow).collect()
+}
+
+/// What goes with a series and slips at a distance: `ds = dx - |dx| s/distance`, exact along straight ways.
+fn slipping(series: &[f64], distance: f64) -> Vec<f64> {
+    let mut state = 0.0;
+    let mut before = series.first().copied().unwrap_or(0.0);
+    let follow = |x: &f64| {
+        let way = x - before;
+        let end = distance * way.signum();
+        state = end + (state - end) * (-way.abs() / distance).exp();
+        before = *x;
+        state
+    };
+    series.iter().map(follow).collect()
 }
 
 /// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
@@ -180,6 +242,17 @@ mod tests {
         let step: Vec<f64> = times.iter().map(|t| f64::from(u8::from(*t > 0.0))).collect();
         let answer = behind(&step, &times, 2.0);
         assert!((answer[201] - (1.0 - (-1.0_f64).exp())).abs() < 3e-3, "{}", answer[201]);
+    }
+
+    #[test]
+    fn play_lags_by_half_its_width_and_dry_friction_slips() {
+        let up: Vec<f64> = (0..=100).map(f64::from).chain((0..100).rev().map(f64::from)).collect();
+        let ahead = Reading::Play(10.0).series(&up, &[], &[]);
+        assert_eq!((ahead[50], ahead[150], ahead[0]), (5.0, -5.0, 0.0));
+        let slip = Reading::Slip(Quantity::Speed, 4.0).series(&up, &[], &[]);
+        assert!((slip[100] - 4.0).abs() < 1e-6 && (slip[200] + 4.0).abs() < 1e-6);
+        // Right after the turn it gives way like a spring.
+        assert!((slip[100] - slip[101] - 4.0 * 2.0 * (1.0 - (-0.25_f64).exp())).abs() < 1e-6);
     }
 
     #[test]
