@@ -518,3 +518,22 @@ fn stock_scenes_run_anywhere_and_are_copied_whole() {
     refused(&again, &["antagonistic_pulley.toml", "is there already", "remedy"]);
     assert_eq!(std::fs::read_to_string(&scene).expect("there"), "changed");
 }
+
+/// A run that diverges: the former file stays, what was computed stands beside it, in whole rows of numbers.
+#[test]
+fn a_run_that_diverges_leaves_the_former_file() {
+    let here = folder();
+    for name in ["a.csv", "a.parquet"] {
+        std::fs::write(here.path().join(name), "former").expect("written");
+        let short = ["--law", "muscle.pull adds 1.0/(max(0.2 - time_s, 0.0)*1e3)", "--duration", "1"];
+        let output = smam(&[&["run", "muscle_bench", "--output", name], &short[..]].concat(), here.path());
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert_eq!(std::fs::read_to_string(here.path().join(name)).expect("there"), "former");
+        let part = name.replace("a.", "a.partial.");
+        assert!(said(&output).contains(&format!("what was computed until then: {part}")), "{}", said(&output));
+        let recording = smam::recording::read_recording(&here.path().join(&part)).expect("whole rows");
+        assert!(recording.sample_count() > 10 && recording.time_s().iter().all(|t| *t < 0.2));
+        assert!(recording.channels().iter().all(|c| c.values.iter().all(|v| v.is_finite())), "{name}");
+    }
+    assert_eq!(listing(here.path()), ["a.csv", "a.parquet", "a.partial.csv", "a.partial.parquet"]);
+}
