@@ -537,3 +537,27 @@ fn a_run_that_diverges_leaves_the_former_file() {
     }
     assert_eq!(listing(here.path()), ["a.csv", "a.parquet", "a.partial.csv", "a.partial.parquet"]);
 }
+
+/// Ctrl-C ends a command that writes nothing until it has ended, with exit code 1.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_diagnosis_exits_with_one() {
+    let here = folder();
+    recorded(here.path());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_smam"))
+        .args(["diagnose", "rig", "--out", "d"])
+        .current_dir(here.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    let mut first = String::new();
+    let stderr = child.stderr.take().expect("piped");
+    let mut lines = std::io::BufReader::new(stderr);
+    std::io::BufRead::read_line(&mut lines, &mut first).expect("its first step");
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(killed.success());
+    let mut rest = String::new();
+    std::io::Read::read_to_string(&mut lines, &mut rest).expect("ends");
+    assert_eq!(child.wait().expect("ended").code(), Some(1), "{first}{rest}");
+    assert!(rest.contains("interrupted: "), "{first}{rest}");
+}

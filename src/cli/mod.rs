@@ -137,7 +137,9 @@ pub fn run() -> Result<ExitCode, CliError> {
 }
 
 fn run_command() -> Result<ExitCode, CliError> {
-    match Arguments::parse().command {
+    let command = Arguments::parse().command;
+    interrupt::install();
+    match command {
         None => {
             say!("{}", first_words());
             Ok(ExitCode::SUCCESS)
