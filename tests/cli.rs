@@ -561,3 +561,22 @@ fn an_interrupted_diagnosis_exits_with_one() {
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{first}{rest}");
     assert!(rest.contains("interrupted: "), "{first}{rest}");
 }
+
+/// A law that has no value is no fault of the recordings.
+#[test]
+fn a_law_without_a_value_is_named_by_a_diagnosis() {
+    let here = folder();
+    recorded(here.path());
+    for (law, at) in [
+        ("muscle.pull adds 0/0", "at 0.0000 s its value is NaN"),
+        ("muscle.pull adds 1/max(1.0 - time_s, 0.0)*0.0", "its value is NaN"),
+    ] {
+        let output = smam(&["diagnose", "rig", "--law", law, "--out", "d"], here.path());
+        let text = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(
+            text.contains("[[law]] law_1 (muscle.pull): at ") && text.contains(at) && text.contains("remedy: "),
+            "{text}"
+        );
+    }
+}

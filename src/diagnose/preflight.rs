@@ -4,7 +4,9 @@ use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
 use crate::recording::figures::{correlation, spread};
-use crate::recording::{BySize, noise_sd, strays, unit_by_size};
+use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
+use crate::scene::Scene;
+use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
 /// Fewer samples than this say nothing.
 const LEAST_SAMPLES: usize = 200;
@@ -19,7 +21,10 @@ pub struct Preflight {
 }
 
 /// Looks at the recordings alone and at how the uncalibrated scene compares in scale.
-pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
+///
+/// # Errors
+/// A law of the scene that has no value somewhere on the way.
+pub(super) fn preflight(case: &Case, problem: &Problem) -> Result<Preflight, SystemError> {
     let mut found = Preflight::default();
     let samples = problem.samples();
     if samples < LEAST_SAMPLES {
@@ -31,7 +36,7 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
     if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
         scales(case, problem, &mut found);
     }
-    found
+    Ok(found)
 }
 
 fn inputs(case: &Case, found: &mut Preflight) {
@@ -125,15 +130,16 @@ fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) ->
 const NOISE_ALONE: f64 = 3.0;
 
 /// Compares each channel's spread with that of the scene as it stands.
-fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
+fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), SystemError> {
     let model = Model::baseline();
     let start = problem.start(&model, None);
     let Some(residuals) = problem.residuals(&model, &start) else {
         found.unusable.push("the scene cannot follow the recorded inputs: it diverges".to_owned());
-        return;
+        return Ok(());
     };
     for (c, channel) in case.channels.iter().enumerate() {
         let mut measured = Vec::new();
+        refuse_faulty_law(case)?;
         let mut simulated = Vec::new();
         for (run, residual) in problem.runs.iter().zip(&residuals) {
             for (m, r) in run.measured[c].iter().zip(&residual[c]).filter(|(m, r)| m.is_finite() && r.is_finite()) {
@@ -171,6 +177,23 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
 fn other_zero(column: &str, off: f64) -> String {
     let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
     format!(
+    Ok(())
+}
+
+/// Where a law of the scene has no value, it is the law that is wrong and not the recordings: the full scene tells which, and when.
+fn refuse_faulty_law(case: &Case) -> Result<(), SystemError> {
+    let at_fault = case.runs.iter().filter(|run| !run.scene.laws.is_empty()).find_map(|run| played(run).err());
+    at_fault.filter(|error| matches!(error, SystemError::Law { .. })).map_or(Ok(()), Err)
+}
+
+fn played(run: &CaseRun) -> Result<(), SystemError> {
+    let mut simulation = Simulation::new(Scene::clone(&run.scene))?;
+    for (input, values) in run.scene.file.input.iter().zip(&run.drive.inputs) {
+        if let Some(line) = PiecewiseLinear::new(run.times_s(), values) {
+            simulation.set_input(&input.channel, InputSource::Recorded(line));
+        }
+    }
+    record(&mut simulation, &Schedule::at(run.times_s().to_vec())).map(drop)
         "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
          absolute pressure), subtract it"
     )
