@@ -580,3 +580,40 @@ fn a_law_without_a_value_is_named_by_a_diagnosis() {
         );
     }
 }
+
+/// Stock recordings, of a rig with another friction or tension: what differs is physics, no mark of a logger and no other zero.
+#[test]
+fn physics_is_noted_neither_as_strays_nor_as_another_zero() {
+    let here = folder();
+    // An output in a wrong unit ends the diagnosis after its first look.
+    let notes = |scene: &str, changes: &[&str], wrong: &str, channel: &str| {
+        let made = [&["run", scene, "--output", "rig/x.csv"], changes].concat();
+        std::fs::create_dir_all(here.path().join("rig")).expect("folder");
+        assert_eq!(smam(&made, here.path()).status.code(), Some(0));
+        let _ = std::fs::remove_file(here.path().join("rig/recordings.toml"));
+        assert_eq!(smam(&["import", "rig", "--scene", scene], here.path()).status.code(), Some(0));
+        let file = here.path().join("rig/recordings.toml");
+        let text = std::fs::read_to_string(&file).expect("written");
+        let output = |column: &str| format!("column = \"{column}\"\nrole = \"output\"\n");
+        let text = text.replace(&output(wrong), &(output(wrong) + "scale = 0.001\n"));
+        let text = text.replace(&output("pressure_kpa"), &(output("pressure_kpa") + channel));
+        std::fs::write(&file, text).expect("written");
+        let output = smam(&["diagnose", "rig", "--out", "d"], here.path());
+        assert!(said(&output).contains(wrong), "{}", said(&output));
+        said(&output)
+    };
+    for (scene, changes, wrong) in [
+        ("muscle_bench", &["--set", "muscles.friction.m0_n=0.3"][..], "elongation_mm"),
+        (
+            "muscle_bench",
+            &["--set", "muscles.friction.m0_n=0.3", "--set", "simulation.output_interval_s=0.1"],
+            "elongation_mm",
+        ),
+        ("antagonistic_pulley", &["--set", "muscles.pre_elongation_ratio=0.6"], "pressure_2_kpa"),
+    ] {
+        let text = notes(scene, changes, wrong, "");
+        assert!(!text.contains("lie far outside") && !text.contains("if its zero is another"), "{text}");
+    }
+    let absolute = notes("muscle_bench", &[], "elongation_mm", "zero = -101.3\n");
+    assert!(absolute.contains("pressure_kpa: begins +") && absolute.contains("if its zero is another"), "{absolute}");
+}

@@ -34,7 +34,7 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Result<Preflight, Sys
     channels(case, &mut found);
     // A scene that nothing drives stands still: its spread says nothing of units.
     if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
-        scales(case, problem, &mut found);
+        scales(case, problem, &mut found)?;
     }
     Ok(found)
 }
@@ -111,15 +111,20 @@ const BEGINNING_S: f64 = 0.3;
 const BEGINS_OFF: f64 = 10.0;
 const BEGINS_OFF_SHARE: f64 = 0.05;
 
-/// How far from the scene a channel begins, in the same way in every run that begins at zero.
+/// How far from the scene a channel begins, in the same way in every run that begins at zero. What only grows in the first moments is
+/// motion, and where the scene itself begins further away from zero (a muscle under tension) its parameters decide on it.
 fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
     let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
     let offsets: Vec<f64> = at_zero
         .filter_map(|(run, residual)| {
             let until = run.times_s().first()? + BEGINNING_S;
-            let early = run.times_s().iter().zip(&residual[channel]).take_while(|(t, _)| **t <= until);
-            let known: Vec<f64> = early.map(|(_, r)| *r).filter(|r| r.is_finite()).collect();
-            (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+            let values = run.measured[channel].iter().zip(&residual[channel]);
+            let early = run.times_s().iter().zip(values).take_while(|(t, _)| **t <= until);
+            let known: Vec<(f64, f64)> = early.map(|(_, (m, r))| (*m, *r)).filter(|(_, r)| r.is_finite()).collect();
+            let (measured, first) = *known.first()?;
+            let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
+            let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
+            Some(if is_zero { mean } else { 0.0 })
         })
         .collect();
     let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
@@ -134,12 +139,12 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), S
     let model = Model::baseline();
     let start = problem.start(&model, None);
     let Some(residuals) = problem.residuals(&model, &start) else {
+        refuse_faulty_law(case)?;
         found.unusable.push("the scene cannot follow the recorded inputs: it diverges".to_owned());
         return Ok(());
     };
     for (c, channel) in case.channels.iter().enumerate() {
         let mut measured = Vec::new();
-        refuse_faulty_law(case)?;
         let mut simulated = Vec::new();
         for (run, residual) in problem.runs.iter().zip(&residuals) {
             for (m, r) in run.measured[c].iter().zip(&residual[c]).filter(|(m, r)| m.is_finite() && r.is_finite()) {
@@ -172,11 +177,6 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), S
             found.warnings.extend(off.map(|off| other_zero(column, off)));
         }
     }
-}
-
-fn other_zero(column: &str, off: f64) -> String {
-    let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
-    format!(
     Ok(())
 }
 
@@ -194,6 +194,11 @@ fn played(run: &CaseRun) -> Result<(), SystemError> {
         }
     }
     record(&mut simulation, &Schedule::at(run.times_s().to_vec())).map(drop)
+}
+
+fn other_zero(column: &str, off: f64) -> String {
+    let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
+    format!(
         "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
          absolute pressure), subtract it"
     )
