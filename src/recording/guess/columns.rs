@@ -190,7 +190,7 @@ fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     layout.options.split_at_restart = faults.restarts > 0;
     layout.options.merge_repeated = faults.repeats > 0;
     let words = [
-        (faults.restarts, "a clock that starts anew: split there"),
+        (faults.restarts, "a clock that starts anew: split there, each part a start from rest"),
         (faults.repeats, "repeated stamps: the mean of their rows"),
     ];
     let found = words.into_iter().filter(|(count, _)| *count > 0);
