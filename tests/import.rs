@@ -640,3 +640,19 @@ fn real_blocks_with_lost_time_are_said() {
     assert_eq!(blocks.samples, 10);
     assert!(blocks.passed.is_some_and(|share| share > 0.5), "{blocks:?}");
 }
+
+#[test]
+fn columns_of_one_name_are_told_apart() {
+    let names = ["time_s", "Plunger [mm]", "Laser [mm]", "Pressure [kPa]", "Pressure [kPa]"];
+    let text = Style { names, ..PLAIN }.text();
+    let (folder, written, parts) = imported("a.csv", text.as_bytes());
+    assert!(written.contains("skip_rows = 1") && written.contains("\"Pressure [kPa] (2)\""), "{written}");
+    assert_eq!(parts[0].recording.find("pressure_kpa").expect("the first").values.len(), ROWS);
+    // Declared by hand it is refused, with that remedy.
+    let by_hand = "format = 1\nscene = \"muscle_bench\"\n[[channel]]\ncolumn = \"plunger_mm\"\nrole = \"input\"\nname = \"Plunger [mm]\"\n\
+                   [[channel]]\ncolumn = \"pressure_kpa\"\nrole = \"output\"\nname = \"Pressure [kPa]\"\n[[run]]\nfile = \"a.csv\"\n";
+    fs::write(folder.path().join("recordings.toml"), by_hand).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    let refused = set.load_run(&set.runs[0]).expect_err("twice").to_string();
+    assert!(refused.contains("header = false, skip_rows and names (`smam import` writes them)"), "{refused}");
+}

@@ -159,7 +159,7 @@ fn with_names(lines: &[Line], found: std::ops::Range<usize>, mut options: FileOp
             if (!is_first || is_comment) && options.header.is_none() {
                 options.header = Some(Header::Line(at));
             }
-            unmarked(cells)
+            own_names(unmarked(cells), at, &mut options, &mut said)
         }
         None => {
             options.header = Some(Header::Absent);
@@ -189,5 +189,24 @@ fn are_units(cells: &[String]) -> bool {
     let bare = |cell: &String| cell.trim_matches(['[', ']', '(', ')']).trim().to_owned();
     let filled: Vec<String> = cells.iter().filter(|cell| !cell.is_empty()).map(bare).collect();
     let known = filled.iter().filter(|cell| file_unit(cell).is_some() || *cell == "-").count();
+/// Names of columns that stand twice get a number: then the file's own are passed over and those stand in `names`.
+fn own_names(names: Vec<String>, line: usize, options: &mut FileOptions, said: &mut Vec<Said>) -> Vec<String> {
+    let count = |upto: usize| names[..upto].iter().filter(|name| **name == names[upto]).count();
+    let numbered = |at: usize| match count(at) {
+        _ if names[at].is_empty() => String::new(),
+        0 => names[at].clone(),
+        earlier => format!("{} ({})", names[at], earlier + 1),
+    };
+    let own: Vec<String> = (0..names.len()).map(numbered).collect();
+    if own == names {
+        return names;
+    }
+    let twice: Vec<&str> = own.iter().filter(|own| !names.contains(own)).map(String::as_str).collect();
+    let what = format!("names that stand twice are numbered: \"{}\"", twice.join("\", \""));
+    said.push(Said { what, sureness: Sureness::Sure });
+    (options.header, options.skip_rows, options.names) = (Some(Header::Absent), line, own.clone());
+    own
+}
+
     !filled.is_empty() && 2 * known > filled.len() && filled.iter().any(|cell| file_unit(cell).is_some())
 }
