@@ -22,6 +22,7 @@ mod files;
 mod identify;
 mod identify_page;
 mod import;
+mod import_files;
 mod interrupt;
 mod junit;
 mod laws;
