@@ -735,6 +735,16 @@ fn summary_rows_at_the_end_are_recognised_and_said() {
         assert!(!written.contains("split_at_restart"), "{written}");
     }
     assert!(!holds("a.csv", PLAIN.text().as_bytes()).contains("skip_last_rows"));
+    // Described by hand, the error names the key.
+    let (folder, written, _) = imported("a.csv", (PLAIN.text() + "Mean,1.5,13,900,0.3\n").as_bytes());
+    let file = folder.path().join("recordings.toml");
+    fs::write(&file, written.replace("skip_last_rows = 1\n", "")).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    let refused = set.load_run(&set.runs[0]).expect_err("no time").to_string();
+    assert!(
+        refused.contains("\"Mean\" is not a finite number") && refused.contains("say skip_last_rows = 1"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -53,7 +53,7 @@ pub(super) fn leave_out(file: &Path, layout: &mut Layout, time: impl Fn(&Layout)
     // The whole file would be a summary: its time is another column.
     let count = if count > LOOKED_AT || count >= rows.len() { labelled } else { count };
     let count = count + unlabelled(file, layout, time, count);
-    if count == 0 || count > LOOKED_AT.min(rows.len()) {
+    if count == 0 || count > LOOKED_AT || count >= rows.len() {
         return;
     }
     let left_out = rows[rows.len() - count..].to_vec();
