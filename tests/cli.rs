@@ -518,3 +518,102 @@ fn stock_scenes_run_anywhere_and_are_copied_whole() {
     refused(&again, &["antagonistic_pulley.toml", "is there already", "remedy"]);
     assert_eq!(std::fs::read_to_string(&scene).expect("there"), "changed");
 }
+
+/// A run that diverges: the former file stays, what was computed stands beside it, in whole rows of numbers.
+#[test]
+fn a_run_that_diverges_leaves_the_former_file() {
+    let here = folder();
+    for name in ["a.csv", "a.parquet"] {
+        std::fs::write(here.path().join(name), "former").expect("written");
+        let short = ["--law", "muscle.pull adds 1.0/(max(0.2 - time_s, 0.0)*1e3)", "--duration", "1"];
+        let output = smam(&[&["run", "muscle_bench", "--output", name], &short[..]].concat(), here.path());
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert_eq!(std::fs::read_to_string(here.path().join(name)).expect("there"), "former");
+        let part = name.replace("a.", "a.partial.");
+        assert!(said(&output).contains(&format!("what was computed until then: {part}")), "{}", said(&output));
+        let recording = smam::recording::read_recording(&here.path().join(&part)).expect("whole rows");
+        assert!(recording.sample_count() > 10 && recording.time_s().iter().all(|t| *t < 0.2));
+        assert!(recording.channels().iter().all(|c| c.values.iter().all(|v| v.is_finite())), "{name}");
+    }
+    assert_eq!(listing(here.path()), ["a.csv", "a.parquet", "a.partial.csv", "a.partial.parquet"]);
+}
+
+/// Ctrl-C ends a command that writes nothing until it has ended, with exit code 1.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_diagnosis_exits_with_one() {
+    let here = folder();
+    recorded(here.path());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_smam"))
+        .args(["diagnose", "rig", "--out", "d"])
+        .current_dir(here.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    let mut first = String::new();
+    let stderr = child.stderr.take().expect("piped");
+    let mut lines = std::io::BufReader::new(stderr);
+    std::io::BufRead::read_line(&mut lines, &mut first).expect("its first step");
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(killed.success());
+    let mut rest = String::new();
+    std::io::Read::read_to_string(&mut lines, &mut rest).expect("ends");
+    assert_eq!(child.wait().expect("ended").code(), Some(1), "{first}{rest}");
+    assert!(rest.contains("interrupted: "), "{first}{rest}");
+}
+
+/// A law that has no value is no fault of the recordings.
+#[test]
+fn a_law_without_a_value_is_named_by_a_diagnosis() {
+    let here = folder();
+    recorded(here.path());
+    for (law, at) in [
+        ("muscle.pull adds 0/0", "at 0.0000 s its value is NaN"),
+        ("muscle.pull adds 1/max(1.0 - time_s, 0.0)*0.0", "its value is NaN"),
+    ] {
+        let output = smam(&["diagnose", "rig", "--law", law, "--out", "d"], here.path());
+        let text = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(
+            text.contains("[[law]] law_1 (muscle.pull): at ") && text.contains(at) && text.contains("remedy: "),
+            "{text}"
+        );
+    }
+}
+
+/// Stock recordings, of a rig with another friction or tension: what differs is physics, no mark of a logger and no other zero.
+#[test]
+fn physics_is_noted_neither_as_strays_nor_as_another_zero() {
+    let here = folder();
+    // An output in a wrong unit ends the diagnosis after its first look.
+    let notes = |scene: &str, changes: &[&str], wrong: &str, channel: &str| {
+        let made = [&["run", scene, "--output", "rig/x.csv"], changes].concat();
+        std::fs::create_dir_all(here.path().join("rig")).expect("folder");
+        assert_eq!(smam(&made, here.path()).status.code(), Some(0));
+        let _ = std::fs::remove_file(here.path().join("rig/recordings.toml"));
+        assert_eq!(smam(&["import", "rig", "--scene", scene], here.path()).status.code(), Some(0));
+        let file = here.path().join("rig/recordings.toml");
+        let text = std::fs::read_to_string(&file).expect("written");
+        let output = |column: &str| format!("column = \"{column}\"\nrole = \"output\"\n");
+        let text = text.replace(&output(wrong), &(output(wrong) + "scale = 0.001\n"));
+        let text = text.replace(&output("pressure_kpa"), &(output("pressure_kpa") + channel));
+        std::fs::write(&file, text).expect("written");
+        let output = smam(&["diagnose", "rig", "--out", "d"], here.path());
+        assert!(said(&output).contains(wrong), "{}", said(&output));
+        said(&output)
+    };
+    for (scene, changes, wrong) in [
+        ("muscle_bench", &["--set", "muscles.friction.m0_n=0.3"][..], "elongation_mm"),
+        (
+            "muscle_bench",
+            &["--set", "muscles.friction.m0_n=0.3", "--set", "simulation.output_interval_s=0.1"],
+            "elongation_mm",
+        ),
+        ("antagonistic_pulley", &["--set", "muscles.pre_elongation_ratio=0.6"], "pressure_2_kpa"),
+    ] {
+        let text = notes(scene, changes, wrong, "");
+        assert!(!text.contains("lie far outside") && !text.contains("if its zero is another"), "{text}");
+    }
+    let absolute = notes("muscle_bench", &[], "elongation_mm", "zero = -101.3\n");
+    assert!(absolute.contains("pressure_kpa: begins +") && absolute.contains("if its zero is another"), "{absolute}");
+}

@@ -320,6 +320,13 @@ fn messy_14_a_clock_that_starts_anew() {
     same(&parts[1], &shifted(&expected()[60..], 0.6));
     let compared = smam(&["compare", "."], folder.path());
     assert!(said(&compared).contains("a.csv (part 2 of 2)"), "{}", said(&compared));
+    assert!(said(&compared).contains("Each is simulated as a start from rest"), "{}", said(&compared));
+    // Its remedy: one run with an even clock.
+    assert!(said(&compared).contains("say interval_s = 0.01 in the place of split_at_restart"), "{}", said(&compared));
+    let even = written.replace("split_at_restart = true", "interval_s = 0.01").replace("time_unit = \"ms\"\n", "");
+    fs::write(folder.path().join("recordings.toml"), even).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    same(&set.load_run(&set.runs[0]).expect("one run"), &expected());
 }
 
 #[test]
@@ -632,4 +639,184 @@ fn real_blocks_with_lost_time_are_said() {
     let blocks = smam::recording::survey(&run.recording).blocks.expect("blocks of samples");
     assert_eq!(blocks.samples, 10);
     assert!(blocks.passed.is_some_and(|share| share > 0.5), "{blocks:?}");
+}
+
+/// Channels named by name alone; LabVIEW's header has their units in a row of its own.
+#[test]
+fn units_of_a_labview_header_are_read() {
+    let head = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tOne\n***End_of_Header***\t\n\t\n\
+                Channels\t4\t\t\t\nSamples\t120\t120\t120\t120\nY_Unit_Label\tcm\tmm\tbar\tN\n***End_of_Header***\t\t\t\t\n";
+    let names = ["X_Value", "Plunger", "Elongation", "Pressure", "Force\tComment"];
+    let factors = [10.0, 1.0, 100.0, 1.0];
+    let style = Style {
+        names,
+        above: head,
+        delimiter: "\t",
+        number: comma,
+        time: |ms| comma(ms as f64 / 1000.0),
+        factors,
+        ..PLAIN
+    };
+    let written = holds("a.lvm", style.text().as_bytes());
+    assert!(written.contains("unit = \"bar\"") && !written.contains("No unit is stated"), "{written}");
+}
+
+/// Files in a folder beside the recordings, and what is said of them.
+#[test]
+fn foreign_files_of_a_folder_are_left_out_and_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let rig = folder.path().join("rig");
+    fs::create_dir(&rig).expect("made");
+    fs::write(rig.join("a_notes.txt"), "Bled the line at noon.\nNothing else to say.\n").expect("written");
+    fs::write(rig.join("b_scale.csv"), "volts,newtons\n0,0\n1,2.5\n2,5\n").expect("written");
+    for name in ["sine.csv", "step.csv"] {
+        fs::write(rig.join(name), PLAIN.text()).expect("written");
+    }
+    let output = smam(&["import", "rig"], folder.path());
+    let text = said(&output);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("left out: rig/a_notes.txt: no table of numbers is found in it"), "{text}");
+    assert!(text.contains("left out: rig/b_scale.csv: no column \"time_s\", which rig/sine.csv has"), "{text}");
+    let set = RecordingSet::load(&rig).expect("a set");
+    assert_eq!(set.runs.iter().map(|r| r.file.as_str()).collect::<Vec<_>>(), ["sine.csv", "step.csv"]);
+    let written = fs::read_to_string(rig.join("recordings.toml")).expect("written");
+    assert!(
+        written.contains("# Left out: rig/a_notes.txt") && written.contains("# Left out: rig/b_scale.csv"),
+        "{written}"
+    );
+    // By its own name it is refused; the remedy for the other is to import it by itself.
+    let refused = smam(&["import", "rig/a_notes.txt", "--force"], folder.path());
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    let alone = smam(&["import", "rig/b_scale.csv", "--scene", "muscle_bench", "--out", "scale"], folder.path());
+    assert!(folder.path().join("scale/recordings.toml").is_file(), "{}", said(&alone));
+}
+
+#[test]
+fn a_scene_is_called_from_where_the_recordings_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir_all(at("lab/monday")).expect("made");
+    assert!(smam(&["scenes", "muscle_bench", "--copy-to", "lab/rig"], folder.path()).status.success());
+    fs::write(at("lab/monday/a.csv"), PLAIN.text()).expect("written");
+    let output = smam(&["import", "lab/monday", "--scene", "lab/rig/scenes/muscle_bench.toml"], folder.path());
+    assert!(output.status.success(), "{}", said(&output));
+    let set = RecordingSet::load(&at("lab/monday")).expect("a set");
+    assert_eq!(set.scene, "../rig/scenes/muscle_bench.toml");
+    // From anywhere else it is found as well.
+    let compared = smam(&["compare", "monday"], &at("lab"));
+    assert!(compared.status.success(), "{}", said(&compared));
+    let elsewhere =
+        smam(&["import", "monday", "--scene", "rig/scenes/muscle_bench.toml", "--out", "new/set"], &at("lab"));
+    assert!(elsewhere.status.success(), "{}", said(&elsewhere));
+    assert_eq!(RecordingSet::load(&at("lab/new/set")).expect("a set").scene, "../../rig/scenes/muscle_bench.toml");
+}
+
+/// What spreadsheets and loggers write below their samples.
+#[test]
+fn summary_rows_at_the_end_are_recognised_and_said() {
+    for (below, shown) in [
+        (
+            "Mean;1,5;13;900;0,3\nMax;3;27;1800;0,5\n",
+            "2 rows at the end are no samples and are left out: \"Mean\", \"Max\"",
+        ),
+        ("\nMittelwert:;1,5;13;900;0,3\n", "1 rows at the end"),
+        ("595;1,5;13;900;0,3\n1190;3;27;1800;0,5\n", "2 rows at the end"),
+        (";1,5;13;900;0,3\n", "1 rows at the end"),
+        ("End of measurement\n", "1 rows at the end are no samples and are left out: \"End of measurement\""),
+    ] {
+        let style = Style { names: BRACKETS, delimiter: ";", number: comma, time: ms, ..PLAIN };
+        let text = style.text() + below;
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("a.csv"), text.as_bytes()).expect("written");
+        let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+        assert!(said(&output).contains(shown), "{below}: {}", said(&output));
+        let written = holds("a.csv", text.as_bytes());
+        assert!(written.contains("skip_last_rows = "), "{written}");
+        assert!(!written.contains("split_at_restart"), "{written}");
+    }
+    assert!(!holds("a.csv", PLAIN.text().as_bytes()).contains("skip_last_rows"));
+    // Described by hand, the error names the key.
+    let (folder, written, _) = imported("a.csv", (PLAIN.text() + "Mean,1.5,13,900,0.3\n").as_bytes());
+    let file = folder.path().join("recordings.toml");
+    fs::write(&file, written.replace("skip_last_rows = 1\n", "")).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    let refused = set.load_run(&set.runs[0]).expect_err("no time").to_string();
+    assert!(
+        refused.contains("\"Mean\" is not a finite number") && refused.contains("say skip_last_rows = 1"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn german_compounds_are_guessed() {
+    let names = ["Messzeit_ms", "Kolbenweg_mm", "Muskeldehnung_mm", "Leitungsdruck_kPa", "Federkraft_N"];
+    holds("a.csv", Style { names, time: ms, ..PLAIN }.text().as_bytes());
+    let names = ["Zeit", "Kolbenweg", "Weg_mm", "Druck", "Kraft"];
+    holds("a.csv", Style { names, ..PLAIN }.text().as_bytes());
+}
+
+#[test]
+fn columns_of_one_name_are_told_apart() {
+    let names = ["time_s", "Plunger [mm]", "Laser [mm]", "Pressure [kPa]", "Pressure [kPa]"];
+    let text = Style { names, ..PLAIN }.text();
+    let (folder, written, parts) = imported("a.csv", text.as_bytes());
+    assert!(written.contains("skip_rows = 1") && written.contains("\"Pressure [kPa] (2)\""), "{written}");
+    assert_eq!(parts[0].recording.find("pressure_kpa").expect("the first").values.len(), ROWS);
+    // Declared by hand it is refused, with that remedy.
+    let by_hand = "format = 1\nscene = \"muscle_bench\"\n[[channel]]\ncolumn = \"plunger_mm\"\nrole = \"input\"\nname = \"Plunger [mm]\"\n\
+                   [[channel]]\ncolumn = \"pressure_kpa\"\nrole = \"output\"\nname = \"Pressure [kPa]\"\n[[run]]\nfile = \"a.csv\"\n";
+    fs::write(folder.path().join("recordings.toml"), by_hand).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    let refused = set.load_run(&set.runs[0]).expect_err("twice").to_string();
+    assert!(refused.contains("header = false, skip_rows and names (`smam import` writes them)"), "{refused}");
+}
+
+#[test]
+fn a_sheet_is_chosen_and_others_are_named() {
+    let name = |text: &str, at: &str| format!("<c r=\"{at}1\" t=\"inlineStr\"><is><t>{text}</t></is></c>");
+    let mut rows = format!("<row r=\"1\">{}{}</row>", name("time_s", "A"), name("plunger_mm", "B"));
+    for i in 0..5 {
+        let at = i + 2;
+        write!(rows, "<row r=\"{at}\"><c r=\"A{at}\"><v>{i}</v></c><c r=\"B{at}\"><v>{i}</v></c></row>").expect("text");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.xlsx"), workbook(&rows)).expect("written");
+    fs::write(folder.path().join("a.csv"), PLAIN.text()).expect("written");
+    let import = |arguments: &[&str]| {
+        smam(&[&["import", "--scene", "muscle_bench", "--force"], arguments].concat(), folder.path())
+    };
+    let named = import(&["a.xlsx", "--sheet", "Run 1"]);
+    let written = fs::read_to_string(folder.path().join("recordings.toml")).expect("written");
+    assert!(written.contains("sheet = \"Run 1\""), "{}{written}", said(&named));
+    for (arguments, words) in [
+        (["a.xlsx", "--sheet", "Run 2"], "a.xlsx: has no sheet \"Run 2\"\n  remedy: write one of \"Run 1\""),
+        (
+            ["a.csv", "--sheet", "Run 1"],
+            "a.csv: is no workbook, so it has no sheet \"Run 1\"\n  remedy: leave --sheet out",
+        ),
+    ] {
+        let refused = import(&arguments);
+        assert!(refused.status.code() == Some(2) && said(&refused).contains(words), "{}", said(&refused));
+    }
+    assert!(import(&["a.csv"]).status.success());
+}
+
+#[test]
+fn the_unit_that_fits_the_numbers_is_named() {
+    let names = ["Time [s]", "Plunger", "Elongation", "Pressure", "Force"];
+    let style = Style { names, factors: [1000.0, 1.0, 1e-3, 1.0], ..PLAIN };
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), style.text()).expect("written");
+    assert!(smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path()).status.success());
+    let written = fs::read_to_string(folder.path().join("recordings.toml")).expect("written");
+    assert!(written.contains("taken as mm. By their size they may be m: unit = \"m\""), "{written}");
+    assert!(written.contains("taken as kPa. By their size they may be Pa: unit = \"Pa\""), "{written}");
+    assert!(written.contains("taken as N, which fits their size"), "{written}");
+    // The remedy: the lines filled in.
+    let filled = written
+        .lines()
+        .map(|line| line.rsplit_once(": ").filter(|_| line.contains("By their size")).map_or(line, |(_, key)| key));
+    fs::write(folder.path().join("recordings.toml"), filled.collect::<Vec<_>>().join("\n")).expect("written");
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    same(&set.load_run(&set.runs[0]).expect("a run"), &expected());
 }

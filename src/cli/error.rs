@@ -61,7 +61,10 @@ impl CliError {
             Self::System(SystemError::Diverged { .. } | SystemError::Law { .. })
             | Self::Identify(IdentifyError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
             | Self::Sweep(SweepError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
-            | Self::Diagnose(DiagnoseError::System(SystemError::Diverged { .. }) | DiagnoseError::Write { .. })
+            | Self::Diagnose(
+                DiagnoseError::System(SystemError::Diverged { .. } | SystemError::Law { .. })
+                | DiagnoseError::Write { .. },
+            )
             | Self::Write { .. }
             | Self::Recording(RecordingError::Write { .. })
             | Self::Sweep(SweepError::Write { .. })

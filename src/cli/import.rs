@@ -5,14 +5,15 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::recording::{
-    Guess, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness, Wanted, guess,
-    to_toml,
+    Guess, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness, Wanted,
+    guess_sheet, to_toml,
 };
 use smam::scene::Scene;
 use smam::stock;
 
 use super::CliError;
-use super::files::write;
+use super::files::{make_folder, write};
+use super::import_files::{Described, describe, files};
 
 /// Arguments of `smam import`.
 #[derive(Args)]
@@ -26,6 +27,9 @@ pub struct ImportArguments {
     /// The scene whose channels the columns are [default: the stock scene whose channels they are called after]
     #[arg(long)]
     scene: Option<String>,
+    /// Sheet of the workbooks [default: the first]
+    #[arg(long, value_name = "NAME")]
+    sheet: Option<String>,
     /// Where to write recordings.toml [default: the files' folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -37,7 +41,7 @@ pub struct ImportArguments {
 /// Runs the command. Exit code 1 when what was written has to be completed before it can be read.
 pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
     let files = files(&arguments.files)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| folder_of(&files[0]));
+    let folder = arguments.out.clone().unwrap_or_else(|| folder_of(&files[0].path));
     let written = folder.join(SET_FILE_NAME);
     if written.exists() && !arguments.force {
         return Err(CliError::Usage(format!(
@@ -45,10 +49,15 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
             written.display()
         )));
     }
-    let (scene, channels) = scene(arguments.scene.as_deref(), &files[0])?;
-    let guesses = files.iter().map(|file| guess(file, &channels)).collect::<Result<Vec<_>, _>>()?;
+    let sheet = arguments.sheet.as_deref();
+    let (scene, channels) = scene_of_any(arguments.scene.as_deref(), &files, sheet)?;
+    let Described { guesses, left_out } = describe(&files, sheet, &channels)?;
     guesses.iter().for_each(say_guess);
-    let text = to_toml(&guesses, OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
+    left_out.iter().for_each(|file| eprintln!("left out: {}", file.why));
+    make_folder(&folder)?;
+    let scene = scene_from(&folder, &scene);
+    let mut text = to_toml(&guesses, OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
+    left_out.iter().for_each(|file| text += &file.comment());
     write(&written, &text)?;
     say!("written: {}", written.display());
     let missing = absent_input(&guesses[0], &channels);
@@ -77,8 +86,8 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
     if !path.is_file() || path.extension().is_some_and(|e| e == "toml") {
         return Ok(RecordingSet::load(path)?);
     }
-    let (scene, channels) = scene(named, path)?;
-    let found = guess(path, &channels)?;
+    let (scene, channels) = scene(named, path, None)?;
+    let found = guess_sheet(path, None, &channels)?;
     let sayings = found.said.iter().map(|said| (said.sureness, said.what.clone()));
     let named = found
         .columns
@@ -97,6 +106,7 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
             found.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
         )));
     }
+    let scene = scene_from(&folder, &scene);
     let text = to_toml(&[found], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
     Ok(RecordingSet::parse(&text, &folder.join(SET_FILE_NAME))?)
 }
@@ -105,34 +115,6 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
 fn absent_input<'a>(found: &Guess, channels: &'a [Wanted]) -> Option<&'a Wanted> {
     let is_found = |w: &Wanted| found.columns.iter().any(|c| c.channel.as_ref().is_some_and(|(f, _)| f == w));
     channels.iter().find(|w| w.role == Role::Input && !is_found(w))
-}
-
-/// Files by their endings, where a folder is given.
-const ENDINGS: [&str; 9] = ["csv", "txt", "tsv", "tab", "dat", "asc", "lvm", "xlsx", "parquet"];
-
-fn files(given: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
-    let mut files = Vec::new();
-    for path in given {
-        if !path.is_dir() {
-            files.push(path.clone());
-            continue;
-        }
-        let entries = std::fs::read_dir(path).map_err(|source| RecordingError::Read { file: path.clone(), source })?;
-        let is_table = |path: &PathBuf| {
-            path.extension().is_some_and(|e| ENDINGS.iter().any(|known| e.eq_ignore_ascii_case(known)))
-        };
-        let mut found: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(is_table).collect();
-        found.sort();
-        if found.is_empty() {
-            let endings = ENDINGS.join(", .");
-            return Err(CliError::Usage(format!(
-                "{}: holds no table\n  remedy: name a file, or a folder with files that end in .{endings}",
-                path.display()
-            )));
-        }
-        files.extend(found);
-    }
-    Ok(files)
 }
 
 fn folder_of(file: &Path) -> PathBuf {
@@ -152,14 +134,36 @@ fn called(file: &Path, folder: &Path) -> String {
     }
 }
 
+/// How a `recordings.toml` in a folder calls a scene: a path from there, or a stock name.
+fn scene_from(folder: &Path, name: &str) -> String {
+    let given = Path::new(name);
+    let whole = given.canonicalize().ok().filter(|path| given.is_relative() && path.is_file());
+    let (Some(scene), Ok(folder)) = (whole, folder.canonicalize()) else { return name.to_owned() };
+    let same = scene.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(same).map(|_| "..".into());
+    let down = scene.components().skip(same).map(|c| c.as_os_str().to_string_lossy().into_owned());
+    up.chain(down).collect::<Vec<String>>().join("/")
+}
+
+/// The scene of the first file that says which it is.
+fn scene_of_any(
+    named: Option<&str>,
+    files: &[super::import_files::Given],
+    sheet: Option<&str>,
+) -> Result<(String, Vec<Wanted>), CliError> {
+    let mut tried = files.iter().map(|file| scene(named, &file.path, file.sheet(sheet)));
+    let first = tried.next().unwrap_or_else(|| Err(CliError::Usage("no file is given".to_owned())));
+    first.or_else(|why| tried.find_map(Result::ok).ok_or(why))
+}
+
 /// The scene's name and its channels.
-pub fn scene(named: Option<&str>, file: &Path) -> Result<(String, Vec<Wanted>), CliError> {
+fn scene(named: Option<&str>, file: &Path, sheet: Option<&str>) -> Result<(String, Vec<Wanted>), CliError> {
     if let Some(name) = named {
         return Ok((name.to_owned(), channels(&Scene::load(name, &[])?)));
     }
     for name in stock::scenes() {
         let channels = channels(&Scene::load(name, &[])?);
-        let found = guess(file, &channels)?;
+        let found = guess_sheet(file, sheet, &channels)?;
         let is_there =
             |wanted: &Wanted| found.columns.iter().any(|c| c.channel == Some((wanted.clone(), Sureness::Sure)));
         let of = |role: Role| channels.iter().filter(move |c| c.role == role);

@@ -22,6 +22,7 @@ mod files;
 mod identify;
 mod identify_page;
 mod import;
+mod import_files;
 mod interrupt;
 mod junit;
 mod laws;
@@ -137,7 +138,9 @@ pub fn run() -> Result<ExitCode, CliError> {
 }
 
 fn run_command() -> Result<ExitCode, CliError> {
-    match Arguments::parse().command {
+    let command = Arguments::parse().command;
+    interrupt::install();
+    match command {
         None => {
             say!("{}", first_words());
             Ok(ExitCode::SUCCESS)

@@ -97,10 +97,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
         progress.finish();
     }
     let angles = observers.angles.take();
-    // What could not be written leaves nothing under its name: half a file looks like a whole one.
+    // What could not be computed or written leaves nothing under its name: half a file looks like a whole one.
     let recording = match &outcome {
         Err(RunError::Observer(_)) => None,
-        _ => finish(&mut observers)?,
+        Err(RunError::System(_)) => finish_as_part(&mut observers).map(|()| None)?,
+        Ok(_) => finish(&mut observers)?,
     };
     let mut warnings = outcome?;
     eprintln!("{name}: {:.3} s simulated in {wall_s:.3} s", reached_s - schedule.first_s().unwrap_or(0.0));
@@ -306,6 +307,15 @@ fn finish(observers: &mut Observers) -> Result<Option<Recording>, CliError> {
         viewer.finish()?;
     }
     observers.recorder.take().map(Recorder::finish).transpose()
+}
+
+/// Ends what was written before the run failed beside its place.
+fn finish_as_part(observers: &mut Observers) -> Result<(), CliError> {
+    #[cfg(feature = "viz")]
+    for viewer in &mut observers.viewers {
+        viewer.finish_as_part()?;
+    }
+    observers.file.take().map_or(Ok(()), RunFile::finish_as_part)
 }
 
 fn say_what_to_open(arguments: &RunArguments, name: &str) {

@@ -12,13 +12,14 @@ pub struct RunFile {
     path: PathBuf,
     /// From the run's beginning on.
     writer: Option<RecordingWriter>,
+    rows: usize,
 }
 
 impl RunFile {
     /// A file of the format that its name says.
     pub fn new(path: &Path) -> Result<Self, CliError> {
         FileFormat::of(path)?;
-        Ok(Self { path: path.to_owned(), writer: None })
+        Ok(Self { path: path.to_owned(), writer: None, rows: 0 })
     }
 
     pub fn begin(&mut self, graph: &SceneGraph) -> Result<(), CliError> {
@@ -33,7 +34,16 @@ impl RunFile {
 
     pub fn frame(&mut self, frame: &Frame) -> Result<(), CliError> {
         let Some(writer) = &mut self.writer else { return Ok(()) };
+        self.rows += 1;
         writer.row(frame.time_s, &frame.channels, &frame.joint_positions).map_err(failed_write)
+    }
+
+    /// Puts what was computed before a failure beside the file's place, and says where; a former file stays.
+    pub fn finish_as_part(self) -> Result<(), CliError> {
+        let Some(writer) = self.writer.filter(|_| self.rows > 0) else { return Ok(()) };
+        let path = writer.finish_as_part().map_err(failed_write)?;
+        eprintln!("what was computed until then: {}", path.display());
+        Ok(())
     }
 
     /// Puts the file in its place, complete or interrupted.

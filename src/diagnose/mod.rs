@@ -189,7 +189,7 @@ impl Outcome {
 pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let preflight = {
         let noise: Vec<Noise> = case.channels.iter().map(|_| Noise::white(1.0)).collect();
-        preflight::preflight(&case, &Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise })
+        preflight::preflight(&case, &Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise })?
     };
     if !preflight.unusable.is_empty() {
         return Ok(unusable(case, preflight));

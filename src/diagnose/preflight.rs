@@ -4,7 +4,9 @@ use super::case::{Case, CaseRun};
 use super::fit::Problem;
 use super::model::Model;
 use crate::recording::figures::{correlation, spread};
-use crate::recording::{BySize, noise_sd, strays, unit_by_size};
+use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
+use crate::scene::Scene;
+use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
 /// Fewer samples than this say nothing.
 const LEAST_SAMPLES: usize = 200;
@@ -19,7 +21,10 @@ pub struct Preflight {
 }
 
 /// Looks at the recordings alone and at how the uncalibrated scene compares in scale.
-pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
+///
+/// # Errors
+/// A law of the scene that has no value somewhere on the way.
+pub(super) fn preflight(case: &Case, problem: &Problem) -> Result<Preflight, SystemError> {
     let mut found = Preflight::default();
     let samples = problem.samples();
     if samples < LEAST_SAMPLES {
@@ -29,9 +34,9 @@ pub(super) fn preflight(case: &Case, problem: &Problem) -> Preflight {
     channels(case, &mut found);
     // A scene that nothing drives stands still: its spread says nothing of units.
     if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
-        scales(case, problem, &mut found);
+        scales(case, problem, &mut found)?;
     }
-    found
+    Ok(found)
 }
 
 fn inputs(case: &Case, found: &mut Preflight) {
@@ -106,15 +111,20 @@ const BEGINNING_S: f64 = 0.3;
 const BEGINS_OFF: f64 = 10.0;
 const BEGINS_OFF_SHARE: f64 = 0.05;
 
-/// How far from the scene a channel begins, in the same way in every run that begins at zero.
+/// How far from the scene a channel begins, in the same way in every run that begins at zero. What only grows in the first moments is
+/// motion, and where the scene itself begins further away from zero (a muscle under tension) its parameters decide on it.
 fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
     let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
     let offsets: Vec<f64> = at_zero
         .filter_map(|(run, residual)| {
             let until = run.times_s().first()? + BEGINNING_S;
-            let early = run.times_s().iter().zip(&residual[channel]).take_while(|(t, _)| **t <= until);
-            let known: Vec<f64> = early.map(|(_, r)| *r).filter(|r| r.is_finite()).collect();
-            (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+            let values = run.measured[channel].iter().zip(&residual[channel]);
+            let early = run.times_s().iter().zip(values).take_while(|(t, _)| **t <= until);
+            let known: Vec<(f64, f64)> = early.map(|(_, (m, r))| (*m, *r)).filter(|(_, r)| r.is_finite()).collect();
+            let (measured, first) = *known.first()?;
+            let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
+            let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
+            Some(if is_zero { mean } else { 0.0 })
         })
         .collect();
     let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
@@ -125,12 +135,13 @@ fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) ->
 const NOISE_ALONE: f64 = 3.0;
 
 /// Compares each channel's spread with that of the scene as it stands.
-fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
+fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), SystemError> {
     let model = Model::baseline();
     let start = problem.start(&model, None);
     let Some(residuals) = problem.residuals(&model, &start) else {
+        refuse_faulty_law(case)?;
         found.unusable.push("the scene cannot follow the recorded inputs: it diverges".to_owned());
-        return;
+        return Ok(());
     };
     for (c, channel) in case.channels.iter().enumerate() {
         let mut measured = Vec::new();
@@ -166,6 +177,23 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) {
             found.warnings.extend(off.map(|off| other_zero(column, off)));
         }
     }
+    Ok(())
+}
+
+/// Where a law of the scene has no value, it is the law that is wrong and not the recordings: the full scene tells which, and when.
+fn refuse_faulty_law(case: &Case) -> Result<(), SystemError> {
+    let at_fault = case.runs.iter().filter(|run| !run.scene.laws.is_empty()).find_map(|run| played(run).err());
+    at_fault.filter(|error| matches!(error, SystemError::Law { .. })).map_or(Ok(()), Err)
+}
+
+fn played(run: &CaseRun) -> Result<(), SystemError> {
+    let mut simulation = Simulation::new(Scene::clone(&run.scene))?;
+    for (input, values) in run.scene.file.input.iter().zip(&run.drive.inputs) {
+        if let Some(line) = PiecewiseLinear::new(run.times_s(), values) {
+            simulation.set_input(&input.channel, InputSource::Recorded(line));
+        }
+    }
+    record(&mut simulation, &Schedule::at(run.times_s().to_vec())).map(drop)
 }
 
 fn other_zero(column: &str, off: f64) -> String {

@@ -109,6 +109,11 @@ impl Unfinished {
         &self.path
     }
 
+    /// The same file, to stand beside its place as a part ([`part_name`]).
+    pub fn as_part(self) -> Self {
+        Self { path: part_name(&self.path), ..self }
+    }
+
     /// Gives the file its name.
     ///
     /// # Errors
@@ -117,6 +122,18 @@ impl Unfinished {
         std::fs::OpenOptions::new().write(true).open(&self.temporary)?.sync_all()?;
         self.temporary.persist(&self.path).map_err(|e| e.error)
     }
+}
+
+/// The name beside a file's own of what was written before a failure: `sine.partial.csv`.
+///
+/// ```
+/// use std::path::Path;
+///
+/// assert_eq!(smam::files::part_name(Path::new("out/sine.csv")), Path::new("out/sine.partial.csv"));
+/// ```
+pub fn part_name(path: &Path) -> PathBuf {
+    let ending = path.extension().map_or_else(String::new, |e| format!(".{}", e.to_string_lossy()));
+    path.with_extension(format!("partial{ending}"))
 }
 
 /// An empty file in the folder where `path` shall stand; gone when dropped.

@@ -156,8 +156,13 @@ impl CsvWriter {
     /// # Errors
     /// The rows cannot be written out or the file cannot be moved to its name.
     pub fn finish(self) -> Result<(), RecordingError> {
-        let path = self.path;
-        place(self.rows, &path).map_err(|source| write_error(&path, source))
+        let path = self.path.clone();
+        self.finish_as(&path)
+    }
+
+    /// Ends the file under another name.
+    pub(super) fn finish_as(self, path: &Path) -> Result<(), RecordingError> {
+        place(self.rows, path).map_err(|source| write_error(path, source))
     }
 }
 

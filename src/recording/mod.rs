@@ -59,7 +59,7 @@ pub use csv_write::{CsvWriter, RowWriter};
 pub use error::RecordingError;
 pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
 pub use formats::{FileFormat, read_recording};
-pub use guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, to_toml};
+pub use guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, guess_sheet, to_toml};
 pub use lost::LONGEST_LOST_S;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;

@@ -75,6 +75,7 @@ fn file_keys() -> Map<String, Value> {
         "delimiter": { "enum": [",", ";", "tab", "|", "blanks", "comma", "semicolon", "bar", "\t", ":", " "], "description": "Between columns." },
         "decimal": { "enum": [".", ","], "description": "Decimal mark." },
         "thousands": { "enum": [".", ",", "'", " "], "description": "Mark between groups of three digits." },
+        "skip_last_rows": { "type": "integer", "minimum": 0, "description": "Rows at the end that are no samples: means, extremes, a closing remark." },
         "skip_rows": { "type": "integer", "minimum": 0, "description": "Lines at the top that do not belong to the table." },
         "header": {
             "oneOf": [{ "type": "integer", "minimum": 1 }, { "type": "boolean" }],

@@ -4,6 +4,9 @@
 const FAR: f64 = 20.0;
 /// How far outside the bulk a stray's neighbours lie at most, in the same widths.
 const NEAR: f64 = 2.0;
+/// How far outside at least, as a share of the bulk's distance from zero: what hardly leaves a steady value is no mark and no loose
+/// contact.
+const OF_LEVEL: f64 = 0.2;
 /// Share of the samples on each side that need not belong to the bulk.
 const OUTSIDE_BULK: f64 = 0.2;
 /// Strays in a row that differ from each other, at most: more are a motion. A mark may be repeated as often as it likes.
@@ -22,7 +25,8 @@ const IN_A_ROW: usize = 3;
 pub fn strays(values: &[f64]) -> Vec<usize> {
     let known: Vec<(usize, f64)> = values.iter().copied().enumerate().filter(|(_, v)| v.is_finite()).collect();
     let Some((low, high)) = bulk(&known) else { return Vec::new() };
-    let outside = |v: f64| (low - v).max(v - high).max(0.0) / (high - low);
+    let width = (high - low).max(OF_LEVEL / FAR * low.abs().max(high.abs()));
+    let outside = |v: f64| (low - v).max(v - high).max(0.0) / width;
     let stretches: Vec<&[(usize, f64)]> = known.chunk_by(|a, b| (outside(a.1) > FAR) == (outside(b.1) > FAR)).collect();
     // A peak, however steep, has flanks.
     let is_bare = |neighbour: Option<&(usize, f64)>| neighbour.is_none_or(|(_, v)| outside(*v) < NEAR);
@@ -62,6 +66,16 @@ mod tests {
         assert!(strays(&force_n).is_empty());
         assert!(strays(&[0.0; 50]).is_empty());
         assert!(strays(&[]).is_empty());
+    }
+
+    /// A string's pull, steady but for the moments in which the muscle turns.
+    #[test]
+    fn what_hardly_leaves_a_steady_value_is_no_stray() {
+        let mut force_n: Vec<f64> = (0..1000).map(|i| 0.05 + 1e-9 * f64::from(i % 5)).collect();
+        force_n[300..303].copy_from_slice(&[0.0501, 0.0509, 0.0502]);
+        assert!(strays(&force_n).is_empty());
+        force_n[600] = 0.0;
+        assert_eq!(strays(&force_n), [600]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::csv_write::{check_width, write_error};
 use super::{CsvWriter, FileFormat, Recording, RecordingError, TIME_COLUMN};
 use crate::bag::BagWriter;
 use crate::columns::NumberRows;
-use crate::files::{put_in_place, temporary_beside};
+use crate::files::{part_name, put_in_place, temporary_beside};
 
 /// A recording on its way into a file of the format that its name says.
 ///
@@ -84,12 +84,28 @@ impl RecordingWriter {
     /// # Errors
     /// The rows cannot be written out or the file cannot be moved to its name.
     pub fn finish(self) -> Result<(), RecordingError> {
+        let path = self.path.clone();
+        self.finish_as(&path)
+    }
+
+    /// Ends the file of a run that failed beside its place, by [`crate::files::part_name`]: a former file of its name is untouched.
+    /// Returns where it is.
+    ///
+    /// # Errors
+    /// As [`RecordingWriter::finish`].
+    pub fn finish_as_part(self) -> Result<PathBuf, RecordingError> {
+        let path = part_name(&self.path);
+        self.finish_as(&path)?;
+        Ok(path)
+    }
+
+    fn finish_as(self, path: &Path) -> Result<(), RecordingError> {
         let ended = match self.rows {
-            Rows::Csv(csv) => return csv.finish(),
+            Rows::Csv(csv) => return csv.finish_as(path),
             Rows::Parquet(rows) => rows.finish(),
             Rows::Mcap(bag) => bag.finish(),
         };
-        ended.and_then(|file| put_in_place(file, &self.path)).map_err(|source| write_error(&self.path, source))
+        ended.and_then(|file| put_in_place(file, path)).map_err(|source| write_error(path, source))
     }
 }
 

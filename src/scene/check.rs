@@ -151,7 +151,7 @@ fn check_simulation(scene: &SceneFile, place: &Place) -> Result<(), SceneError> 
     Ok(())
 }
 
-fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneError> {
+pub(super) fn check_inputs(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, SceneError> {
     let list = Place { file, table: "[[input]]".to_owned() };
     list.unique("channel", scene.input.iter().map(|i| i.channel.as_str()))?;
     let mut programs = Vec::new();

@@ -69,6 +69,11 @@ pub(super) fn parts(key: &str) -> Option<(&str, &str)> {
     key.strip_prefix("muscle.")?.split_once(&format!(".{DIFFERS}."))
 }
 
+/// The key of `[muscles]` that a key of one muscle's own stands for.
+pub(super) fn muscle_key(key: &str) -> Option<String> {
+    parts(key).map(|(_, common)| format!("muscles.{common}"))
+}
+
 /// Muscles, by index, that a key of `[muscles]` or of one muscle's own sets, and the key of `[muscles]` that it is.
 pub(crate) fn muscles_set_by<'a>(muscles: &[MuscleSpec], key: &'a str) -> Option<(Vec<usize>, Cow<'a, str>)> {
     if let Some((name, common)) = parts(key) {
@@ -97,29 +102,36 @@ fn is_own(muscle: &MuscleSpec, key: &str) -> bool {
 }
 
 /// Calibrated numbers with those that are each muscle's own written out, one by one.
-pub(super) fn written_out(scene: &SceneFile, file: &Path) -> Result<Vec<CalibrateSpec>, SceneError> {
-    let mut all = Vec::new();
-    for spec in &scene.calibrate {
-        let Some(Each::Muscle) = spec.each else {
-            all.push(spec.clone());
-            continue;
-        };
-        let key = super::calibration_key(&spec.key);
-        let Some(key) = key.strip_prefix("muscles.") else {
-            let place = Place { file, table: format!("[[calibrate]] \"{}\"", spec.key) };
-            return Err(place.error(
-                "each = \"muscle\" needs a key of [muscles]",
-                "leave `each` out, or give a key like muscles.tube.material.c1_pa",
-            ));
-        };
-        let own = |m: &MuscleSpec| CalibrateSpec {
-            key: format!("muscle.{}.{DIFFERS}.{key}", m.name),
-            each: None,
-            ..spec.clone()
-        };
-        all.extend(scene.muscle.iter().map(own));
-    }
-    Ok(all)
+pub(super) fn written_out(
+    scene: &SceneFile,
+    declared: &[CalibrateSpec],
+    file: &Path,
+) -> Result<Vec<CalibrateSpec>, SceneError> {
+    let each: Result<Vec<_>, _> = declared.iter().map(|spec| one_written_out(scene, spec, file)).collect();
+    Ok(each?.concat())
+}
+
+/// The numbers that one `[[calibrate]]` stands for.
+pub(super) fn one_written_out(
+    scene: &SceneFile,
+    spec: &CalibrateSpec,
+    file: &Path,
+) -> Result<Vec<CalibrateSpec>, SceneError> {
+    let Some(Each::Muscle) = spec.each else { return Ok(vec![spec.clone()]) };
+    let key = super::calibration_key(&spec.key);
+    let Some(key) = key.strip_prefix("muscles.") else {
+        let place = Place { file, table: format!("[[calibrate]] \"{}\"", spec.key) };
+        return Err(place.error(
+            "each = \"muscle\" needs a key of [muscles]",
+            "leave `each` out, or give a key like muscles.tube.material.c1_pa",
+        ));
+    };
+    let own = |m: &MuscleSpec| CalibrateSpec {
+        key: format!("muscle.{}.{DIFFERS}.{key}", m.name),
+        each: None,
+        ..spec.clone()
+    };
+    Ok(scene.muscle.iter().map(own).collect())
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use crate::nearest::did_you_mean;
 use crate::stock;
 
 use super::check_laws::{Candidate, SceneLaws};
-use super::overrides::{Override, calibration_key, calibration_names, child, entry_name};
-use super::{CalibrateSpec, MusclesSpec, Program, SceneError, SceneFile, check, check_laws, differs};
+use super::overrides::{Override, calibration_key, child_at, entry_name};
+use super::{CalibrateSpec, MusclesSpec, Program, SceneError, SceneFile, check, check_keys, check_laws, differs};
 
 /// A scene whose keys, numbers and names (within the file) are right.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct Scene {
     pub laws: Vec<Law>,
     /// Those that are: a diagnosis weighs them.
     pub candidates: Vec<Candidate>,
+    /// `[[calibrate]]` as it stands in the file; in `file.calibrate` what each muscle has of its own is written out.
+    pub(super) declared_calibrate: Vec<CalibrateSpec>,
 }
 
 impl Scene {
@@ -89,37 +91,24 @@ impl Scene {
     pub fn from_file(mut file: SceneFile, path: &Path) -> Result<Self, SceneError> {
         let programs = check::check(&file, path)?;
         let makes = differs::makes(&file, path)?;
-        file.calibrate = differs::written_out(&file, path)?;
+        let declared_calibrate = std::mem::take(&mut file.calibrate);
+        file.calibrate = differs::written_out(&file, &declared_calibrate, path)?;
         let SceneLaws { laws, candidates } = check_laws::check(&file, path)?;
-        let scene = Self { path: path.to_owned(), file, programs, makes, laws, candidates };
-        scene.check_calibrated()?;
+        let scene = Self { path: path.to_owned(), file, programs, makes, laws, candidates, declared_calibrate };
+        check_keys::check(&scene)?;
         Ok(scene)
     }
 
-    /// Every key that is to be calibrated holds a number, or may hold one.
-    fn check_calibrated(&self) -> Result<(), SceneError> {
-        let is_wrong = |spec: &&CalibrateSpec| self.number(&spec.key).is_none() && !self.may_hold_number(&spec.key);
-        let Some(wrong) = self.file.calibrate.iter().find(is_wrong) else { return Ok(()) };
-        let keys = self.keys();
-        let known: Vec<&str> = keys.iter().map(|(key, _)| key.as_str()).chain(calibration_names()).collect();
-        Err(SceneError::Value {
-            file: self.path.clone(),
-            table: format!("[[calibrate]] \"{}\"", wrong.key),
-            message: format!("the scene has no number under this key{}", did_you_mean(&wrong.key, &known)),
-            remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
-        })
-    }
-
-    /// Whether a key that does not stand in the scene could: optional ones are not listed.
-    fn may_hold_number(&self, key: &str) -> bool {
-        let Ok(mut table) = Table::try_from(&self.file) else { return false };
-        Override::number(key, 1.0).apply(&mut table).is_ok() && table.try_into::<SceneFile>().is_ok()
+    /// The scene as its file has it, with defaults; the indices of its lists are those that `--set` takes.
+    fn as_declared(&self) -> Option<toml::Value> {
+        let file = SceneFile { calibrate: self.declared_calibrate.clone(), ..self.file.clone() };
+        toml::Value::try_from(&file).ok()
     }
 
     /// Every number, word and list of the scene by the key that `--set` takes, defaults included.
     pub fn keys(&self) -> Vec<(String, String)> {
         let mut keys = Vec::new();
-        if let Ok(value) = toml::Value::try_from(&self.file) {
+        if let Some(value) = self.as_declared() {
             list_keys("", &value, &mut keys);
         }
         keys
@@ -127,11 +116,8 @@ impl Scene {
 
     /// The value that stands at a key, as [`Self::keys`] writes it; entries of a list also by their index.
     pub fn value(&self, key: &str) -> Option<String> {
-        let mut value = toml::Value::try_from(&self.file).ok()?;
-        let mut here = &mut value;
-        for segment in key.split('.') {
-            here = child(here, segment)?;
-        }
+        let value = self.as_declared()?;
+        let here = key.split('.').try_fold(&value, |here, segment| child_at(here, segment))?;
         (!here.is_table()).then(|| here.to_string())
     }
 

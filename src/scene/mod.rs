@@ -19,6 +19,7 @@
 
 mod check;
 mod check_effects;
+mod check_keys;
 mod check_laws;
 mod check_muscles;
 mod check_standalone;

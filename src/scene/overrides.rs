@@ -210,6 +210,18 @@ pub(super) fn child<'a>(value: &'a mut Value, segment: &str) -> Option<&'a mut V
     }
 }
 
+/// As [`child`], to be looked at.
+pub(super) fn child_at<'a>(value: &'a Value, segment: &str) -> Option<&'a Value> {
+    match value {
+        Value::Table(table) => table.get(segment),
+        Value::Array(list) => {
+            let named = list.iter().find(|item| entry_name(item) == Some(segment));
+            named.or_else(|| list.get(segment.parse::<usize>().ok()?))
+        }
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

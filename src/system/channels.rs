@@ -88,17 +88,21 @@ impl Channels {
     /// Stops a run whose sensors' laws show what is no number.
     pub(super) fn check(&self, simulation: &Simulation, values: &[f64]) -> Result<(), SystemError> {
         let outputs = self.readers.iter().zip(values.iter().skip(self.input_factors.len()));
-        for ((.., laws), value) in outputs.filter(|(_, value)| !value.is_finite()) {
-            if let Some(law) = laws.last() {
-                return Err(SystemError::Law {
+        let mut wrong =
+            outputs.zip(&self.names[self.input_factors.len()..]).filter(|((_, value), _)| !value.is_finite());
+        let time_s = simulation.time_s;
+        match wrong.next() {
+            None => Ok(()),
+            Some((((.., laws), value), name)) => Err(match laws.last() {
+                Some(law) => SystemError::Law {
                     file: simulation.scene.path.clone(),
-                    time_s: simulation.time_s,
+                    time_s,
                     law: law.title(),
                     what: format!("its channel shows {value}"),
-                });
-            }
+                },
+                None => SystemError::Diverged { time_s, what: format!("the channel {name}") },
+            }),
         }
-        Ok(())
     }
 }
 

@@ -27,6 +27,11 @@ impl StreamFile {
         self.0.temporary()
     }
 
+    /// The same file, to stand beside its place as a part.
+    pub(super) fn as_part(self) -> Self {
+        Self(self.0.as_part())
+    }
+
     /// Gives the stream up; what was said of it, with the name of the file.
     pub(super) fn failed(&self, stream: &RecordingStream, error: ViewError) -> ViewError {
         abandon(stream);

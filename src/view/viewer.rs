@@ -98,6 +98,15 @@ impl Viewer {
         close(&self.stream, self.file.take())?;
         Ok(ViewSummary { frames })
     }
+
+    /// As [`Self::finish`], of a run that failed: a file stands beside its place, by [`crate::files::part_name`].
+    ///
+    /// # Errors
+    /// As [`Self::finish`].
+    pub fn finish_as_part(&mut self) -> Result<ViewSummary, ViewError> {
+        self.file = self.file.take().map(StreamFile::as_part);
+        self.finish()
+    }
 }
 
 /// Waits until everything has arrived; a file gets its footer, and then its name.

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::super::survey::median;
 use super::super::table::{Label, cell_number, clock_faults, file_unit, is_stamp, label};
 use super::super::{TIME_COLUMN, parse_column};
+use super::footer;
 use super::layout::Layout;
 use super::likeness::{is_time, likeness};
 use super::{Guess, GuessedColumn, Said, Sureness, Wanted};
@@ -19,6 +20,7 @@ const SLOW_MS: f64 = 2000.0;
 pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Guess {
     let labels: Vec<Label> =
         layout.names.iter().enumerate().map(|(at, name)| labelled(name, layout.units.get(at))).collect();
+    footer::leave_out(file, &mut layout, |layout| time_column(layout, &labels).map(|(at, _)| at));
     let time = time_column(&layout, &labels)
         .filter(|(at, sureness)| is_clock(file, &mut layout, *at, &labels[*at], *sureness));
     let others = (0..layout.names.len()).filter(|at| time.is_none_or(|(time, _)| time != *at));
@@ -32,6 +34,7 @@ pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Gue
                 .rows
                 .iter()
                 .any(|row| row.get(at).is_some_and(|c| cell_number(c, &layout.options).is_some_and(f64::is_finite))),
+            greatest: numbers(&layout, at).into_iter().filter(|v| v.is_finite()).map(f64::abs).reduce(f64::max),
         })
         .collect();
     assign(&mut columns, wanted);
@@ -82,12 +85,13 @@ fn time_column(layout: &Layout, labels: &[Label]) -> Option<(usize, Sureness)> {
     (labels.first()?.unit.is_none() && rises(layout, 0)).then_some((0, Sureness::Assumed))
 }
 
-fn times(layout: &Layout, at: usize) -> Vec<f64> {
+/// The numbers of a column in the rows that were looked at.
+fn numbers(layout: &Layout, at: usize) -> Vec<f64> {
     layout.rows.iter().filter_map(|row| cell_number(row.get(at)?, &layout.options)).collect()
 }
 
 fn rises(layout: &Layout, at: usize) -> bool {
-    let times = times(layout, at);
+    let times = numbers(layout, at);
     times.len() > 2 && times.windows(2).all(|w| w[1] > w[0])
 }
 
@@ -106,7 +110,7 @@ fn is_clock(file: &Path, layout: &mut Layout, at: usize, label: &Label, sureness
 fn declare_time(layout: &mut Layout, at: usize, label: &Label, sureness: Sureness) {
     let name = layout.names[at].clone();
     let is_stamped = layout.rows.first().is_some_and(|row| row.get(at).is_some_and(|cell| is_stamp(cell)));
-    let mut intervals: Vec<f64> = times(layout, at).windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
+    let mut intervals: Vec<f64> = numbers(layout, at).windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
     let interval = median(&mut intervals).unwrap_or(0.0);
     let stated = layout.options.time_unit.or(label.unit.filter(|unit| unit.si_suffix == "s"));
     // A unit that is stated holds: what reads slow is noted when the file is read.
@@ -190,7 +194,7 @@ fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     layout.options.split_at_restart = faults.restarts > 0;
     layout.options.merge_repeated = faults.repeats > 0;
     let words = [
-        (faults.restarts, "a clock that starts anew: split there"),
+        (faults.restarts, "a clock that starts anew: split there, each part a start from rest"),
         (faults.repeats, "repeated stamps: the mean of their rows"),
     ];
     let found = words.into_iter().filter(|(count, _)| *count > 0);

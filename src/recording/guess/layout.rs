@@ -1,6 +1,8 @@
 //! Delimiter, decimal mark, names: what reads most of the rows as rows of numbers.
 
-use super::super::table::{Delimiter, FileOptions, Header, cell_number, file_unit, is_stamp, labview_options};
+use super::super::table::{
+    Delimiter, FileOptions, Header, cell_number, file_unit, is_stamp, labview_options, labview_units,
+};
 use super::preview::Preview;
 use super::{Said, Sureness};
 
@@ -22,10 +24,11 @@ type Line = (usize, Vec<String>);
 
 pub(super) fn layout(preview: &Preview) -> Option<Layout> {
     match preview {
-        Preview::Cells(rows) => {
+        Preview::Cells { rows, sheet, said } => {
             let lines: Vec<Line> = rows.iter().cloned().enumerate().map(|(i, cells)| (i + 1, cells)).collect();
-            let found = block(&lines, &FileOptions::default())?;
-            Some(with_names(&lines, found, FileOptions::default(), Vec::new()))
+            let options = FileOptions { sheet: sheet.clone(), ..FileOptions::default() };
+            let found = block(&lines, &options)?;
+            Some(with_names(&lines, found, options, said.iter().cloned().collect()))
         }
         Preview::Text { text, encoding, said } => {
             let said: Vec<Said> = said.iter().cloned().collect();
@@ -36,9 +39,19 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
             };
             let found = block(&lines, &options)?;
             let said = said.into_iter().chain(words(&options)).collect();
-            Some(with_names(&lines, found, options, said))
+            let layout = with_names(&lines, found, options, said);
+            Some(with_labview_units(layout, labview_units(text)))
         }
     }
+}
+
+/// The units that LabVIEW's header states stand in the place of a row of units.
+fn with_labview_units(mut layout: Layout, units: Vec<String>) -> Layout {
+    if layout.units.is_empty() && units.iter().any(|unit| file_unit(unit).is_some()) {
+        layout.said.push(Said { what: "units from Y_Unit_Label".to_owned(), sureness: Sureness::Sure });
+        layout.units = units;
+    }
+    layout
 }
 
 fn words(options: &FileOptions) -> Vec<Said> {
@@ -159,7 +172,7 @@ fn with_names(lines: &[Line], found: std::ops::Range<usize>, mut options: FileOp
             if (!is_first || is_comment) && options.header.is_none() {
                 options.header = Some(Header::Line(at));
             }
-            unmarked(cells)
+            own_names(unmarked(cells), at, &mut options, &mut said)
         }
         None => {
             options.header = Some(Header::Absent);
@@ -174,6 +187,25 @@ fn with_names(lines: &[Line], found: std::ops::Range<usize>, mut options: FileOp
     }
     options.decimal = options.decimal.filter(|decimal| *decimal != '.');
     Layout { options, names, units: units.unwrap_or_default(), rows, said }
+}
+
+/// Names of columns that stand twice get a number: then the file's own are passed over and those stand in `names`.
+fn own_names(names: Vec<String>, line: usize, options: &mut FileOptions, said: &mut Vec<Said>) -> Vec<String> {
+    let count = |upto: usize| names[..upto].iter().filter(|name| **name == names[upto]).count();
+    let numbered = |at: usize| match count(at) {
+        _ if names[at].is_empty() => String::new(),
+        0 => names[at].clone(),
+        earlier => format!("{} ({})", names[at], earlier + 1),
+    };
+    let own: Vec<String> = (0..names.len()).map(numbered).collect();
+    if own == names {
+        return names;
+    }
+    let twice: Vec<&str> = own.iter().filter(|own| !names.contains(own)).map(String::as_str).collect();
+    let what = format!("names that stand twice are numbered: \"{}\"", twice.join("\", \""));
+    said.push(Said { what, sureness: Sureness::Sure });
+    (options.header, options.skip_rows, options.names) = (Some(Header::Absent), line, own.clone());
+    own
 }
 
 /// Names in a comment, without its mark, and without the columns that a delimiter at the end makes.

@@ -4,9 +4,11 @@
 //! comments. Nothing here reads a recording: that is done by what was written, through the same reader as ever.
 
 mod columns;
+mod footer;
 mod layout;
 mod likeness;
 mod preview;
+mod sizes;
 mod written;
 
 use std::path::{Path, PathBuf};
@@ -65,6 +67,8 @@ pub struct GuessedColumn {
     pub channel: Option<(Wanted, Sureness)>,
     /// Whether it holds texts or dates.
     pub is_text: bool,
+    /// The greatest of its first numbers, without their signs.
+    pub greatest: Option<f64>,
 }
 
 /// What a file looks like.
@@ -105,7 +109,15 @@ pub struct Guess {
 /// # Errors
 /// A file that cannot be read, or that holds no table.
 pub fn guess(file: &Path, wanted: &[Wanted]) -> Result<Guess, RecordingError> {
-    let table = preview::preview(file)?;
+    guess_sheet(file, None, wanted)
+}
+
+/// As [`guess`], of a sheet of a workbook.
+///
+/// # Errors
+/// As [`guess`]; a file that is no workbook or has no such sheet.
+pub fn guess_sheet(file: &Path, sheet: Option<&str>, wanted: &[Wanted]) -> Result<Guess, RecordingError> {
+    let table = preview::preview(file, sheet)?;
     let found = layout::layout(&table).ok_or_else(|| RecordingError::Format {
         file: file.to_owned(),
         problem: "no table of numbers is found in it\n  remedy: a row of names with rows of numbers below is what is looked for; \

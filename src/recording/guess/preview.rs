@@ -5,7 +5,7 @@ use std::path::Path;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::super::source::{read_settled, read_whole};
-use super::super::table::{check_labview, parquet_rows, workbook_rows};
+use super::super::table::{check_labview, parquet_rows, sheet_names, workbook_rows};
 use super::super::{FileFormat, RecordingError};
 use super::{Said, Sureness};
 
@@ -17,13 +17,27 @@ pub(super) enum Preview {
         said: Option<Said>,
     },
     /// Cells as texts: no delimiter, points as decimal marks.
-    Cells(Vec<Vec<String>>),
+    Cells {
+        rows: Vec<Vec<String>>,
+        sheet: Option<String>,
+        said: Option<Said>,
+    },
 }
 
-pub(super) fn preview(file: &Path) -> Result<Preview, RecordingError> {
-    match FileFormat::of(file)? {
-        FileFormat::Workbook => Ok(Preview::Cells(workbook_rows(&read_whole(file)?, file)?)),
-        FileFormat::Parquet => Ok(Preview::Cells(parquet_rows(file)?)),
+/// `sheet` is that of a workbook; its first one where none is named.
+pub(super) fn preview(file: &Path, sheet: Option<&str>) -> Result<Preview, RecordingError> {
+    let format = FileFormat::of(file)?;
+    if let Some(sheet) = sheet.filter(|_| format != FileFormat::Workbook) {
+        return Err(RecordingError::Format {
+            file: file.to_owned(),
+            problem: format!(
+                "is no workbook, so it has no sheet \"{sheet}\"\n  remedy: leave --sheet out, or name a file that ends in .xlsx"
+            ),
+        });
+    }
+    match format {
+        FileFormat::Workbook => workbook(&read_whole(file)?, file, sheet),
+        FileFormat::Parquet => Ok(Preview::Cells { rows: parquet_rows(file)?, sheet: None, said: None }),
         FileFormat::Mcap => Err(RecordingError::Format {
             file: file.to_owned(),
             problem: "is a bag: its topics are not guessed\n  remedy: declare them as docs/formats.md says (topic = \"/syringe\")".to_owned(),
@@ -34,6 +48,19 @@ pub(super) fn preview(file: &Path) -> Result<Preview, RecordingError> {
             Ok(Preview::Text { text, encoding, said })
         }
     }
+}
+
+fn workbook(bytes: &[u8], file: &Path, sheet: Option<&str>) -> Result<Preview, RecordingError> {
+    let rows = workbook_rows(bytes, sheet, file)?;
+    let sheets = sheet_names(bytes, file)?;
+    let said = match (sheet, sheets.as_slice()) {
+        (None, [first, others @ ..]) if !others.is_empty() => Some(Said {
+            what: format!("sheet \"{first}\", the first; --sheet takes another: \"{}\"", others.join("\", \"")),
+            sureness: Sureness::Assumed,
+        }),
+        _ => None,
+    };
+    Ok(Preview::Cells { rows, sheet: sheet.map(str::to_owned), said })
 }
 
 /// The text, its encoding where that has to be declared, and what is to be said of it.

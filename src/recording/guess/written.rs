@@ -6,6 +6,7 @@ use toml::Value;
 
 use super::super::table::{Header, TimeSource, label};
 use super::super::{Role, parse_column};
+use super::sizes;
 use super::{FileOptions, Guess, GuessedColumn, Sureness, Wanted};
 
 /// The scene that is written, and its channels.
@@ -64,6 +65,7 @@ fn layout_lines(options: &FileOptions) -> String {
     line("decimal", options.decimal.map(|d| quoted(&d.to_string())));
     line("thousands", options.thousands.map(|d| quoted(&d.to_string())));
     line("skip_rows", (options.skip_rows > 0).then(|| options.skip_rows.to_string()));
+    line("skip_last_rows", (options.skip_last_rows > 0).then(|| options.skip_last_rows.to_string()));
     line(
         "header",
         options.header.map(|header| match header {
@@ -99,10 +101,7 @@ fn channel(column: &GuessedColumn) -> String {
 fn unit(column: &GuessedColumn, wanted: &Wanted) -> String {
     let Ok(own) = parse_column(&wanted.column) else { return String::new() };
     match column.unit {
-        None => format!(
-            "# No unit is stated: the numbers are taken as {}. If they are not: unit = \"cm\", or what they are\n",
-            own.unit.symbol
-        ),
+        None => sizes::no_unit(own.unit, column.greatest),
         Some(unit) if unit.si_suffix != own.unit.si_suffix => format!(
             "unit = {}\nscale = 1.0    # to be filled in: the {} of one {}\n",
             quoted(unit.name),

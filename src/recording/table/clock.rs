@@ -1,5 +1,6 @@
 //! Times of rows: increasing, or put right as declared.
 
+use super::super::survey::median;
 use super::looked_at::ClockFaults;
 use super::options::{FileOptions, TimeSource};
 
@@ -105,6 +106,12 @@ impl Clock {
         ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1, repeats: self.repeated }
     }
 
+    /// The median time between rows of one part, rounded off, s.
+    fn usual_interval_s(&self) -> f64 {
+        let mut intervals: Vec<f64> = self.time_s.windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
+        (median(&mut intervals).unwrap_or(0.01) * 1e9).round() / 1e9
+    }
+
     /// What was done to the times.
     pub(super) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
@@ -118,7 +125,12 @@ impl Clock {
             let at: Vec<String> =
                 self.starts[1..].iter().take(5).map(|i| format!("{} s", self.time_s[i - 1])).collect();
             let (parts, at) = (self.starts.len(), at.join(", "));
-            notes.push(format!("split_at_restart: {parts} runs of one file; the clock started anew after {at}"));
+            notes.push(format!(
+                "split_at_restart: {parts} runs of one file; the clock started anew after {at}. Each is simulated as a start from rest, \
+                 without what the one before left behind (friction, creep); if the rig went on moving there, say interval_s = {} in the \
+                 place of split_at_restart: one run with an even clock",
+                self.usual_interval_s()
+            ));
         }
         notes
     }

@@ -81,7 +81,7 @@ impl Columns {
             (Cell::Number(number), Some(unit)) => seconds(unit, number),
             (Cell::Text(text), Some(unit)) => match stamp(text) {
                 Some(moment) => self.since_first(moment).ok_or_else(mixed)?,
-                None => seconds(unit, number(text, &self.options)?),
+                None => seconds(unit, number(text, &self.options).map_err(|said| no_sample(text).unwrap_or(said))?),
             },
             // `time_unit("s")` is one of the table.
             (_, None) => f64::NAN,
@@ -108,6 +108,17 @@ impl Columns {
              commas, and write decimals with a point"
         )))
     }
+}
+
+/// What is said of a word in the place of a time: a row of means, a closing remark.
+fn no_sample(text: &str) -> Option<String> {
+    text.trim().starts_with(char::is_alphabetic).then(|| {
+        format!(
+            "{} is not a finite number\n  remedy: give every row its time; if the rows at the end are no samples, say skip_last_rows = 1 \
+             in recordings.toml (`smam import` counts them)",
+            shown(text)
+        )
+    })
 }
 
 fn mixed() -> String {

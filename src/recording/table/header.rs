@@ -84,7 +84,10 @@ fn check(columns: &[String], is_needed: &[bool]) -> Result<(), Problem> {
             )));
         }
         if columns[..index].contains(name) {
-            return Err(Problem::new(format!("column \"{name}\" occurs twice\n  remedy: rename or remove one")));
+            return Err(Problem::new(format!(
+                "column \"{name}\" occurs twice\n  remedy: rename or remove one; or give the columns names in recordings.toml, by \
+                 header = false, skip_rows and names (`smam import` writes them)"
+            )));
         }
     }
     Ok(())

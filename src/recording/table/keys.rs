@@ -5,12 +5,13 @@ use super::super::folder_keys::Keys;
 use super::options::{Delimiter, FileOptions, Header, TIME_UNITS, TimeSource, time_unit};
 
 /// Keys that `[file]` and `[[run]]` share.
-pub(in crate::recording) const FILE_KEYS: [&str; 16] = [
+pub(in crate::recording) const FILE_KEYS: [&str; 17] = [
     "encoding",
     "delimiter",
     "decimal",
     "thousands",
     "skip_rows",
+    "skip_last_rows",
     "header",
     "names",
     "units_row",
@@ -53,6 +54,7 @@ pub(in crate::recording) fn file_options(keys: &Keys<'_>, all: &FileOptions) -> 
 
 fn layout(keys: &Keys<'_>, options: &mut FileOptions) -> Result<(), RecordingError> {
     options.skip_rows = keys.count("skip_rows")?.unwrap_or(options.skip_rows);
+    options.skip_last_rows = keys.count("skip_last_rows")?.unwrap_or(options.skip_last_rows);
     options.header = keys.header()?.or(options.header);
     if keys.has("names") {
         options.names = keys.texts("names")?;

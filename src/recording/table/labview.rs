@@ -71,6 +71,15 @@ fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     }
 }
 
+/// The cells of `Y_Unit_Label`: one for each column, the first, which is that of the times, empty.
+pub(super) fn units(text: &str) -> Vec<String> {
+    const KEY: &str = "Y_Unit_Label";
+    let line = text.lines().find_map(|line| line.strip_prefix(KEY).filter(|rest| rest.starts_with(['\t', ','])));
+    let Some(rest) = line else { return Vec::new() };
+    let separator = if rest.starts_with('\t') { '\t' } else { ',' };
+    rest.split(separator).map(|cell| cell.trim().to_owned()).collect()
+}
+
 /// Whether a text is one of LabVIEW's.
 pub(in crate::recording) fn is_labview(text: &str) -> bool {
     text.trim_start().starts_with(FIRST_WORDS)

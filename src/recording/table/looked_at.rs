@@ -1,13 +1,14 @@
 //! What is asked of a file before anybody has described it.
 
+use std::collections::VecDeque;
 use std::path::Path;
 
 use super::super::RecordingError;
 use super::any_columns;
 use super::cell::{Cell, number};
 use super::header::Needed;
-use super::labview::{is_labview, with_labview};
-use super::options::FileOptions;
+use super::labview::{is_labview, units, with_labview};
+use super::options::{FileOptions, Header};
 use super::sheet;
 use super::stamp::stamp;
 
@@ -32,15 +33,56 @@ pub(in crate::recording) fn check_labview(text: &str, file: &Path) -> Result<(),
     read.map(drop).map_err(|problem| problem.in_file(&file.display().to_string()))
 }
 
-/// Rows of a workbook's first sheet, moments as seconds.
-pub(in crate::recording) fn workbook_rows(bytes: &[u8], file: &Path) -> Result<Vec<Vec<String>>, RecordingError> {
+/// The units of the columns by LabVIEW's header, in the order of the columns; none for any other text.
+pub(in crate::recording) fn labview_units(text: &str) -> Vec<String> {
+    if is_labview(text) { units(text) } else { Vec::new() }
+}
+
+/// Rows of a workbook's sheet, moments as seconds; of the first one where none is named.
+pub(in crate::recording) fn workbook_rows(
+    bytes: &[u8],
+    sheet: Option<&str>,
+    file: &Path,
+) -> Result<Vec<Vec<String>>, RecordingError> {
+    let options = FileOptions { sheet: sheet.map(str::to_owned), ..FileOptions::default() };
     let mut rows = Vec::new();
-    let read = sheet::each_row(bytes, &FileOptions::default(), &mut |cells| {
+    let read = sheet::each_row(bytes, &options, &mut |cells| {
         rows.push(cells.iter().map(Cell::words).collect());
         Ok(())
     });
     read.map_err(|problem| problem.in_file(&file.display().to_string()))?;
     Ok(rows)
+}
+
+/// The sheets of a workbook.
+pub(in crate::recording) fn sheet_names(bytes: &[u8], file: &Path) -> Result<Vec<String>, RecordingError> {
+    sheet::names(bytes).map_err(|problem| problem.in_file(&file.display().to_string()))
+}
+
+/// The last rows of a file as texts, at most so many; that of the names is none.
+pub(in crate::recording) fn last_rows(
+    path: &Path,
+    options: &FileOptions,
+    count: usize,
+) -> Result<Vec<Vec<String>>, RecordingError> {
+    let mut rows: VecDeque<Vec<String>> = VecDeque::new();
+    let mut is_first = options.header != Some(Header::Absent);
+    super::each_row_of(path, options, &mut |cells| {
+        if !std::mem::take(&mut is_first) {
+            rows.push_back(cells.iter().map(Cell::words).collect());
+        }
+        if rows.len() > count {
+            rows.pop_front();
+        }
+        Ok(())
+    })?;
+    Ok(rows.into())
+}
+
+/// The times of a file's rows, s.
+pub(in crate::recording) fn times(path: &Path, options: &FileOptions) -> Result<Vec<f64>, RecordingError> {
+    let lenient = FileOptions { split_at_restart: true, merge_repeated: true, ..options.clone() };
+    Ok(any_columns(path, &lenient, Needed::These(&[]))?.0.clock.time_s)
 }
 
 /// Names and rows of a Parquet file.

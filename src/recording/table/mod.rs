@@ -37,7 +37,8 @@ pub use source::TableSource;
 
 pub(super) use keys::{FILE_KEYS, file_options};
 pub(super) use looked_at::{
-    cell_number, check_labview, clock_faults, is_stamp, labview_options, parquet_rows, workbook_rows,
+    cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
+    sheet_names, times, workbook_rows,
 };
 pub(super) use options::TIME_UNITS;
 pub(super) use source::{TABLE_KEYS, table_source};
@@ -114,6 +115,20 @@ fn any_columns(
     })
 }
 
+/// Hands each row of a text or a workbook to `take`, that of the names included; of a Parquet file none.
+fn each_row_of(path: &Path, options: &FileOptions, take: &mut rows::Take<'_>) -> Result<(), RecordingError> {
+    let refuse = |problem: Problem| problem.in_file(&path.display().to_string());
+    match FileFormat::of(path)? {
+        FileFormat::Workbook => sheet::each_row(&super::source::read_whole(path)?, options, take).map_err(refuse),
+        FileFormat::Csv => {
+            let text = decode::decode(&read_settled(path)?, options.encoding).map_err(refuse)?;
+            let options = labview::with_labview(&text, options).map_err(refuse)?;
+            rows::each_row(&text, &options, take).map_err(refuse)
+        }
+        _ => Ok(()),
+    }
+}
+
 fn text_columns(
     bytes: &[u8],
     file: &str,
@@ -162,8 +177,10 @@ fn collect(
     file: &str,
     options: &FileOptions,
     needed: Needed<'_>,
-    each: impl FnOnce(&mut rows::Take<'_>) -> Result<(), Problem>,
+    each: impl Fn(&mut rows::Take<'_>) -> Result<(), Problem>,
 ) -> Result<Columns, RecordingError> {
+    let last = last_row(options, &each).map_err(|problem| problem.in_file(file))?;
+    let mut row = 0;
     let no_data = |what| RecordingError::NoData { file: file.to_owned(), what };
     let mut columns = match options.header {
         Some(Header::Absent) => Some(Columns::new(
@@ -172,12 +189,14 @@ fn collect(
         )),
         _ => None,
     };
-    each(&mut |cells| match &mut columns {
-        Some(columns) => columns.push(cells),
-        None => {
-            columns = Some(Columns::new(Names::of_row(cells, options, needed)?, options.clone()));
-            Ok(())
+    each(&mut |cells| {
+        row += 1;
+        match &mut columns {
+            _ if row > last => {}
+            Some(columns) => columns.push(cells)?,
+            None => columns = Some(Columns::new(Names::of_row(cells, options, needed)?, options.clone())),
         }
+        Ok(())
     })
     .map_err(|problem| problem.in_file(file))?;
     let columns = columns.ok_or_else(|| no_data("the file is empty"))?;
@@ -185,6 +204,22 @@ fn collect(
         true => Err(no_data("there is no row below the header")),
         false => Ok(columns),
     }
+}
+
+/// How many rows, that of the names included, are read; rows at the end are counted only where some are to be left out.
+fn last_row(
+    options: &FileOptions,
+    each: &impl Fn(&mut rows::Take<'_>) -> Result<(), Problem>,
+) -> Result<usize, Problem> {
+    if options.skip_last_rows == 0 {
+        return Ok(usize::MAX);
+    }
+    let mut rows = 0_usize;
+    each(&mut |_| {
+        rows += 1;
+        Ok(())
+    })?;
+    Ok(rows.saturating_sub(options.skip_last_rows))
 }
 
 /// Columns under the names and in the units of the channels.

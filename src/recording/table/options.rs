@@ -49,6 +49,8 @@ pub struct FileOptions {
     pub thousands: Option<char>,
     /// Lines at the top that do not belong to the table.
     pub skip_rows: usize,
+    /// Rows at the end that are no samples: means, extremes, a closing remark.
+    pub skip_last_rows: usize,
     /// Where the names of the columns are.
     pub header: Option<Header>,
     /// Names of the columns where the file has none.

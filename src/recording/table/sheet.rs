@@ -37,6 +37,12 @@ pub(super) fn each_row(bytes: &[u8], options: &FileOptions, take: &mut Take<'_>)
     Ok(())
 }
 
+/// Names of the sheets, in their order.
+pub(super) fn names(bytes: &[u8]) -> Result<Vec<String>, Problem> {
+    let book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|e| unreadable(&e.to_string()))?;
+    Ok(book.sheet_names())
+}
+
 /// Cells of the rectangle around all that a sheet holds, at most: the reader makes room for each.
 const MOST_CELLS: u64 = 20_000_000;
 
