@@ -2,8 +2,6 @@
 
 use rayon::prelude::*;
 
-use crate::effects::{Kind, port_of};
-
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::{self, Noise};
@@ -100,18 +98,18 @@ pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Foun
 /// them clearly better, so that the effect only stands in for a law.
 fn other_places(open: &Problem, found: &mut Found) -> bool {
     let [effect] = &found.best.model.effects[..] else { return false };
-    let variables = port_of(effect.kind).variables;
-    if effect.channel.is_some() || variables.is_empty() {
+    let variables: Vec<&str> = effect.spec().variables.iter().map(String::as_str).collect();
+    if effect.channel.is_some() || effect.spec().unlisted().is_some() || variables.is_empty() {
         return false;
     }
     let criterion = Criterion::of(open, [Some(&found.best), None, None]);
     let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (found.baseline.cost - found.best.cost);
-    let own = port_of(effect.kind).port;
-    let others = unlisted::alternatives(open, &found.baseline, &found.best, variables);
+    let own = &effect.spec().port;
+    let others = unlisted::alternatives(open, &found.baseline, &found.best, &variables);
     let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
-    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().map(|e| e.kind) {
-        Some(Kind::Law(id)) => id.law().law.address.port.spec().name() != own,
-        _ => false,
+    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().and_then(|e| e.spec().unlisted()) {
+        Some(written) => written.law.address.port.spec().name() != *own,
+        None => false,
     };
     let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
     found.forms = near.take(MOST_FORMS).cloned().collect();

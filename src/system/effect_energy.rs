@@ -20,8 +20,6 @@ enum Flow {
     Gravity,
     Expansion,
     Coupling,
-    UnknownPull,
-    UnknownOutflow,
     Leak,
     Restriction,
     Relaxation,
@@ -31,12 +29,10 @@ enum Flow {
 }
 
 /// Name and side of each [`Flow`], in its order.
-const FLOWS: [(&str, Side); 11] = [
+const FLOWS: [(&str, Side); 9] = [
     ("gravity_load_work", Side::Brought),
     ("thermal_expansion_work", Side::Brought),
     ("tendon_coupling_work", Side::Brought),
-    ("hypothetical_force_work", Side::Brought),
-    ("hypothetical_flow_work", Side::Brought),
     ("lost_leak", Side::Lost),
     ("lost_line_restriction", Side::Lost),
     ("lost_relaxation", Side::Lost),
@@ -166,12 +162,6 @@ fn muscle_flows(
     let p = f.pressure_pa;
     flows.add(Flow::Leak, x.leak_m3_s_pa.map_or(0.0, |g| g * p * p));
     flows.add(Flow::Expansion, x.growth_m3_s.map_or(0.0, |q| q * p));
-    for flow in &x.flows {
-        flows.add(Flow::UnknownOutflow, -flow.flow_m3_s(p) * p);
-    }
-    for force in &x.forces {
-        flows.add(Flow::UnknownPull, -force.pull_and_stiffness(f.elongation_m, p).0 * f.speed_m_s);
-    }
     for (branch, &dashpot) in x.branches.iter().zip(slow) {
         flows.add(Flow::Relaxation, branch.dissipation_w(f.elongation_m, dashpot));
     }

@@ -77,6 +77,8 @@ pub struct EnergyBook {
 #[derive(Clone, Debug)]
 struct LawLine {
     name: String,
+    /// Whether the law is an effect of the catalogue.
+    is_listed: bool,
     port: Port,
     brought_j: f64,
     before_w: f64,
@@ -212,6 +214,18 @@ impl EnergyBook {
         self.turnover
     }
 
+    /// Lines of laws; an effect on several elements has one line, and none where there is nothing on it.
+    fn lines_of_laws(&self) -> Vec<(String, f64)> {
+        let mut lines: Vec<(String, f64)> = Vec::new();
+        for own in self.laws.iter().filter(|own| !own.is_listed || own.brought_j != 0.0) {
+            match lines.iter_mut().find(|(name, _)| own.is_listed && *name == own.name) {
+                Some((_, sum_j)) => *sum_j += own.brought_j,
+                None => lines.push((own.name.clone(), own.brought_j)),
+            }
+        }
+        lines
+    }
+
     /// All lines, J, in a fixed order: what came in, what is stored, what was lost, what is left over.
     ///
     /// Lines of effects stand only where there is something on them.
@@ -219,8 +233,7 @@ impl EnergyBook {
         let s = &self.sums;
         let mut lines: Vec<(&str, f64)> = vec![("input_work", s.input), ("load_work", s.loads)];
         lines.extend(self.effects.lines(Side::Brought));
-        let of_laws = self.laws.iter().map(|line| (line.name.clone(), line.brought_j));
-        let brought: Vec<(String, f64)> = named(lines).into_iter().chain(of_laws).collect();
+        let brought: Vec<(String, f64)> = named(lines).into_iter().chain(self.lines_of_laws()).collect();
         let mut lines: Vec<(&str, f64)> = Vec::new();
         lines.extend([
             ("pressure_friction_exchange", s.pressure_friction),
@@ -253,7 +266,8 @@ const LEAST_SUPPLY: f64 = 1e-6;
 fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
     let laws = plant.laws.iter().flat_map(|laws| laws.laws());
     let line = |law: &crate::laws::Law| LawLine {
-        name: format!("law_{}", law.name),
+        name: law.energy.clone().unwrap_or_else(|| format!("law_{}", law.name)),
+        is_listed: law.energy.is_some(),
         port: law.address.port,
         brought_j: 0.0,
         before_w: 0.0,
