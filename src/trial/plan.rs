@@ -81,7 +81,8 @@ fn just_visible(scene: &str, seed: u64) -> Result<Vec<Effect<f64>>, TrialError> 
             None => least.push(effect),
         }
     }
-    least.sort_by_key(|e| (e.entry.native, e.channel.clone()));
+    // Texts come after code: an entry more leaves the numbers of the others, and their seeds, as they are.
+    least.sort_by_key(|e| (e.entry.native.is_none(), e.entry.native, e.entry, e.channel.clone()));
     Ok(least)
 }
 
