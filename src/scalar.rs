@@ -160,6 +160,11 @@ impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
 
     #[inline]
     fn powd(&self, n: Self) -> Self {
+        // Of what is not above zero there are whole powers only, and nothing follows their exponent.
+        let exponent = n.value();
+        if self.value() <= 0.0 && exponent.fract() == 0.0 {
+            return DualNum::powi(self, exponent as i32);
+        }
         DualNum::powd(self, n)
     }
 }

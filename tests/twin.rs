@@ -2,7 +2,7 @@
 
 use nalgebra::Const;
 use num_dual::DualSVec64;
-use smam::effects::{CATALOGUE, Effect, EffectTable, ElementKind};
+use smam::effects::{Effect, EffectTable, ElementKind, catalogue};
 use smam::recording::Recording;
 use smam::scene::{Override, Scene, SceneFile};
 use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
@@ -47,12 +47,12 @@ fn val_twin_meets_the_full_scene() {
 fn with_each_effect(name: &str) -> Vec<(String, Scene)> {
     let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut scenes = Vec::new();
-    for spec in CATALOGUE {
+    for spec in catalogue() {
         for element in [spec.element.name().to_owned(), format!("{}_1", spec.element.name())] {
             let mut scene = stock.clone();
             let channel = (spec.element == ElementKind::Sensor).then(|| stock.file.output[0].channel.clone());
-            let parameters = spec.parameters.iter().zip(spec.typical()).map(|(p, v)| (p.key.to_owned(), v)).collect();
-            scene.file.effect = vec![EffectTable { name: spec.name.to_owned(), element, channel, parameters }];
+            let parameters = spec.parameters.iter().zip(spec.typical()).map(|(p, v)| (p.key.clone(), v)).collect();
+            scene.file.effect = vec![EffectTable { name: spec.name.clone(), element, channel, parameters }];
             if let Ok(scene) = Scene::from_file(scene.file, &scene.path) {
                 scenes.push((format!("{name} with {}", spec.parameters[0].key), scene));
             }

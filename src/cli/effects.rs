@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::effects::{CATALOGUE, Effect, EffectSpec, ElementKind, ParameterSpec};
+use smam::effects::{Effect, ElementKind, Entry, EntryId, ParameterSpec, catalogue, names};
 use smam::nearest::did_you_mean;
 use smam::report::{AffectedScene, Scale, effect_svg, greek};
 use smam::scene::Scene;
@@ -33,21 +33,20 @@ const RIGS: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_cathete
 /// Lists the catalogue, or shows one effect and draws it.
 pub fn effects(arguments: &EffectsArguments) -> Result<ExitCode, CliError> {
     let Some(name) = &arguments.name else {
-        for spec in CATALOGUE {
-            say!("{:<20} {:<10} {}", spec.name, spec.element.name(), spec.title);
+        for entry in catalogue() {
+            say!("{:<20} {:<10} {}", entry.name, entry.element.name(), entry.title);
         }
-        say!("\nOne of them: smam effects {}", CATALOGUE[0].name);
+        say!("\nOne of them: smam effects {}", names()[0]);
         return Ok(ExitCode::SUCCESS);
     };
-    let found: Vec<&'static EffectSpec> = CATALOGUE.iter().filter(|s| s.name == name).collect();
+    let found: Vec<EntryId> = catalogue().filter(|entry| entry.name == *name).collect();
     if found.is_empty() {
-        let known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
-        let near = did_you_mean(name, &known);
+        let near = did_you_mean(name, &names());
         return Err(CliError::Usage(format!("{name}: no such effect{near}\n  remedy: `smam effects` lists them")));
     }
     found.iter().for_each(|spec| show(spec));
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/effects"));
-    for (i, spec) in found.iter().enumerate() {
+    for (i, spec) in found.into_iter().enumerate() {
         // Two laws may share a name: the second one's picture carries its key.
         let file = if i == 0 { format!("{name}.svg") } else { format!("{name}_{}.svg", spec.parameters[0].key) };
         let path = out.join(file);
@@ -57,9 +56,9 @@ pub fn effects(arguments: &EffectsArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn show(spec: &EffectSpec) {
-    say!("{}: {}\n  law     {}\n  source  {}\n  numbers", spec.name, spec.title, spec.law, spec.source);
-    for p in spec.parameters {
+fn show(spec: &Entry) {
+    say!("{}: {}\n  law     {}\n  source  {}\n  numbers", spec.name, spec.title, spec.equation, spec.source);
+    for p in &spec.parameters {
         let default = p.default.map_or("must be given".to_owned(), |d| format!("default {d:e}"));
         say!("    {:<30} {:<10} {:e} to {:e}, {default}", p.key, p.symbol, p.range.min, p.range.max);
     }
@@ -67,7 +66,7 @@ fn show(spec: &EffectSpec) {
 }
 
 /// The table for a scene: the size and whatever else has no default.
-fn table(spec: &EffectSpec) -> String {
+fn table(spec: &Entry) -> String {
     let mut text = format!("  [[effect]]\n  name = \"{}\"\n  element = \"{}\"\n", spec.name, spec.element.name());
     if spec.element == ElementKind::Sensor {
         text += "  channel = \"angle_deg\"\n";
@@ -77,43 +76,43 @@ fn table(spec: &EffectSpec) -> String {
     text
 }
 
-fn picture(spec: &'static EffectSpec) -> Result<String, CliError> {
+fn picture(spec: EntryId) -> Result<String, CliError> {
     let shown = influences(spec)?;
-    let of_each: Vec<Vec<String>> = shown.iter().map(|one| sizes(spec, one)).collect();
+    let of_each: Vec<Vec<String>> = shown.iter().map(|one| sizes(&spec, one)).collect();
     let is_common = of_each.windows(2).all(|pair| pair[0] == pair[1]);
     let legend = match of_each.first() {
         Some(first) if is_common => first.clone(),
         _ => ["the first size said above each column", "twice that"].map(str::to_owned).to_vec(),
     };
     let own = of_each.iter().map(|sizes| if is_common { String::new() } else { sizes[0].clone() });
-    let scenes: Vec<AffectedScene> = shown.iter().zip(own).map(|(one, size)| affected(spec, one, size)).collect();
+    let scenes: Vec<AffectedScene> = shown.iter().zip(own).map(|(one, size)| affected(&spec, one, size)).collect();
     let title = format!("{}: {}", spec.name, spec.title);
-    Ok(effect_svg(&title, [&greek(spec.law), &symbols(spec)], &legend, &scenes))
+    Ok(effect_svg(&title, [&greek(&spec.equation), &symbols(&spec)], &legend, &scenes))
 }
 
 /// What the law's symbols are called in a scene: `κ = kappa` only where the two differ.
-fn symbols(spec: &EffectSpec) -> String {
-    let keys = spec.parameters.iter().map(|p| match greek(p.symbol) {
-        symbol if p.key.split('_').next() == Some(p.symbol) => format!("{symbol} is the key {}", p.key),
+fn symbols(spec: &Entry) -> String {
+    let keys = spec.parameters.iter().map(|p| match greek(&p.symbol) {
+        symbol if p.key.split('_').next() == Some(p.symbol.as_str()) => format!("{symbol} is the key {}", p.key),
         symbol => format!("{symbol} = {}", p.key),
     });
     keys.collect::<Vec<_>>().join(",  ")
 }
 
 /// The sizes played, in one unit: `G = 1e-16 m³/(s Pa)`.
-fn sizes(spec: &EffectSpec, one: &Influence) -> Vec<String> {
+fn sizes(spec: &Entry, one: &Influence) -> Vec<String> {
     let p = &spec.parameters[0];
     let greatest = one.sizes.iter().fold(0.0_f64, |m, size| m.max(size.abs()));
-    let scale = Scale::of(p.key, one.effect.channel.as_deref(), greatest);
-    one.sizes.iter().map(|size| format!("{} = {}", greek(p.symbol), scale.short(*size))).collect()
+    let scale = Scale::of(&p.key, one.effect.channel.as_deref(), greatest);
+    one.sizes.iter().map(|size| format!("{} = {}", greek(&p.symbol), scale.short(*size))).collect()
 }
 
 fn value_of(p: &ParameterSpec, channel: Option<&str>, value: f64) -> String {
-    format!("{} = {}", greek(p.symbol), Scale::of(p.key, channel, value).short(value))
+    format!("{} = {}", greek(&p.symbol), Scale::of(&p.key, channel, value).short(value))
 }
 
 /// On every rig that can have it, else on the first stock scene that can.
-fn influences(spec: &'static EffectSpec) -> Result<Vec<Influence>, CliError> {
+fn influences(spec: EntryId) -> Result<Vec<Influence>, CliError> {
     let on = |name: &str| -> Result<Option<Influence>, CliError> { Ok(influence(&Scene::load(name, &[])?, spec)?) };
     let mut shown = Vec::new();
     for name in RIGS {
@@ -127,7 +126,7 @@ fn influences(spec: &'static EffectSpec) -> Result<Vec<Influence>, CliError> {
     Ok(shown)
 }
 
-fn affected(spec: &EffectSpec, one: &Influence, size: String) -> AffectedScene {
+fn affected(spec: &Entry, one: &Influence, size: String) -> AffectedScene {
     let on = one.effect.channel.clone().unwrap_or_else(|| one.effect.element.to_string());
     let numbers = std::iter::once(size).chain(other_numbers(&one.effect)).filter(|text| !text.is_empty());
     AffectedScene {
@@ -143,7 +142,7 @@ fn affected(spec: &EffectSpec, one: &Influence, size: String) -> AffectedScene {
 
 /// The numbers besides the size: `τ = 4 s`.
 fn other_numbers(effect: &Effect<f64>) -> impl Iterator<Item = String> {
-    let others = effect.spec().parameters.iter().zip(&effect.values).skip(1);
+    let others = effect.entry.parameters.iter().zip(&effect.values).skip(1);
     others.map(|(p, value)| value_of(p, effect.channel.as_deref(), *value))
 }
 
@@ -154,20 +153,20 @@ mod tests {
 
     #[test]
     fn every_table_that_is_printed_can_stand_in_a_scene() {
-        for spec in CATALOGUE {
-            let text = table(spec).replace("[[effect]]", "");
+        for spec in catalogue() {
+            let text = table(&spec).replace("[[effect]]", "");
             let parsed: EffectTable = toml::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", spec.name));
             let effect = parsed.effect().unwrap_or_else(|e| panic!("{}: {}", spec.name, e.message));
-            assert_eq!((effect.kind, effect.values), (spec.kind, spec.typical()), "{}", spec.name);
+            assert_eq!((effect.entry, effect.values), (spec, spec.typical()), "{}", spec.name);
         }
     }
 
     #[test]
     fn every_number_of_the_catalogue_has_its_unit_or_needs_none() {
         let plain = ["kappa", "_ratio", "_coefficient", "gain_error", "_power", "decades", "alpha", "inverse_limit"];
-        for p in CATALOGUE.iter().flat_map(|spec| spec.parameters) {
+        for p in catalogue().flat_map(|spec| &spec.entry().parameters) {
             let needs_none = plain.iter().any(|end| p.key.ends_with(end));
-            assert_eq!(Scale::of(p.key, None, 1.0).symbol.is_empty(), needs_none, "{}", p.key);
+            assert_eq!(Scale::of(&p.key, None, 1.0).symbol.is_empty(), needs_none, "{}", p.key);
         }
     }
 }

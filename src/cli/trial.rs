@@ -8,7 +8,7 @@ use std::sync::Mutex;
 
 use clap::Args;
 use rayon::prelude::*;
-use smam::effects::CATALOGUE;
+use smam::effects::names;
 use smam::nearest::did_you_mean;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in};
 
@@ -103,7 +103,7 @@ fn no_case(place: &str) -> CliError {
 }
 
 fn check_effect(name: Option<&str>) -> Result<(), CliError> {
-    let known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
+    let known = names();
     match name.filter(|n| !known.contains(n)) {
         Some(odd) => {
             let near = did_you_mean(odd, &known);

@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::effects::CATALOGUE;
+use crate::effects::catalogue;
 
 /// The whole answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,7 +149,7 @@ pub fn size_key(name: &str) -> &'static str {
 }
 
 fn size_keys(name: &str) -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().filter(move |spec| spec.name == name).map(|spec| spec.parameters[0].key)
+    catalogue().filter(move |entry| entry.name == name).map(|entry| entry.entry().parameters[0].key.as_str())
 }
 
 /// A number with its interval.

@@ -12,7 +12,7 @@ use super::refits::foretells_runs;
 use super::search::{self, Found};
 use super::weigh::open_runs;
 use super::without::Step;
-use crate::effects::Kind;
+use crate::effects::Native;
 
 /// Decades of a broad relaxation: from the shortest time on beyond any recording's length, so that where they end does not matter.
 const DECADES: f64 = 5.0;
@@ -67,13 +67,17 @@ fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {
 
 /// Whether an effect is a relaxation over decades.
 pub(super) fn is_broad(model: &Model, effect: usize) -> bool {
-    model.effects[effect].kind == Kind::Viscoelasticity && model.values[effect][2] > 0.0
+    relaxes(&model.effects[effect]) && model.values[effect][2] > 0.0
+}
+
+fn relaxes(placed: &Placed) -> bool {
+    placed.entry.native == Some(Native::Viscoelasticity)
 }
 
 /// Each muscle that relaxes, once.
 fn relaxing(fit: &Fit) -> Vec<Placed> {
     let mut relaxing: Vec<Placed> = Vec::new();
-    for placed in fit.model.effects.iter().filter(|e| e.kind == Kind::Viscoelasticity) {
+    for placed in fit.model.effects.iter().filter(|e| relaxes(e)) {
         if !relaxing.contains(placed) {
             relaxing.push(placed.clone());
         }

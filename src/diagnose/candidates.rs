@@ -1,6 +1,7 @@
 //! Which effects a rig could have, and with which numbers each is first tried.
 
-use crate::effects::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
+use crate::effects::{Element, ElementKind, EntryId, Levels, catalogue};
+use crate::recording::parse_column;
 use crate::scene::Scene;
 
 use super::case::Case;
@@ -17,8 +18,8 @@ pub struct Variant {
 /// Every effect that can sit on the case's scene, each in the variants it is first tried in.
 pub fn variants(case: &Case) -> Vec<Variant> {
     let mut all = Vec::new();
-    for spec in CATALOGUE.iter().filter(|s| !s.kind.is_hypothetical()) {
-        for placed in places(case, spec) {
+    for entry in catalogue().filter(|entry| !entry.hypothetical) {
+        for placed in places(case, entry) {
             let tried = starts(case, &placed).into_iter().filter(|v| fits_scene(case, &placed, v));
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
         }
@@ -27,17 +28,14 @@ pub fn variants(case: &Case) -> Vec<Variant> {
     all
 }
 
-/// What equal parts have in common when one has it: material, make, surface. These are tried on all of them at once.
-const IN_ALL: [Kind; 4] = [Kind::Viscoelasticity, Kind::MullinsSoftening, Kind::CoilPreload, Kind::TendonFriction];
-
-fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
+fn places(case: &Case, entry: EntryId) -> Vec<Placed> {
     let file = &case.scene.file;
     let on = |kind: ElementKind, index: usize, count: usize, channel: Option<&str>| Placed {
-        kind: spec.kind,
+        entry,
         element: Element::of(kind, index, count),
         channel: channel.map(str::to_owned),
     };
-    let count = match spec.element {
+    let count = match entry.element {
         ElementKind::Sensor => {
             return case.channels.iter().map(|c| on(ElementKind::Sensor, 0, 1, Some(&c.column))).collect();
         }
@@ -48,13 +46,13 @@ fn places(case: &Case, spec: &EffectSpec) -> Vec<Placed> {
         ElementKind::Cable => file.cable.len(),
         _ => file.muscle.len(),
     };
-    let mut placed: Vec<Placed> = (0..count).map(|i| on(spec.element, i, count, None)).collect();
-    if count > 1 && (IN_ALL.contains(&spec.kind) || file.chamber.is_some()) {
-        placed.push(on(spec.element, 0, 1, None));
+    let mut placed: Vec<Placed> = (0..count).map(|i| on(entry.element, i, count, None)).collect();
+    if count > 1 && (entry.trying.shared || file.chamber.is_some()) {
+        placed.push(on(entry.element, 0, 1, None));
     }
-    if spec.kind == Kind::GravityLoad && file.cable.is_empty() {
+    if let Some(kind) = entry.also_on.filter(|_| file.cable.is_empty()) {
         // On a bench the weight hangs on the muscle.
-        placed = (0..file.muscle.len()).map(|i| on(ElementKind::Muscle, i, file.muscle.len(), None)).collect();
+        placed = (0..file.muscle.len()).map(|i| on(kind, i, file.muscle.len(), None)).collect();
     }
     placed
 }
@@ -67,11 +65,12 @@ fn chambers(case: &Case) -> usize {
 
 /// Whether the scene takes the effect: the checks of a scene file decide.
 fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
-    // A scene that already has friction growing with pressure calibrates it.
-    if placed.kind == Kind::PressureFriction && case.parameters.iter().any(|p| p.key.contains("m1_n_pa")) {
-        return false;
-    }
-    if placed.kind == Kind::NotchClosure && !has_flexures(&case.scene) {
+    let trying = &placed.spec().trying;
+    // What a scene calibrates is no candidate beside it.
+    let is_calibrated = |own: &String| case.parameters.iter().any(|p| p.key.contains(own));
+    if trying.unless_calibrated.as_ref().is_some_and(is_calibrated)
+        || (trying.needs_flexures && !has_flexures(&case.scene))
+    {
         return false;
     }
     let mut file = case.scene.file.clone();
@@ -93,36 +92,24 @@ fn has_flexures(scene: &Scene) -> bool {
 /// Starting numbers. Where a second number bends the law (a time, a threshold), several are tried.
 fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
     let typical = placed.spec().typical();
-    let with = |seconds: &[f64]| -> Vec<Vec<f64>> {
-        seconds
-            .iter()
-            .map(|&s| {
-                let mut values = typical.clone();
-                values[1] = s;
-                values
-            })
-            .collect()
-    };
-    match placed.kind {
-        Kind::Viscoelasticity => with(&[0.4, 4.0, 40.0]),
-        Kind::PlasticSet => with(&levels(case, "elongation", 1e-3).unwrap_or_else(|| vec![0.012, 0.018, 0.03])),
-        Kind::ExternalContact => with(&levels(case, "", std::f64::consts::PI / 180.0).unwrap_or_else(|| vec![0.6])),
-        Kind::NotchClosure => with(&[0.15, 0.25, 0.35]),
-        Kind::BearingFriction => with(&[0.01, 0.05]),
-        Kind::RubberOgden => with(&[-2.0, 4.0, 8.0]),
-        _ => vec![typical],
+    let trying = &placed.spec().trying;
+    let seconds = trying.levels.as_ref().and_then(|own| levels(case, own)).unwrap_or_else(|| trying.second.clone());
+    if seconds.is_empty() {
+        return vec![typical];
     }
+    let with = |second: f64| [&typical[..1], &[second], &typical[2..]].concat();
+    seconds.into_iter().map(with).collect()
 }
 
-/// Levels of the first recorded channel of a kind at which something could begin, SI: between its middle and its ends.
-fn levels(case: &Case, name: &str, unit: f64) -> Option<Vec<f64>> {
-    let suffix = if name.is_empty() { "_deg" } else { "_mm" };
-    let channel = case.channels.iter().position(|c| c.column.ends_with(suffix) && c.column.contains(name))?;
+/// Levels of the first recorded channel of a kind, SI.
+fn levels(case: &Case, own: &Levels) -> Option<Vec<f64>> {
+    let is_own = |column: &String| column.ends_with(&own.ending) && column.contains(&own.column);
+    let channel = case.channels.iter().position(|c| is_own(&c.column))?;
+    let unit = parse_column(&case.channels[channel].column).ok()?.unit;
     let mut values: Vec<f64> =
         case.runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let at = |share: f64| values.get((share * (values.len().max(1) - 1) as f64) as usize).copied();
-    let shares: &[f64] = if name.is_empty() { &[0.03, 0.2, 0.6, 0.85, 0.97] } else { &[0.6, 0.9] };
-    let found: Vec<f64> = shares.iter().filter_map(|&s| at(s)).map(|v| v * unit).collect();
+    let found: Vec<f64> = own.shares.iter().filter_map(|&s| at(s)).map(|v| unit.to_si(v)).collect();
     (!found.is_empty()).then_some(found)
 }

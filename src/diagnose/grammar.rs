@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::effects::{Element, Fitted, Kind, LawId, Range};
+use crate::effects::{Element, EntryId, Fitted, Range};
 use crate::laws::{
     Acts, Address, Carrier, Law, LawTable, PORTS, ParameterTable, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
 };
@@ -278,18 +278,14 @@ fn injected(case: &Case, address: &str, port: Port) -> Option<(Placed, f64)> {
 
 /// A law as something that a model can hold.
 fn written(case: &Case, table: &LawTable, law: &Law, numbers: &[Fitted], size: usize) -> Placed {
-    let id = LawId::write(table, law, size, numbers);
+    let entry = EntryId::write(table, law, size, numbers);
     let number = law.address.number;
     let count = match law.address.port.spec().carrier {
         Carrier::Cable => case.scene.file.cable.len(),
         _ => case.scene.file.muscle.len(),
     };
     let count = if number.is_some() { count } else { 1 };
-    Placed {
-        kind: Kind::Law(id),
-        element: Element::of(id.law().spec.element, number.unwrap_or(0), count),
-        channel: None,
-    }
+    Placed { entry, element: Element::of(entry.element, number.unwrap_or(0), count), channel: None }
 }
 
 /// A port of every element that there is by itself, and of all at once where there are several.

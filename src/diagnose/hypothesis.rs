@@ -2,8 +2,6 @@
 
 use rayon::prelude::*;
 
-use crate::effects::{Kind, port_of};
-
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::grammar::Reach;
@@ -103,18 +101,18 @@ pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Foun
 /// them clearly better, so that the effect only stands in for a law.
 fn other_places(open: &Problem, found: &mut Found) -> bool {
     let [effect] = &found.best.model.effects[..] else { return false };
-    let variables = port_of(effect.kind).variables;
-    if effect.channel.is_some() || variables.is_empty() {
+    let variables: Vec<&str> = effect.spec().variables.iter().map(String::as_str).collect();
+    if effect.channel.is_some() || effect.spec().unlisted().is_some() || variables.is_empty() {
         return false;
     }
     let criterion = Criterion::of(open, [Some(&found.best), None, None]);
     let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (found.baseline.cost - found.best.cost);
-    let own = port_of(effect.kind).port;
-    let others = unlisted::alternatives(open, &found.baseline, &found.best, variables);
+    let own = &effect.spec().port;
+    let others = unlisted::alternatives(open, &found.baseline, &found.best, &variables);
     let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
-    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().map(|e| e.kind) {
-        Some(Kind::Law(id)) => id.law().law.address.port.spec().name() != own,
-        _ => false,
+    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().and_then(|e| e.spec().unlisted()) {
+        Some(written) => written.law.address.port.spec().name() != *own,
+        None => false,
     };
     let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
     found.forms = near.take(MOST_FORMS).cloned().collect();
@@ -135,7 +133,7 @@ fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<F
 
 /// Length of the last effect's law as text: of forms that do the same the shorter stands.
 fn letters(fit: &Fit) -> usize {
-    fit.model.effects.last().map_or(0, |e| e.spec().law.len())
+    fit.model.effects.last().map_or(0, |e| e.spec().equation.len())
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.

@@ -320,7 +320,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         _ if found.withheld.is_some() && is_open_set => Verdict::UnknownPhysics,
         _ => verdict::verdict(&found, &effects, excess, is_open_set),
     };
-    let is_modelled = complete.model.effects.iter().any(|e| e.kind.is_hypothetical());
+    let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
         warnings.push(SEALED_ALONE.to_owned());
     }

@@ -1,6 +1,6 @@
 //! What is compared with the recordings: calibrated parameters and a set of effects.
 
-use crate::effects::{Effect, EffectSpec, Element, Kind};
+use crate::effects::{Effect, Element, Entry, EntryId};
 use crate::system::TwinSetting;
 
 use super::case::{Case, CaseRun};
@@ -8,15 +8,15 @@ use super::case::{Case, CaseRun};
 /// An effect on its element, without numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Placed {
-    pub kind: Kind,
+    pub entry: EntryId,
     pub element: Element,
     pub channel: Option<String>,
 }
 
 impl Placed {
     /// The catalogue's entry.
-    pub fn spec(&self) -> &'static EffectSpec {
-        crate::effects::find(self.kind)
+    pub fn spec(&self) -> &'static Entry {
+        self.entry.entry()
     }
 
     /// What a reader is told: `trapped_air in line_2`, `sensor_gain on angle_deg`.
@@ -34,7 +34,7 @@ impl Placed {
 
     /// With numbers.
     pub fn with(&self, values: &[f64]) -> Effect<f64> {
-        Effect { kind: self.kind, element: self.element, channel: self.channel.clone(), values: values.to_vec() }
+        Effect { entry: self.entry, element: self.element, channel: self.channel.clone(), values: values.to_vec() }
     }
 }
 
@@ -78,7 +78,7 @@ impl Model {
     /// Whether an effect may be added: not twice on one element, but for relaxation, which has a spectrum.
     pub fn takes(&self, placed: &Placed) -> bool {
         let standing = self.effects.iter().filter(|e| *e == placed).count();
-        standing < if placed.kind.may_repeat() { MOST_BRANCHES } else { 1 }
+        standing < if placed.entry.may_repeat { MOST_BRANCHES } else { 1 }
     }
 
     /// One effect less.

@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::diagnose::noise::Noise;
     use crate::diagnose::{Model, Placed, Sealed, made};
-    use crate::effects::{Element, ElementKind, Kind};
+    use crate::effects::{Element, ElementKind, find};
 
     #[test]
     fn the_shortest_that_is_sure_comes_first() {
@@ -136,14 +136,15 @@ mod tests {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.02)];
         let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
-        let fit = |kind, element, values: &[f64]| {
-            let model = Model::baseline().plus(&Placed { kind, element, channel: None }, values);
+        let fit = |id, element, values: &[f64]| {
+            let entry = find(id).expect("of the catalogue");
+            let model = Model::baseline().plus(&Placed { entry, element, channel: None }, values);
             let x = whole.start(&model, None);
             let numbers = x.len();
             Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(numbers, numbers), on_bound: Vec::new() }
         };
-        let leak = fit(Kind::Leak, Element::of(ElementKind::Line, 0, 1), &[1e-17]);
-        let creep = fit(Kind::Viscoelasticity, Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0, 0.0]);
+        let leak = fit("leak", Element::of(ElementKind::Line, 0, 1), &[1e-17]);
+        let creep = fit("viscoelasticity", Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0, 0.0]);
         let answer = |rivals: Vec<&Fit>| settle(&whole, &leak, &Open { rivals, unit: 1.0 }).expect("known units");
         let none = answer(vec![&leak]);
         assert!(none.inputs.is_none() && none.next.file.is_none());

@@ -10,7 +10,7 @@ use super::model::Sides;
 use super::noise::Noise;
 use super::normal::Normal;
 use super::verdict::is_said;
-use crate::effects::{Kind, Range};
+use crate::effects::Range;
 
 /// Runs disagree when their sizes spread by this many standard errors and by this share of the size.
 const SIGMA: f64 = 4.0;
@@ -32,7 +32,7 @@ pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let mut sizes: Vec<RunSizes> = Vec::new();
     let sizes_of = |&(_, (effect, index)): &(usize, (usize, usize))| index == 0 && !is_broad(&fit.model, effect);
     for (place, (effect, index)) in fit.model.places().into_iter().enumerate().filter(sizes_of) {
-        let key = fit.model.effects[effect].spec().parameters[index].key;
+        let key = fit.model.effects[effect].spec().parameters[index].key.as_str();
         let runs = case.runs.iter().filter_map(|run| {
             let problem = Problem { case, runs: vec![Cow::Borrowed(run)], noise };
             Some((run.file.clone(), size_in(&problem, fit, first, place)?))
@@ -63,7 +63,7 @@ pub fn contradiction(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<(usize, 
         let impossible = s.runs.iter().find(|(_, size)| is_outside(*size, range));
         let how = match impossible {
             Some((file, _)) => format!("would have a size in {file} that it cannot have"),
-            None if OF_THE_DAY.contains(&placed.kind) => return None,
+            None if placed.entry.trying.of_the_day => return None,
             None => {
                 let (larger, smaller) = far_apart(&s.runs)?;
                 format!("would be larger in {larger} than in {smaller}, by more than an idealised law allows")
@@ -72,9 +72,6 @@ pub fn contradiction(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<(usize, 
         Some((s.effect, how))
     })
 }
-
-/// What the surroundings set may be another in every run.
-const OF_THE_DAY: [Kind; 2] = [Kind::SensorDrift, Kind::ThermalExpansion];
 
 /// Factor between the sizes of two runs, both nearer to each other by [`SIGMA`] standard errors, from which one law does not stand
 /// behind both: of effects that were there, altered forms included, none came to 1.25.

@@ -140,8 +140,8 @@ fn several_ports(located: &[Located]) -> Vec<&Slot> {
 
 /// Whether the last effect of a fit is a law of this slot.
 fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
-    let Some(crate::effects::Kind::Law(id)) = fit.model.effects.last().map(|e| e.kind) else { return false };
-    let law = &id.law().law;
+    let Some(written) = fit.model.effects.last().and_then(|e| e.spec().unlisted()) else { return false };
+    let law = &written.law;
     let variables = law.variables();
     let is_over = match slot.is_constant() {
         true => variables.is_empty(),

@@ -33,7 +33,7 @@ pub fn is_loud(excess: f64, error: f64) -> bool {
 /// Whether more is left than the catalogue explains.
 pub fn is_unknown(found: &Found, excess: Excess) -> bool {
     let effects = &found.best.model.effects;
-    if effects.iter().any(|e| e.kind.is_hypothetical()) {
+    if effects.iter().any(|e| e.entry.hypothetical) {
         return true;
     }
     let left = if effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
@@ -76,15 +76,15 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
                 continue;
             }
             let mut named = NamedEffect {
-                name: rival.spec().name.to_owned(),
+                name: rival.spec().name.clone(),
                 element: rival.element.to_string(),
                 channel: rival.channel.clone(),
                 probability: *probability,
                 rivals: rivals(rival),
                 parameters: parameters(source, at),
                 size_by_run: BTreeMap::new(),
-                law: rival.spec().law.to_owned(),
-                hypothetical: rival.kind.is_hypothetical(),
+                law: rival.spec().equation.clone(),
+                hypothetical: rival.entry.hypothetical,
                 ..NamedEffect::default()
             };
             written::describe(&mut named, rival, source, at);
@@ -132,7 +132,7 @@ pub fn lost(found: &Found) -> Vec<(String, f64)> {
     let mut rows: Vec<(String, f64)> = Vec::new();
     for fit in fits {
         let effects = words(fit);
-        let own_key = fit.model.effects.last().map_or("", |e| e.spec().parameters[0].key);
+        let own_key = fit.model.effects.last().map_or("", |e| &e.spec().parameters[0].key);
         let title = effects.join(" + ");
         let title = if effects == answer { format!("{title} (with {own_key})") } else { title };
         if rows.iter().all(|(known, _)| *known != title) {
@@ -153,7 +153,7 @@ fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
 /// Whether an answer names this effect.
 pub fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
     effect.name == placed.spec().name
-        && (placed.kind.is_hypothetical() || effect.element == placed.element.to_string())
+        && (placed.entry.hypothetical || effect.element == placed.element.to_string())
         && effect.channel == placed.channel
 }
 
@@ -161,7 +161,7 @@ pub fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
 fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> Vec<(Placed, f64, &'a Fit)> {
     let best = &found.best;
     // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
-    let is_hypothesis = placed.kind.is_hypothetical();
+    let is_hypothesis = placed.entry.hypothetical;
     let rivals = found.rivals.get(index).filter(|_| !is_hypothesis).map_or(&[][..], Vec::as_slice);
     let unit = unit(found, left);
     let mut all: Vec<(Placed, f64, &Fit)> = vec![(placed.clone(), 1.0, best)];
@@ -218,12 +218,13 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::effects::{Element, ElementKind, Kind, find};
+    use crate::effects::{Element, ElementKind, find};
 
-    fn fit(kinds: &[Kind], cost: f64) -> Fit {
-        let model = kinds.iter().fold(crate::diagnose::Model::baseline(), |model, &kind| {
-            let placed = Placed { kind, element: Element::of(ElementKind::Muscle, 0, 1), channel: None };
-            model.plus(&placed, &find(kind).typical())
+    fn fit(ids: &[&str], cost: f64) -> Fit {
+        let model = ids.iter().fold(crate::diagnose::Model::baseline(), |model, id| {
+            let entry = find(id).expect("of the catalogue");
+            let placed = Placed { entry, element: Element::of(ElementKind::Muscle, 0, 1), channel: None };
+            model.plus(&placed, &entry.typical())
         });
         let n = model.effect_numbers();
         let x = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
@@ -232,10 +233,10 @@ mod tests {
 
     #[test]
     fn an_interval_ends_where_its_law_does() {
-        let mut loose = fit(&[Kind::PlasticSet], 1.0);
-        let spec = find(Kind::PlasticSet).parameters[0];
+        let mut loose = fit(&["plastic_set"], 1.0);
+        let spec = &find("plastic_set").expect("of the catalogue").entry().parameters[0];
         loose.covariance[(0, 0)] = loose.x[0].powi(2);
-        let Estimate { value, ci95: [low, high] } = parameters(&loose, 0)[spec.key];
+        let Estimate { value, ci95: [low, high] } = parameters(&loose, 0)[&spec.key];
         assert_eq!((value, low), (spec.typical, 0.0));
         assert!(value < high && high <= spec.range.max, "{high}");
     }
@@ -244,15 +245,15 @@ mod tests {
     fn terms_of_a_hypothesis_do_not_count_against_the_rivals_of_what_stands_beside_them() {
         let plain = Found {
             baseline: fit(&[], 1000.0),
-            best: fit(&[Kind::GravityLoad], 100.0),
-            rivals: vec![vec![fit(&[Kind::CoilPreload], 101.0)]],
+            best: fit(&["gravity_load"], 100.0),
+            rivals: vec![vec![fit(&["coil_preload"], 101.0)]],
             rivals_against: 100.0,
             screened: Vec::new(),
             forms: Vec::new(),
             located: Vec::new(),
             withheld: None,
         };
-        let grown = Found { best: fit(&[Kind::GravityLoad, Kind::HypotheticalForce], 40.0), ..plain.clone() };
+        let grown = Found { best: fit(&["gravity_load", "hypothetical_force"], 40.0), ..plain.clone() };
         let probabilities = |found: &Found| -> Vec<(String, f64)> {
             let effects = named(found, &found.best, 0.0).into_iter();
             effects.filter(|e| !e.hypothetical).map(|e| (e.name, e.probability)).collect()

@@ -41,7 +41,6 @@ mod tests {
     use crate::diagnose::noise::Noise;
     use crate::diagnose::screening::screen;
     use crate::diagnose::{Model, Sealed, candidates, made};
-    use crate::effects::Kind;
 
     /// The bench's force hardly moves: what a lag of it promises at nothing, none of half a minute keeps.
     #[test]
@@ -55,7 +54,7 @@ mod tests {
         let promised: Vec<f64> = screened.iter().map(|s| s.least_size).collect();
         confirm_least_sizes(&problem, &fit, &mut screened);
         let is_lag = |s: &Screened| {
-            s.variant.placed.kind == Kind::SensorLag && s.variant.placed.channel.as_deref() == Some("force_n")
+            s.variant.placed.entry.id == "sensor_lag" && s.variant.placed.channel.as_deref() == Some("force_n")
         };
         let lags: Vec<_> = screened.iter().zip(&promised).filter(|(s, _)| is_lag(s)).collect();
         for (lag, promised) in &lags {

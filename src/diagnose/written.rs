@@ -1,6 +1,6 @@
 //! Laws of an answer in words and numbers: where they act, what they read, what else would do, their curve.
 
-use crate::effects::{Kind, WrittenLaw, port_of};
+use crate::effects::WrittenLaw;
 use crate::laws::{Law, Symbol};
 
 use super::answer::{Curve, Form, NamedEffect};
@@ -13,10 +13,7 @@ const POINTS: usize = 101;
 
 /// Law of an effect, if it is one that was written down.
 fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
-    match placed.kind {
-        Kind::Law(id) => Some(id.law()),
-        _ => None,
-    }
+    placed.spec().unlisted()
 }
 
 /// Says of an effect where it acts and on what it depends; of a written law also its text with the numbers of the fit.
@@ -29,16 +26,16 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
         effect.law = with_numbers(&own.law, &own.values(&values(fit, at)));
         return;
     }
-    let place = port_of(placed.kind);
+    let place = placed.spec();
     effect.port = match (&placed.channel, place.port.split_once('.')) {
         (Some(channel), _) => format!("{}.{channel}", place.port),
         (None, Some((element, term))) if placed.element.is_numbered && placed.element.kind.name() == element => {
             format!("{}.{term}", placed.element)
         }
-        _ => place.port.to_owned(),
+        _ => place.port.clone(),
     };
     effect.acts = place.acts.word().to_owned();
-    effect.variables = place.variables.iter().map(|v| (*v).to_owned()).collect();
+    effect.variables.clone_from(&place.variables);
 }
 
 /// All numbers of an effect of a fit.

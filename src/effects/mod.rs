@@ -29,18 +29,17 @@
 //! ```
 
 mod backlash;
-mod catalogue;
 mod contact;
 mod element;
-mod hypothetical;
+mod entry;
 mod line;
 mod mullins;
+mod native;
 mod plastic;
-mod port_of;
 mod preload;
+mod registry;
 mod sensor;
 mod smooth;
-mod spec;
 mod spectrum;
 mod table;
 mod tendon;
@@ -48,19 +47,18 @@ mod viscoelasticity;
 mod written;
 
 pub use backlash::Backlash;
-pub use catalogue::{CATALOGUE, find};
 pub use contact::Wall;
 pub use element::{Element, ElementKind};
-pub use hypothetical::{HypotheticalFlow, HypotheticalForce};
+pub use entry::{Entry, Levels, Need, ParameterSpec, Part, Range, Trying};
 pub use line::TrappedAir;
 pub use mullins::Mullins;
+pub use native::Native;
 pub use plastic::PlasticSet;
-pub use port_of::{PortOf, port_of};
 pub use preload::CoilPreload;
+pub use registry::{EntryId, catalogue, find, names};
 pub use sensor::{Sensor, SensorHistory};
-pub use spec::{EffectSpec, Kind, ParameterSpec, Range};
 pub use spectrum::logarithmic_creep;
 pub use table::{Effect, EffectError, EffectTable};
 pub use tendon::TendonFriction;
 pub use viscoelasticity::MaxwellBranch;
-pub use written::{Fitted, LawId, WrittenLaw};
+pub use written::{Fitted, WrittenLaw};

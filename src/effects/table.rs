@@ -5,15 +5,14 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use super::{CATALOGUE, EffectSpec, Element, ElementKind, Kind};
+use super::{Element, ElementKind, Entry, EntryId, catalogue, names};
 use crate::laws::LawTable;
-use crate::scalar::Scalar;
 
 /// `[[effect]]`: name, element, for a sensor its channel, and the law's numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffectTable {
     /// Name in the catalogue (`smam effects`).
-    #[schemars(schema_with = "names")]
+    #[schemars(schema_with = "name_schema")]
     pub name: String,
     /// What has it: `muscle`, `cable 2`.
     pub element: String,
@@ -25,10 +24,8 @@ pub struct EffectTable {
     pub parameters: BTreeMap<String, f64>,
 }
 
-fn names(_: &mut SchemaGenerator) -> Schema {
-    let mut names: Vec<&str> = CATALOGUE.iter().map(|spec| spec.name).collect();
-    names.dedup();
-    json_schema!({ "type": "string", "enum": names })
+fn name_schema(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": names() })
 }
 
 /// What is wrong with an [`EffectTable`].
@@ -42,7 +39,8 @@ pub struct EffectError {
 /// An effect with its numbers, ready for the equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect<D> {
-    pub kind: Kind,
+    /// What it is, of the catalogue or written down.
+    pub entry: EntryId,
     pub element: Element,
     /// Column of the sensor.
     pub channel: Option<String>,
@@ -50,30 +48,20 @@ pub struct Effect<D> {
     pub values: Vec<D>,
 }
 
-impl<D: Scalar> Effect<D> {
-    /// The catalogue's entry.
-    pub fn spec(&self) -> &'static EffectSpec {
-        super::find(self.kind)
-    }
-}
-
 impl Effect<f64> {
     /// As a law of a scene file, if it is one that was written down.
     pub fn law_table(&self) -> Option<LawTable> {
-        match self.kind {
-            Kind::Law(id) => Some(id.law().table_with(&self.values)),
-            _ => None,
-        }
+        Some(self.entry.unlisted()?.table_with(&self.values))
     }
 
     /// As a table of a scene file; one that was written down is a law ([`Effect::law_table`]).
     pub fn table(&self) -> EffectTable {
-        let spec = self.spec();
+        let entry = self.entry.entry();
         EffectTable {
-            name: spec.name.to_owned(),
+            name: entry.name.clone(),
             element: self.element.to_string(),
             channel: self.channel.clone(),
-            parameters: spec.parameters.iter().zip(&self.values).map(|(p, v)| (p.key.to_owned(), *v)).collect(),
+            parameters: entry.parameters.iter().zip(&self.values).map(|(p, v)| (p.key.clone(), *v)).collect(),
         }
     }
 }
@@ -86,12 +74,12 @@ impl EffectTable {
     /// Looks the law up and checks element and numbers.
     ///
     /// ```
-    /// use smam::effects::{EffectTable, Kind};
+    /// use smam::effects::{EffectTable, find};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let table: EffectTable = toml::from_str("name = 'trapped_air'\nelement = 'line_2'\nfree_volume_m3 = 1e-9")?;
     /// let air = table.effect()?;
-    /// assert_eq!((air.kind, air.element.index), (Kind::TrappedAir, 1));
+    /// assert_eq!((Some(air.entry), air.element.index), (find("trapped_air"), 1));
     /// // The polytropic exponent is isothermal unless it is given.
     /// assert_eq!(air.values, [1e-9, 1.0]);
     /// assert_eq!(air.table().effect()?, air);
@@ -102,11 +90,11 @@ impl EffectTable {
     /// # Errors
     /// Unknown name, element, key; a number missing or out of range; a sensor without channel.
     pub fn effect(&self) -> Result<Effect<f64>, EffectError> {
-        let spec = self.spec()?;
-        let element = Element::parse(&self.element).filter(|e| is_element_of(spec, e.kind)).ok_or_else(|| {
+        let entry = self.entry()?;
+        let element = Element::parse(&self.element).filter(|e| is_element_of(&entry, e.kind)).ok_or_else(|| {
             refuse(
                 format!("element = \"{}\" cannot have {}", self.element, self.name),
-                format!("write element = \"{}\", with its number where there are two of them", spec.element.name()),
+                format!("write element = \"{}\", with its number where there are two of them", entry.element.name()),
             )
         })?;
         if (element.kind == ElementKind::Sensor) != self.channel.is_some() {
@@ -115,30 +103,28 @@ impl EffectTable {
                 Some(_) => refuse("channel = ... is for sensors only".to_owned(), "remove it"),
             });
         }
-        let keys: Vec<&str> = spec.parameters.iter().map(|p| p.key).collect();
+        let keys: Vec<&str> = entry.parameters.iter().map(|p| p.key.as_str()).collect();
         if let Some(odd) = self.parameters.keys().find(|k| !keys.contains(&k.as_str())) {
             return Err(refuse(
                 format!("key `{odd}` is unknown to {}", self.name),
                 format!("its parameters are {}", keys.join(", ")),
             ));
         }
-        let values = spec.parameters.iter().map(|p| self.value(p)).collect::<Result<_, _>>()?;
-        Ok(Effect { kind: spec.kind, element, channel: self.channel.clone(), values })
+        let values = entry.parameters.iter().map(|p| self.value(p)).collect::<Result<_, _>>()?;
+        Ok(Effect { entry, element, channel: self.channel.clone(), values })
     }
 
     /// The law of this name; where two share it, the one whose first parameter is given.
-    fn spec(&self) -> Result<&'static EffectSpec, EffectError> {
-        let named: Vec<&EffectSpec> = CATALOGUE.iter().filter(|s| s.name == self.name).collect();
-        let given = |s: &&&EffectSpec| self.parameters.contains_key(s.parameters[0].key);
-        named.iter().find(given).or(named.first()).copied().ok_or_else(|| {
-            let mut known: Vec<&str> = CATALOGUE.iter().map(|s| s.name).collect();
-            known.dedup();
-            refuse(format!("name = \"{}\" is no effect", self.name), format!("the effects are {}", known.join(", ")))
+    fn entry(&self) -> Result<EntryId, EffectError> {
+        let mut named = catalogue().filter(|entry| entry.name == self.name);
+        let given = |entry: &EntryId| self.parameters.contains_key(&entry.parameters[0].key);
+        named.clone().find(given).or(named.next()).ok_or_else(|| {
+            refuse(format!("name = \"{}\" is no effect", self.name), format!("the effects are {}", names().join(", ")))
         })
     }
 
     fn value(&self, p: &super::ParameterSpec) -> Result<f64, EffectError> {
-        let value = self.parameters.get(p.key).copied().or(p.default).ok_or_else(|| {
+        let value = self.parameters.get(&p.key).copied().or(p.default).ok_or_else(|| {
             refuse(format!("key `{}` is missing", p.key), format!("give it a number, for example {:?}", p.typical))
         })?;
         if value >= p.range.min && value <= p.range.max {
@@ -151,9 +137,9 @@ impl EffectTable {
     }
 }
 
-/// Where an effect may sit. A constant force may act on a muscle as well as on the mechanism.
-fn is_element_of(spec: &EffectSpec, kind: ElementKind) -> bool {
-    spec.element == kind || (spec.kind == Kind::GravityLoad && kind == ElementKind::Muscle)
+/// Where an effect may sit.
+fn is_element_of(entry: &Entry, kind: ElementKind) -> bool {
+    entry.element == kind || entry.also_on == Some(kind)
 }
 
 #[cfg(test)]
@@ -167,10 +153,10 @@ mod tests {
     #[test]
     fn tables_go_there_and_back() {
         let air = parsed("name = \"trapped_air\"\nelement = \"line_2\"\nfree_volume_m3 = 1e-9").expect("right");
-        assert_eq!((air.kind, air.element.index, air.values.as_slice()), (Kind::TrappedAir, 1, &[1e-9, 1.0][..]));
+        assert_eq!((&*air.entry.id, air.element.index, air.values.as_slice()), ("trapped_air", 1, &[1e-9, 1.0][..]));
         assert_eq!(air.table().effect(), Ok(air));
         let delay = parsed("name = \"sensor_lag\"\nelement = \"sensor\"\nchannel = \"angle_deg\"\ndelay_s = 0.02");
-        assert_eq!(delay.expect("right").kind, Kind::SensorDelay);
+        assert_eq!(delay.expect("right").entry.id, "sensor_delay");
     }
 
     #[test]

@@ -2,9 +2,6 @@
 
 use crate::scalar::Scalar;
 
-/// Travel over which the sliding friction builds up, m of cable.
-pub(crate) const SLIDING_LENGTH_M: f64 = 1.0e-4;
-
 /// Capstan friction: behind a wrap of `phi` the tension is `T exp(-mu z phi)`, `z` the Dahl state of the sliding.
 ///
 /// `mu` 1, `phi` rad. `z > 0` while the near end draws the cable in, so that the far end feels less; returning, it

@@ -1,29 +1,18 @@
-//! Laws that are weighed like entries of the catalogue: those that a scene declares as candidates, and those that a diagnosis
-//! makes up.
+//! Laws that are text: those of the catalogue, those that a scene declares as candidates, and those that a diagnosis makes up.
 
-use std::sync::RwLock;
+use super::{Element, ElementKind, Entry, EntryId, ParameterSpec, Range, entry::Trying};
+use crate::laws::{Law, LawTable, Surroundings};
 
-use super::{EffectSpec, ElementKind, Kind, ParameterSpec, Range};
-use crate::laws::{Law, LawTable};
-
-/// Which of the laws that were written down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LawId(u32);
-
-/// A law with the description that effects have.
+/// A law with the order that its parameters have in an effect.
 #[derive(Debug)]
 pub struct WrittenLaw {
-    pub spec: EffectSpec,
     pub law: Law,
     pub table: LawTable,
-    /// Of each number of the effect: which parameter of the law it is. The first is the size.
+    /// Of each parameter of the effect: which of the law's it is. The first is the size.
     order: Vec<usize>,
 }
 
-/// All that were written so far, each once: an entry stays for as long as the program runs, as those of the catalogue do.
-static WRITTEN: RwLock<Vec<&'static WrittenLaw>> = RwLock::new(Vec::new());
-
-/// What a parameter of a law is as a number of an effect.
+/// What a parameter of a law is as one of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     pub typical: f64,
@@ -31,77 +20,39 @@ pub struct Fitted {
     pub is_fitted: bool,
 }
 
-impl LawId {
-    /// Writes a law down; `size` is the parameter at whose zero it is absent, `numbers` describes each parameter.
-    ///
-    /// One that was written before, with the same numbers, keeps its place.
-    pub fn write(table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> Self {
-        let mut written = WRITTEN.write().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let is_same = |known: &&'static WrittenLaw| {
-            known.table == *table && known.order.first() == Some(&size) && {
-                known.order.iter().zip(known.spec.parameters).all(|(&i, p)| {
-                    (p.typical, p.range, p.is_fitted) == (numbers[i].typical, numbers[i].range, numbers[i].is_fitted)
-                })
-            }
-        };
-        if let Some(at) = written.iter().position(is_same) {
-            return Self(at as u32);
-        }
-        let id = Self(written.len() as u32);
-        written.push(Box::leak(Box::new(entry(id, table, law, size, numbers))));
-        id
-    }
-
-    /// The law.
-    pub fn law(self) -> &'static WrittenLaw {
-        let written = WRITTEN.read().unwrap_or_else(std::sync::PoisonError::into_inner);
-        // An id exists only once its law has been written, and none is ever taken away.
-        written[self.0 as usize]
-    }
-}
-
-fn entry(id: LawId, table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> WrittenLaw {
-    let others = (0..law.parameters.len()).filter(|i| *i != size);
-    let order: Vec<usize> = std::iter::once(size).chain(others).collect();
-    let leak = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
-    let parameters = order.iter().map(|&i| {
-        let (name, own) = (leak(&law.parameters[i].name), numbers[i]);
-        let default = (!own.is_fitted).then_some(own.typical);
-        ParameterSpec {
-            key: name,
-            symbol: name,
-            range: own.range,
-            typical: own.typical,
-            default,
-            is_fitted: own.is_fitted,
-        }
-    });
-    let spec = EffectSpec {
-        kind: Kind::Law(id),
-        name: leak(&law.name),
-        title: leak(&law.text()),
-        element: element(law),
-        law: leak(&law.text()),
-        source: "written in the scene, or made up by a diagnosis",
-        parameters: Box::leak(parameters.collect::<Vec<_>>().into_boxed_slice()),
-    };
-    WrittenLaw { spec, law: law.clone(), table: table.clone(), order }
-}
-
-fn element(law: &Law) -> ElementKind {
-    let name = law.address.element();
-    let plain = name.split('_').next().unwrap_or("");
-    ElementKind::ALL.into_iter().find(|kind| kind.name() == plain).unwrap_or(ElementKind::Muscle)
-}
-
 impl WrittenLaw {
+    /// The text of an entry's file, compiled.
+    pub(super) fn of_entry(entry: &Entry) -> Result<Self, String> {
+        let table = LawTable {
+            name: entry.id.clone(),
+            port: entry.port.clone(),
+            adds: entry.adds.clone(),
+            scales: entry.scales.clone(),
+            parameter: entry.law_parameters(),
+            state: entry.states.clone(),
+            ..LawTable::default()
+        };
+        let mut law = table.law(&Surroundings::default()).map_err(|e| format!("{}; {}", e.message, e.remedy))?;
+        law.energy = Some(format!("{}_work", entry.id));
+        let order = entry.parameters.iter().filter_map(|p| law.parameter(p.name_in_law())).collect();
+        Ok(Self { law, table, order })
+    }
+
+    /// The law at an element of an effect: at one of several, or at all.
+    pub fn at(&self, element: Element) -> Law {
+        let mut law = self.law.clone();
+        let is_own = element.is_numbered && law.address.number.is_none();
+        law.address.number = if is_own { Some(element.index) } else { law.address.number };
+        law
+    }
+
     /// Values of the law's parameters from those of an effect.
     pub fn values<D: Copy>(&self, of_effect: &[D]) -> Vec<D> {
         let place = |parameter: usize| self.order.iter().position(|&i| i == parameter).unwrap_or(0);
         (0..self.order.len()).map(|i| of_effect[place(i)]).collect()
     }
 
-    /// As a table of a scene, with the numbers of an effect.
+    /// As a table of a scene, with the values of an effect.
     pub fn table_with(&self, of_effect: &[f64]) -> LawTable {
         let mut table = LawTable { candidate: false, ..self.table.clone() };
         for (parameter, value) in self.law.parameters.iter().zip(self.values(of_effect)) {
@@ -110,5 +61,131 @@ impl WrittenLaw {
             }
         }
         table
+    }
+}
+
+impl EntryId {
+    /// Writes a law down as an entry; `size` is the parameter at whose zero it is absent, `numbers` describes each parameter.
+    ///
+    /// One that was written before, with the same numbers, keeps its place.
+    pub fn write(table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> Self {
+        let is_same = |entry: &Entry| {
+            let parameters = entry.parameters.iter();
+            entry.unlisted().is_some_and(|known| {
+                known.table == *table && known.order.first() == Some(&size) && {
+                    known.order.iter().zip(parameters).all(|(&i, p)| {
+                        numbers[i] == Fitted { typical: p.typical, range: p.range, is_fitted: p.is_fitted }
+                    })
+                }
+            })
+        };
+        Self::known_or(is_same, || entry_of(table, law, size, numbers))
+    }
+}
+
+fn entry_of(table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> Entry {
+    let others = (0..law.parameters.len()).filter(|i| *i != size);
+    let order: Vec<usize> = std::iter::once(size).chain(others).collect();
+    let parameters = order.iter().map(|&i| {
+        let (key, own) = (law.parameters[i].name.clone(), numbers[i]);
+        let default = (!own.is_fitted).then_some(own.typical);
+        ParameterSpec {
+            symbol: key.clone(),
+            key,
+            range: own.range,
+            typical: own.typical,
+            default,
+            is_fitted: own.is_fitted,
+            in_law: None,
+        }
+    });
+    Entry {
+        id: law.name.clone(),
+        name: law.name.clone(),
+        title: law.text(),
+        element: element(law),
+        also_on: None,
+        stands_on: None,
+        port: law.address.to_string(),
+        acts: law.acts,
+        variables: law.variables().iter().map(|v| v.name()).collect(),
+        equation: law.text(),
+        source: "written in the scene, or made up by a diagnosis".to_owned(),
+        may_repeat: false,
+        // What the scene declares as a candidate has been named by whoever wrote it.
+        hypothetical: !table.candidate,
+        parameters: parameters.collect(),
+        needs: Vec::new(),
+        trying: Trying::default(),
+        native: None,
+        adds: table.adds.clone(),
+        scales: table.scales.clone(),
+        states: table.state.clone(),
+        law: Some(WrittenLaw { law: law.clone(), table: table.clone(), order }),
+        is_listed: false,
+    }
+}
+
+fn element(law: &Law) -> ElementKind {
+    let name = law.address.element();
+    let plain = name.split('_').next().unwrap_or("");
+    ElementKind::ALL.into_iter().find(|kind| kind.name() == plain).unwrap_or(ElementKind::Muscle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{find, registry};
+    use crate::laws::{Quantity, Symbol};
+
+    /// Value of an entry's law, and its slope to the elongation.
+    fn at(id: &str, values: &[f64], elongation_m: f64, pressure_pa: f64) -> (f64, f64) {
+        let entry = find(id).expect("of the catalogue").entry();
+        let written = entry.law.as_ref().expect("a text");
+        let values = written.values(values);
+        let read = |symbol: &Symbol| match symbol {
+            Symbol::Parameter(p) => values[*p],
+            Symbol::Constant(x) => *x,
+            Symbol::Variable(v) if v.quantity == Quantity::Elongation => elongation_m,
+            _ => pressure_pa,
+        };
+        let by_symbol: Vec<f64> = written.law.symbols.iter().map(read).collect();
+        let programs = &written.law.programs;
+        (programs.value.value(&by_symbol), programs.slopes.value(&by_symbol))
+    }
+
+    #[test]
+    fn a_hypothetical_force_is_a_monomial() {
+        let (pull, slope) = at("hypothetical_force", &[0.3, 2.0, 1.0], 0.02, 0.5e6);
+        assert!((pull - 0.3 * 4.0 * 0.5).abs() < 1e-12 && (slope - 2.0 * pull / 0.02).abs() < 1e-9, "{pull} {slope}");
+        // To the power of nothing, at nothing and below.
+        for elongation_m in [0.0, -0.01, 0.02] {
+            assert_eq!(at("hypothetical_force", &[0.3, 0.0, 0.0], elongation_m, 0.0), (0.3, 0.0));
+        }
+        assert!((at("hypothetical_force", &[0.3, 2.0, 0.0], -0.02, -1.0).0 - 1.2).abs() < 1e-12);
+        assert_eq!(at("hypothetical_force", &[0.3, 1.0, 0.0], 0.0, 0.0), (0.0, 30.0));
+    }
+
+    #[test]
+    fn a_hypothetical_flow_grows_with_its_power() {
+        assert!((at("hypothetical_flow", &[1e-12, 2.0], 0.0, 2.0e6).0 - 4e-12).abs() < 1e-24);
+        assert_eq!(at("hypothetical_flow", &[1e-12, 0.0], 0.0, 0.0).0, 1e-12);
+    }
+
+    #[test]
+    fn an_effect_on_one_of_several_elements_is_a_law_there() {
+        let written = find("hypothetical_force").expect("of the catalogue").entry().law.as_ref().expect("a text");
+        let port = |name: &str| written.at(Element::parse(name).expect("an element")).address.to_string();
+        assert_eq!(port("muscle_2"), "muscle_2.pull");
+        assert_eq!(port("muscle"), "muscle.pull");
+    }
+
+    #[test]
+    fn a_law_is_written_down_once() {
+        let table = LawTable::parse("muscle.pull adds 2.0 * elongation_m", "mine").expect("a law");
+        let law = table.law(&Surroundings::default()).expect("right");
+        let first = EntryId::write(&table, &law, 0, &[]);
+        assert_eq!(EntryId::write(&table, &law, 0, &[]), first);
+        assert!(first.unlisted().is_some() && registry::catalogue().all(|listed| listed < first));
     }
 }

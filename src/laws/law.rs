@@ -71,6 +71,8 @@ pub struct Law {
     /// The expression as it was written, and the condition beside it.
     pub expression: String,
     pub when: Option<String>,
+    /// Its line in the energy balance, if that is another than its own name.
+    pub energy: Option<String>,
     pub parameters: Arc<[Parameter]>,
     pub states: Arc<[State]>,
     /// What the symbols of the programs stand for.

@@ -37,7 +37,8 @@ pub use read::{LawError, Surroundings};
 pub use table::{LawTable, ParameterTable, StateTable};
 
 /// What a law does to its port.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Acts {
     /// Its value is added.
     Adds,

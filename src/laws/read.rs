@@ -167,6 +167,7 @@ impl<'a> Reader<'a> {
             acts,
             expression: expression.to_owned(),
             when: self.table.when.clone(),
+            energy: None,
             parameters: self.parameters.clone().into(),
             states: states.collect(),
             programs: Arc::new(Programs::new(&whole, &trees, &used.symbols)),

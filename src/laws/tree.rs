@@ -263,6 +263,13 @@ fn joined(operator: Operator, a: &Node, b: &Node, symbol: usize) -> Node {
 fn power_slope(a: &Node, b: &Node, da: Node, db: Node) -> Node {
     let lowered = Node::two(Operator::Subtract, b.clone(), Node::number(1.0));
     let by_base = times(times(b.clone(), Node::two(Operator::Power, a.clone(), lowered)), da);
+    // An exponent that is a parameter can be zero: then nothing follows the base, not even at zero.
+    let by_base = match b.constant() {
+        Some(_) => by_base,
+        None => {
+            Node::Where(Box::new([Node::of(Function::Abs, b.clone()), Node::number(0.0), by_base, Node::number(0.0)]))
+        }
+    };
     if db.constant() == Some(0.0) {
         return by_base;
     }

@@ -225,6 +225,6 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn powd(&self, n: Self) -> Self {
-        self.zip(n, f64::powf)
+        self.zip(n, |x, n| Scalar::powd(&x, n))
     }
 }

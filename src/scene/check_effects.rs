@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::effects::{Effect, Element, ElementKind, Kind};
+use crate::effects::{Effect, Element, ElementKind, EntryId, Part};
 
 use super::{MuscleSpec, SceneError, SceneFile};
 use crate::recording::parse_column;
 
 /// Checks that every effect exists, has its numbers, and sits on an element that the scene has, once.
 pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<(), SceneError> {
-    let mut seen: Vec<(Kind, Element, Option<String>)> = Vec::new();
+    let mut seen: Vec<(EntryId, Element, Option<String>)> = Vec::new();
     for (i, table) in scene.effect.iter().enumerate() {
         let refuse = |message: String, remedy: String| SceneError::Value {
             file: file.to_owned(),
@@ -19,9 +19,8 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<(), SceneError> {
         };
         let effect = table.effect().map_err(|e| refuse(e.message, e.remedy))?;
         place(scene, &effect).map_err(|(message, remedy)| refuse(message, remedy))?;
-        let key = (effect.kind, effect.element, effect.channel.clone());
-        // Only relaxation has a spectrum: several branches on one muscle.
-        if !effect.kind.may_repeat() && seen.contains(&key) {
+        let key = (effect.entry, effect.element, effect.channel.clone());
+        if !effect.entry.may_repeat && seen.contains(&key) {
             return Err(refuse("it stands twice on this element".to_owned(), "join the two tables".to_owned()));
         }
         seen.push(key);
@@ -39,77 +38,79 @@ fn count(scene: &SceneFile, kind: ElementKind) -> usize {
     }
 }
 
-fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)> {
+/// Message and remedy.
+type Refusal = (String, String);
+
+fn refuse(message: &str, remedy: &str) -> Result<(), Refusal> {
+    Err((message.to_owned(), remedy.to_owned()))
+}
+
+fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), Refusal> {
     let element = effect.element;
     if let Some(answer) = on_standalone(scene, effect) {
         return answer.and_then(|()| check_channel(scene, effect));
     }
     let count = count(scene, element.kind);
-    let on_axis = scene.axis.is_some() && matches!(effect.kind, Kind::SealFriction);
-    if element.index >= count && !on_axis {
-        return Err((format!("element = \"{element}\" is not in this scene"), known(element.kind, count)));
-    }
-    if effect.kind == Kind::SealFriction && scene.axis.is_none() {
-        return Err((
-            "no channel of this scene shows the force on the plunger".to_owned(),
-            "seal_friction needs an [axis]".to_owned(),
-        ));
-    }
-    let turns = matches!(effect.kind, Kind::BearingFriction | Kind::ExternalContact | Kind::NotchClosure);
-    if turns && scene.cable.is_empty() {
-        return Err(("no joint of this scene is turned by a cable".to_owned(), "remove the effect".to_owned()));
-    }
-    if effect.kind == Kind::TendonCoupling && scene.cable.len() < 2 {
-        return Err(("there is no second cable".to_owned(), "remove the effect".to_owned()));
+    let on_axis = scene.axis.is_some() && needs(effect, Part::Axis);
+    let is_there = element.index < count || on_axis;
+    match effect.entry.needs.iter().find(|need| !has(scene, need.scene)) {
+        Some(need) if is_there || effect.entry.stands_on.is_some() => return refuse(&need.message, &need.remedy),
+        _ if !is_there => {
+            return Err((format!("element = \"{element}\" is not in this scene"), known(element.kind, count)));
+        }
+        _ => {}
     }
     let hydraulic = matches!(element.kind, ElementKind::Line | ElementKind::Syringe) && !on_axis;
     if hydraulic && scene.hydraulics.is_none() {
-        return Err(("the scene has no [hydraulics]".to_owned(), "remove the effect".to_owned()));
+        return refuse("the scene has no [hydraulics]", "remove the effect");
     }
-    if let Some(refusal) = without_effect(scene, effect) {
-        return Err(refusal);
-    }
+    without_effect(scene, effect)?;
     check_channel(scene, effect)
+}
+
+fn needs(effect: &Effect<f64>, part: Part) -> bool {
+    effect.entry.needs.iter().any(|need| need.scene == part)
+}
+
+/// Whether a scene has what an effect acts on.
+fn has(scene: &SceneFile, part: Part) -> bool {
+    // A formula in place of the muscles has no parts: that it changes nothing is said below.
+    let make = scene.muscles.as_ref().filter(|make| make.displacement.is_none());
+    match part {
+        Part::Axis => scene.axis.is_some(),
+        Part::Strip => scene.strip.is_some(),
+        Part::Chamber => scene.chamber.is_some(),
+        Part::Cable => !scene.cable.is_empty(),
+        Part::SecondCable => scene.cable.len() >= 2,
+        Part::Wall => make.is_none_or(|make| make.linear.is_none()),
+        Part::MuscleFriction => make.is_none_or(|make| make.friction.is_some()),
+    }
 }
 
 /// What a strip or a chamber says to an effect: it has effects of its own; those of sensors are everywhere. `None` leaves the
 /// answer to what follows.
-fn on_standalone(scene: &SceneFile, effect: &Effect<f64>) -> Option<Result<(), (String, String)>> {
-    let of_rubber =
-        matches!(effect.kind, Kind::RubberYeoh | Kind::RubberMooneyRivlin | Kind::RubberOgden | Kind::RubberGent);
-    let of_gas = matches!(effect.kind, Kind::ChamberLeak | Kind::ChamberGap | Kind::ChamberOrifice);
-    let refuse = |what: &str, remedy: &str| Some(Err((what.to_owned(), remedy.to_owned())));
+fn on_standalone(scene: &SceneFile, effect: &Effect<f64>) -> Option<Result<(), Refusal>> {
+    let own = [Part::Strip, Part::Chamber].into_iter().find(|part| has(scene, *part))?;
     if effect.element.kind == ElementKind::Sensor {
         return None;
     }
-    if scene.strip.is_some() && (of_rubber || effect.kind == Kind::Viscoelasticity) || scene.chamber.is_some() && of_gas
-    {
-        return match effect.element.index {
-            0 => Some(Ok(())),
-            // Of another chamber ([chamber] number): a file may hold what was found of several.
-            _ if scene.chamber.is_some() => Some(Ok(())),
-            _ => refuse("there is one strip", "leave the number out of `element`"),
-        };
-    }
-    if scene.strip.is_some() {
-        return refuse("it is none of a [strip]", "a strip has viscoelasticity, rubber_law and the effects of sensors");
-    }
-    if scene.chamber.is_some() {
-        return refuse(
+    Some(match (effect.entry.stands_on == Some(own), own) {
+        (true, Part::Strip) if effect.element.index > 0 => {
+            refuse("there is one strip", "leave the number out of `element`")
+        }
+        // Of another chamber ([chamber] number): a file may hold what was found of several.
+        (true, _) => Ok(()),
+        (false, Part::Strip) => {
+            refuse("it is none of a [strip]", "a strip has viscoelasticity, rubber_law and the effects of sensors")
+        }
+        (false, _) => refuse(
             "it is none of a [chamber]",
             "a chamber has leak (rate_1_s, laminar_rate_1_s, orifice_rate_1_s) and the effects of sensors",
-        );
-    }
-    if of_rubber {
-        return refuse("it needs a [strip]", "a muscle's wall has its law in [muscles.tube.material]: write it there");
-    }
-    if of_gas {
-        return refuse("it needs a [chamber]", "a leak of a line is given by conductance_m3_s_pa");
-    }
-    None
+        ),
+    })
 }
 
-fn check_channel(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String, String)> {
+fn check_channel(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), Refusal> {
     if let Some(channel) = &effect.channel
         && !scene.output.iter().any(|o| o.channel == *channel)
     {
@@ -119,37 +120,26 @@ fn check_channel(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), (String,
     Ok(())
 }
 
-/// Why an effect would change nothing at all on the muscles that this scene has.
-fn without_effect(scene: &SceneFile, effect: &Effect<f64>) -> Option<(String, String)> {
-    let is_inside = matches!(effect.element.kind, ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle);
-    let make = scene.muscles.as_ref().filter(|_| is_inside)?;
-    let refusal = |message: &str, remedy: &str| Some((message.to_owned(), remedy.to_owned()));
+/// Refuses an effect that would change nothing at all on the muscles that this scene has.
+fn without_effect(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), Refusal> {
+    let is_fluid = matches!(effect.element.kind, ElementKind::Syringe | ElementKind::Line);
+    let is_inside = is_fluid || effect.element.kind == ElementKind::Muscle;
+    let Some(make) = scene.muscles.as_ref().filter(|_| is_inside) else { return Ok(()) };
     if make.displacement.is_some() {
-        return refusal(
+        return refuse(
             "it changes nothing: [muscles.displacement] is a formula without fluid, wall or pull",
             "remove the effect, or put it on a scene with [muscles.tube] or [muscles.linear]",
         );
     }
-    let is_fluid = matches!(effect.element.kind, ElementKind::Syringe | ElementKind::Line);
     let by_pressure = |m: &MuscleSpec| parse_column(&m.input).is_ok_and(|name| name.unit.si_suffix == "pa");
     let own = scene.muscle.get(effect.element.indices(scene.muscle.len())).unwrap_or(&[]);
     if is_fluid && !own.is_empty() && own.iter().all(by_pressure) {
-        return refusal(
+        return refuse(
             "it changes nothing: the input is a pressure, no fluid is simulated before the muscle",
             "remove the effect, or drive the muscle by a plunger",
         );
     }
-    match effect.kind {
-        Kind::MullinsSoftening if make.linear.is_some() => refusal(
-            "it changes nothing: [muscles.linear] has no wall that could soften",
-            "remove the effect, or describe the muscle by [muscles.tube]; relaxation is `viscoelasticity`",
-        ),
-        Kind::PressureFriction if make.friction.is_none() => refusal(
-            "it changes nothing: the muscles have no [muscles.friction] that pressure could raise",
-            "add [muscles.friction] with m0_n and presliding_length_m, or remove the effect",
-        ),
-        _ => None,
-    }
+    Ok(())
 }
 
 fn known(kind: ElementKind, count: usize) -> String {

@@ -6,7 +6,7 @@ use super::check::check_inputs;
 use super::differs::{muscle_key, one_written_out, set_the_same};
 use super::overrides::{Override, calibration_key, calibration_names, child_at, entry_name};
 use super::{Scene, SceneError, SceneFile};
-use crate::effects::CATALOGUE;
+use crate::effects::catalogue;
 use crate::nearest::did_you_mean;
 
 /// Refuses keys under which the scene has no number, and one number that is calibrated twice.
@@ -59,8 +59,8 @@ fn may_hold_number(scene: &Scene, key: &str) -> bool {
 fn is_parameter(scene: &Scene, effect: &str, parameter: &str) -> bool {
     let by_index = || effect.parse::<usize>().ok().and_then(|index| scene.file.effect.get(index));
     let table = scene.file.effect.iter().find(|table| table.name == effect).or_else(by_index);
-    let specs = CATALOGUE.iter().filter(|spec| table.is_some_and(|table| table.name == spec.name));
-    specs.flat_map(|spec| spec.parameters).any(|p| p.key == parameter)
+    let mut entries = catalogue().filter(|entry| table.is_some_and(|table| table.name == entry.name));
+    entries.any(|entry| entry.parameter(parameter).is_some())
 }
 
 /// Refuses two tables that stand for one number: a fit could not tell which of them moves it.

@@ -6,7 +6,7 @@
 
 use crate::laws::Port;
 
-use super::effect_energy::{EffectFlows, EffectStores, Side, effect_flows, effect_stores, restriction_w};
+use super::effect_energy::{EffectLines, effect_flows, effect_stores, restriction_w};
 use super::elastic::Elastic;
 use super::laws::law_powers;
 use super::plant::{CoordinateStop, Drive, InputSpan, Instant, Plant, dot};
@@ -60,10 +60,11 @@ pub struct EnergyBook {
     /// Integral of the absolute plunger power, J: the scale of the run.
     turnover: f64,
     before: Powers,
-    effects: EffectFlows,
-    effects_before: EffectFlows,
-    held_0: EffectStores,
-    held: EffectStores,
+    /// What flowed through effects so far, J, and before the step, W; what they held at the start and hold now, J.
+    effects: EffectLines,
+    effects_before: EffectLines,
+    held_0: EffectLines,
+    held: EffectLines,
     /// Of each law of the scene: its name, its port, what it has brought so far (J), and its power before
     /// the step (W).
     laws: Vec<LawLine>,
@@ -77,6 +78,8 @@ pub struct EnergyBook {
 #[derive(Clone, Debug)]
 struct LawLine {
     name: String,
+    /// Whether the law is an effect of the catalogue.
+    is_listed: bool,
     port: Port,
     brought_j: f64,
     before_w: f64,
@@ -94,8 +97,8 @@ impl EnergyBook {
             engine: 0.0,
             turnover: 0.0,
             before: Powers::default(),
-            effects: EffectFlows::default(),
-            effects_before: EffectFlows::default(),
+            effects: EffectLines::default(),
+            effects_before: EffectLines::default(),
             held_0: held,
             held,
             laws: law_lines(plant),
@@ -130,8 +133,8 @@ impl EnergyBook {
         s.stop_damping += mean(b.stop_damping, a.stop_damping);
         self.turnover += mean(b.input.abs(), a.input.abs());
         self.sums.input += self.work_in_play(plant, state);
-        let effects = effect_flows(plant, state, inputs, h);
-        self.effects.integrate(&self.effects_before, &effects, h);
+        self.effects.add_scaled(&self.effects_before, h / 2.0);
+        self.effects.add_scaled(&effect_flows(plant, state, inputs, h), h / 2.0);
         let laws = law_powers(plant, state, inputs, h);
         self.laws.iter_mut().zip(laws).for_each(|(line, power)| line.brought_j += mean(line.before_w, power));
         self.move_pistons_by_laws(plant, state, inputs, h);
@@ -172,7 +175,7 @@ impl EnergyBook {
     ) {
         let now = stored(plant, state, inputs, elapsed_s);
         let held = effect_stores(plant, state, inputs, elapsed_s);
-        self.engine += now - self.stored + (held.total() - self.held.total());
+        self.engine += now - self.stored + (self.held.net() - held.net());
         self.stored = now;
         self.held = held;
     }
@@ -188,7 +191,7 @@ impl EnergyBook {
             + s.stop_damping;
         let stock = s.input + s.loads + s.pressure_friction + self.engine - (self.stored - self.stored_0) - lost;
         let laws: f64 = self.laws.iter().map(|line| line.brought_j).sum();
-        stock + self.effects.net() + laws - (self.held.total() - self.held_0.total())
+        stock + self.effects_so_far().net() + laws
     }
 
     /// Laws that stand where energy is lost and have brought more than is lost there without them, each with how much, J.
@@ -212,22 +215,42 @@ impl EnergyBook {
         self.turnover
     }
 
+    /// What flowed through effects, and by how much more they hold than at the start, J.
+    fn effects_so_far(&self) -> EffectLines {
+        let mut lines = self.effects;
+        lines.add_scaled(&self.held, 1.0);
+        lines.add_scaled(&self.held_0, -1.0);
+        lines
+    }
+
+    /// Lines of laws; an effect on several elements has one line, and none where there is nothing on it.
+    fn lines_of_laws(&self) -> Vec<(String, f64)> {
+        let mut lines: Vec<(String, f64)> = Vec::new();
+        for own in self.laws.iter().filter(|own| !own.is_listed || own.brought_j != 0.0) {
+            match lines.iter_mut().find(|(name, _)| own.is_listed && *name == own.name) {
+                Some((_, sum_j)) => *sum_j += own.brought_j,
+                None => lines.push((own.name.clone(), own.brought_j)),
+            }
+        }
+        lines
+    }
+
     /// All lines, J, in a fixed order: what came in, what is stored, what was lost, what is left over.
     ///
     /// Lines of effects stand only where there is something on them.
     pub fn lines(&self) -> Vec<(String, f64)> {
         let s = &self.sums;
         let mut lines: Vec<(&str, f64)> = vec![("input_work", s.input), ("load_work", s.loads)];
-        lines.extend(self.effects.lines(Side::Brought));
-        let of_laws = self.laws.iter().map(|line| (line.name.clone(), line.brought_j));
-        let brought: Vec<(String, f64)> = named(lines).into_iter().chain(of_laws).collect();
+        let effects = self.effects_so_far();
+        lines.extend(effects.lines("_work"));
+        let brought: Vec<(String, f64)> = named(lines).into_iter().chain(self.lines_of_laws()).collect();
         let mut lines: Vec<(&str, f64)> = Vec::new();
         lines.extend([
             ("pressure_friction_exchange", s.pressure_friction),
             ("engine_and_contacts", self.engine),
             ("stored", self.stored - self.stored_0),
         ]);
-        lines.extend(self.held.lines(&self.held_0, "stored"));
+        lines.extend(effects.lines("stored_"));
         lines.extend([
             ("lost_line_viscosity", s.line_viscosity),
             ("lost_muscle_friction", s.muscle_friction),
@@ -236,8 +259,7 @@ impl EnergyBook {
             ("lost_joint_damping", s.joint_damping),
             ("lost_stop_damping", s.stop_damping),
         ]);
-        lines.extend(self.effects.lines(Side::Lost));
-        lines.extend(self.held.lines(&self.held_0, "lost"));
+        lines.extend(effects.lines("lost_"));
         lines.push(("unaccounted_integrator", self.unaccounted_j()));
         brought.into_iter().chain(named(lines)).collect()
     }
@@ -253,7 +275,8 @@ const LEAST_SUPPLY: f64 = 1e-6;
 fn law_lines(plant: &Plant<f64>) -> Vec<LawLine> {
     let laws = plant.laws.iter().flat_map(|laws| laws.laws());
     let line = |law: &crate::laws::Law| LawLine {
-        name: format!("law_{}", law.name),
+        name: law.energy.clone().unwrap_or_else(|| format!("law_{}", law.name)),
+        is_listed: law.energy.is_some(),
         port: law.address.port,
         brought_j: 0.0,
         before_w: 0.0,

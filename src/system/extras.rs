@@ -1,9 +1,6 @@
 //! What effects add to a [`super::Plant`]. All of it is absent from a stock scene and then costs next to nothing.
 
-use crate::effects::{
-    Backlash, CoilPreload, HypotheticalFlow, HypotheticalForce, MaxwellBranch, Mullins, PlasticSet, TendonFriction,
-    TrappedAir, Wall,
-};
+use crate::effects::{Backlash, CoilPreload, MaxwellBranch, Mullins, PlasticSet, TendonFriction, TrappedAir, Wall};
 use crate::muscle::Friction;
 use crate::scalar::Scalar;
 
@@ -27,8 +24,6 @@ pub struct MuscleExtras<D> {
     pub mullins: Option<Mullins<D>>,
     pub preload: Option<CoilPreload<D>>,
     pub plastic: Option<PlasticSet<D>>,
-    pub forces: Vec<HypotheticalForce<D>>,
-    pub flows: Vec<HypotheticalFlow<D>>,
 }
 
 impl<D> Default for MuscleExtras<D> {
@@ -44,8 +39,6 @@ impl<D> Default for MuscleExtras<D> {
             mullins: None,
             preload: None,
             plastic: None,
-            forces: Vec::new(),
-            flows: Vec::new(),
         }
     }
 }
@@ -53,9 +46,8 @@ impl<D> Default for MuscleExtras<D> {
 impl<D: Scalar> MuscleExtras<D> {
     /// Sees what is there: to be called once everything has been put in.
     pub(super) fn count(&mut self) {
-        let acts_on_line =
-            self.air.is_some() || self.leak_m3_s_pa.is_some() || self.growth_m3_s.is_some() || !self.flows.is_empty();
-        let pulls = self.mullins.is_some() || self.preload.is_some() || !self.forces.is_empty();
+        let acts_on_line = self.air.is_some() || self.leak_m3_s_pa.is_some() || self.growth_m3_s.is_some();
+        let pulls = self.mullins.is_some() || self.preload.is_some();
         self.acts = acts_on_line || pulls || self.slow_states() > 0;
     }
 
@@ -69,8 +61,8 @@ impl<D: Scalar> MuscleExtras<D> {
         if self.plastic.is_some() { slow[self.branches.len()] } else { D::constant(0.0) }
     }
 
-    /// Pull (N) and stiffness (N/m) of branches, preload and hypothetical terms.
-    pub(super) fn pull_and_stiffness(&self, elongation_m: D, pressure_pa: D, slow: &[D]) -> (D, D) {
+    /// Pull (N) and stiffness (N/m) of branches and preload.
+    pub(super) fn pull_and_stiffness(&self, elongation_m: D, slow: &[D]) -> (D, D) {
         let (mut pull, mut stiffness) = (D::constant(0.0), D::constant(0.0));
         for (branch, &dashpot) in self.branches.iter().zip(slow) {
             pull += branch.pull_n(elongation_m, dashpot);
@@ -78,11 +70,6 @@ impl<D: Scalar> MuscleExtras<D> {
         }
         if let Some(preload) = &self.preload {
             let (f, k) = preload.pull_and_stiffness(elongation_m);
-            pull += f;
-            stiffness += k;
-        }
-        for force in &self.forces {
-            let (f, k) = force.pull_and_stiffness(elongation_m, pressure_pa);
             pull += f;
             stiffness += k;
         }
@@ -104,8 +91,7 @@ impl<D: Scalar> MuscleExtras<D> {
         let zero = D::constant(0.0);
         let compliance = self.air.as_ref().map_or(zero, |a| a.compliance_m3_pa(pressure_pa));
         let leak = self.leak_m3_s_pa.map_or(zero, |g| g * pressure_pa);
-        let hypothetical: D = self.flows.iter().map(|f| f.flow_m3_s(pressure_pa)).sum();
-        (compliance, leak - self.growth_m3_s.unwrap_or(zero) + hypothetical)
+        (compliance, leak - self.growth_m3_s.unwrap_or(zero))
     }
 }
 

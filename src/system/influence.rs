@@ -1,7 +1,7 @@
 //! What an effect of the catalogue does to a scene: its main output over the stock programme, and where fluid drives it
 //! a pressure, without it and with it.
 
-use crate::effects::{Effect, EffectSpec, Element, ElementKind, Kind};
+use crate::effects::{Effect, Element, ElementKind, EntryId, Native};
 use crate::recording::parse_column;
 use crate::scene::Scene;
 
@@ -49,14 +49,14 @@ pub struct Influence {
 ///
 /// # Errors
 /// A scene without fast model, a run that diverges.
-pub fn influence(scene: &Scene, spec: &'static EffectSpec) -> Result<Option<Influence>, SystemError> {
-    let mut effect = place(scene, spec);
+pub fn influence(scene: &Scene, entry: EntryId) -> Result<Option<Influence>, SystemError> {
+    let mut effect = place(scene, entry);
     if !takes(scene, &effect) {
         return Ok(None);
     }
     let stage = Stage::new(scene)?;
     let stock = stage.play(None)?;
-    if effect.kind == Kind::SensorDrift {
+    if entry.native == Some(Native::SensorDrift) {
         effect.values[0] = visible_drift(&stock[0]);
     }
     let mut with = stage.play_sizes(&effect)?;
@@ -79,13 +79,13 @@ fn visible_drift(values: &[f64]) -> f64 {
 }
 
 /// The effect at its typical size on the first element of its kind.
-fn place(scene: &Scene, spec: &'static EffectSpec) -> Effect<f64> {
-    let count = match spec.element {
+fn place(scene: &Scene, entry: EntryId) -> Effect<f64> {
+    let count = match entry.element {
         ElementKind::Cable => scene.file.cable.len(),
         _ => scene.file.muscle.len(),
     };
-    let channel = (spec.element == ElementKind::Sensor).then(|| scene.file.output[0].channel.clone());
-    Effect { kind: spec.kind, element: Element::of(spec.element, 0, count), channel, values: spec.typical() }
+    let channel = (entry.element == ElementKind::Sensor).then(|| scene.file.output[0].channel.clone());
+    Effect { entry, element: Element::of(entry.element, 0, count), channel, values: entry.typical() }
 }
 
 /// Whether the scene takes the effect: the checks of a scene file decide.
@@ -167,7 +167,7 @@ impl<'a> Stage<'a> {
 
 /// The sizes that are tried, within the law's range.
 fn sizes(effect: &Effect<f64>) -> Vec<f64> {
-    let range = effect.spec().parameters[0].range;
+    let range = effect.entry.parameters[0].range;
     SIZES.iter().map(|multiple| (multiple * effect.values[0]).clamp(range.min, range.max)).collect()
 }
 
@@ -176,9 +176,9 @@ mod tests {
     use super::*;
     use crate::effects::find;
 
-    fn of(scene: &str, kind: Kind) -> Option<Influence> {
+    fn of(scene: &str, id: &str) -> Option<Influence> {
         let scene = Scene::load(scene, &[]).unwrap_or_else(|e| panic!("{e}"));
-        influence(&scene, find(kind)).unwrap_or_else(|e| panic!("{e}"))
+        influence(&scene, find(id).expect("of the catalogue")).unwrap_or_else(|e| panic!("{e}"))
     }
 
     fn greatest_changes(shown: &Influenced) -> Vec<f64> {
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_leak_shows_and_grows_with_its_size() {
-        let leak = of("muscle_bench", Kind::Leak).expect("the bench has a line");
+        let leak = of("muscle_bench", "leak").expect("the bench has a line");
         let changes = greatest_changes(&leak.output);
         assert_eq!(leak.output.column, "elongation_mm");
         assert!(changes[0] > 0.1 && changes[1] > 1.5 * changes[0], "{changes:?}");
@@ -196,37 +196,37 @@ mod tests {
 
     #[test]
     fn fluid_that_is_lost_shows_in_the_pressure_and_a_slow_start_does_not() {
-        let leak = of("antagonistic_pulley", Kind::Leak).expect("the pulley has lines");
+        let leak = of("antagonistic_pulley", "leak").expect("the pulley has lines");
         let pressure = leak.pressure.expect("the pulley shows pressures");
         assert_eq!(pressure.column, "pressure_1_kpa");
         assert!(greatest_changes(&pressure)[0] > 1.0, "{:?}", greatest_changes(&pressure));
         assert!(leak.time_s[0] >= SETTLED_S && leak.time_s.len() == pressure.stock.len());
-        assert_eq!(of("tendon_sheath", Kind::CableSlack).expect("it has cables").pressure, None);
+        assert_eq!(of("tendon_sheath", "cable_slack").expect("it has cables").pressure, None);
     }
 
     #[test]
     fn a_drift_fits_its_channel() {
-        let drift = |scene: &str| of(scene, Kind::SensorDrift).expect("a sensor").sizes[0];
+        let drift = |scene: &str| of(scene, "sensor_drift").expect("a sensor").sizes[0];
         assert_eq!(drift("muscle_bench"), 0.01);
         assert!(drift("antagonistic_pulley") >= 0.03, "{}", drift("antagonistic_pulley"));
     }
 
     #[test]
     fn a_threshold_out_of_reach_is_lowered() {
-        let closed = of("bending_catheter", Kind::NotchClosure).expect("the catheter has notches");
-        assert!(closed.effect.values[1] < find(Kind::NotchClosure).typical()[1]);
+        let closed = of("bending_catheter", "notch_closure").expect("the catheter has notches");
+        assert!(closed.effect.values[1] < find("notch_closure").expect("of the catalogue").typical()[1]);
         assert!(closed.output.with.iter().all(|values| *values != closed.output.stock));
     }
 
     #[test]
     fn a_scene_without_the_element_shows_nothing() {
-        assert_eq!(of("muscle_bench", Kind::CableSlack), None);
-        assert!(of("driven_axis", Kind::SealFriction).is_some());
+        assert_eq!(of("muscle_bench", "cable_slack"), None);
+        assert!(of("driven_axis", "seal_friction").is_some());
     }
 
     #[test]
     fn a_scene_that_nothing_drives_is_shown_over_time() {
-        let leak = of("closed_chamber", Kind::ChamberLeak).expect("a chamber leaks");
+        let leak = of("closed_chamber", "chamber_leak").expect("a chamber leaks");
         assert_eq!(leak.input, ("time_s".to_owned(), leak.time_s.clone()));
         assert!(greatest_changes(&leak.output)[0] > 10.0, "{:?}", greatest_changes(&leak.output));
     }

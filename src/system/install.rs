@@ -1,8 +1,8 @@
 //! Effects into the equations.
 
 use crate::effects::{
-    Backlash, CoilPreload, Effect, ElementKind, HypotheticalFlow, HypotheticalForce, Kind, MaxwellBranch, Mullins,
-    PlasticSet, TendonFriction, TrappedAir, Wall, WrittenLaw, logarithmic_creep,
+    Backlash, CoilPreload, Effect, ElementKind, MaxwellBranch, Mullins, Native, PlasticSet, TendonFriction, TrappedAir,
+    Wall, WrittenLaw, logarithmic_creep,
 };
 use crate::laws::Law;
 use crate::muscle::Friction;
@@ -68,8 +68,8 @@ impl Site {
 ///
 /// The element must exist in the plant; scenes are checked for it.
 pub(super) fn install<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
-    if let Kind::Law(id) = effect.kind {
-        return install_written(plant, site, id.law(), &effect.values);
+    if let Some(written) = &effect.entry.law {
+        return install_written(plant, site, written, effect);
     }
     match effect.element.kind {
         ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => {
@@ -87,19 +87,19 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
     let v = &effect.values;
     let muscle = &mut plant.muscles[index];
     let extras = &mut muscle.extras;
-    match effect.kind {
-        Kind::PlungerBacklash => extras.backlash = Some(Backlash { width_m: v[0] }),
-        Kind::TrappedAir => extras.air = Some(TrappedAir { free_volume_m3: v[0], kappa: v[1] }),
-        Kind::Leak => extras.leak_m3_s_pa = Some(v[0]),
-        Kind::ThermalExpansion => extras.growth_m3_s = Some(v[0]),
-        Kind::LineRestriction => {
+    match effect.entry.native {
+        Some(Native::PlungerBacklash) => extras.backlash = Some(Backlash { width_m: v[0] }),
+        Some(Native::TrappedAir) => extras.air = Some(TrappedAir { free_volume_m3: v[0], kappa: v[1] }),
+        Some(Native::Leak) => extras.leak_m3_s_pa = Some(v[0]),
+        Some(Native::ThermalExpansion) => extras.growth_m3_s = Some(v[0]),
+        Some(Native::LineRestriction) => {
             extras.restriction_ratio = Some(v[0]);
             if let Drive::Hydraulic { chain, .. } = &mut muscle.drive {
                 chain.resistance_pa_s_m3 += chain.resistance_pa_s_m3 * v[0];
                 chain.quadratic_pa_s2_m6 += v[1] / chain.segments() as f64;
             }
         }
-        Kind::Viscoelasticity => {
+        Some(Native::Viscoelasticity) => {
             let together = MaxwellBranch { stiffness_n_m: v[0], relaxation_time_s: v[1] };
             if v[2].is_above(0.0) {
                 let relaxed_n_m = muscle.elastic.stiffness_at_rest_n_m();
@@ -108,23 +108,17 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
                 extras.branches.push(together);
             }
         }
-        Kind::MullinsSoftening => extras.mullins = Some(Mullins { softening_ratio: v[0], energy_scale_j: v[1] }),
-        Kind::CoilPreload => extras.preload = Some(CoilPreload { preload_n: v[0] }),
-        Kind::PlasticSet => extras.plastic = Some(PlasticSet { set_rate_1_s: v[0], threshold_m: v[1] }),
-        Kind::PressureFriction => {
+        Some(Native::MullinsSoftening) => {
+            extras.mullins = Some(Mullins { softening_ratio: v[0], energy_scale_j: v[1] })
+        }
+        Some(Native::CoilPreload) => extras.preload = Some(CoilPreload { preload_n: v[0] }),
+        Some(Native::PlasticSet) => extras.plastic = Some(PlasticSet { set_rate_1_s: v[0], threshold_m: v[1] }),
+        Some(Native::PressureFriction) => {
             if let Some(friction) = &mut muscle.friction {
                 friction.m1_n_pa += v[0];
             }
         }
-        Kind::HypotheticalForce => extras.forces.push(HypotheticalForce {
-            force_n: v[0],
-            elongation_power: v[1].value() as i32,
-            pressure_power: v[2].value() as i32,
-        }),
-        Kind::HypotheticalFlow => {
-            extras.flows.push(HypotheticalFlow { flow_m3_s: v[0], pressure_power: v[1].value() as i32 });
-        }
-        Kind::GravityLoad => {
+        Some(Native::GravityLoad) => {
             plant.mechanism.loads.push(ConstantLoad { direction: muscle.jacobian.clone(), force: v[0] });
         }
         _ => {}
@@ -134,9 +128,9 @@ fn on_muscle<D: Scalar>(plant: &mut Plant<D>, index: usize, effect: &Effect<D>) 
 fn on_cable<D: Scalar>(plant: &mut Plant<D>, site: &Site, index: usize, effect: &Effect<D>) {
     let v = &effect.values;
     let cable = &mut plant.cables[index];
-    match effect.kind {
-        Kind::CableSlack => cable.stretch_0_m -= v[0],
-        Kind::TendonFriction => {
+    match effect.entry.native {
+        Some(Native::CableSlack) => cable.stretch_0_m -= v[0],
+        Some(Native::TendonFriction) => {
             let mut far = cable.jacobian.clone();
             far[site.joints..].fill(0.0);
             let fixed_wrap_rad = site.fixed_wrap_rad[index];
@@ -151,20 +145,20 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
     let v = &effect.values;
     let extras = &mut plant.mechanism;
     let direction = site.direction.clone();
-    match effect.kind {
-        Kind::GravityLoad => extras.loads.push(ConstantLoad { direction, force: v[0] * site.lever }),
-        Kind::TendonCoupling => extras.couplings.push(Coupling { cable: 1, direction, lever_m: v[0] }),
-        Kind::ExternalContact => {
+    match effect.entry.native {
+        Some(Native::GravityLoad) => extras.loads.push(ConstantLoad { direction, force: v[0] * site.lever }),
+        Some(Native::TendonCoupling) => extras.couplings.push(Coupling { cable: 1, direction, lever_m: v[0] }),
+        Some(Native::ExternalContact) => {
             extras.walls.push(AngleWall { direction, wall: Wall { stiffness_n_m_rad: v[0], angle_rad: v[1] } });
         }
-        Kind::NotchClosure => {
+        Some(Native::NotchClosure) => {
             for (i, hinges) in site.coordinates() {
                 let n = hinges as f64;
                 let wall = Wall { stiffness_n_m_rad: v[0] / n, angle_rad: v[1] * n };
                 extras.walls.push(AngleWall { direction: site.unit(i), wall });
             }
         }
-        Kind::BearingFriction => {
+        Some(Native::BearingFriction) => {
             let total: usize = site.coordinates().map(|(_, n)| n).sum();
             for (i, hinges) in site.coordinates() {
                 let law = Friction::dahl(v[0], D::constant(0.0), v[1] * (hinges as f64 / total as f64));
@@ -176,12 +170,13 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
 }
 
 /// Puts a law with the numbers of an effect into a plant. Where the rig cannot have it nothing happens: scenes are checked for it.
-fn install_written<D: Scalar>(plant: &mut Plant<D>, site: &Site, written: &WrittenLaw, values: &[D]) {
+fn install_written<D: Scalar>(plant: &mut Plant<D>, site: &Site, written: &WrittenLaw, effect: &Effect<D>) {
     if !written.law.is_physical() {
         return;
     }
     let mut own = plant.laws.take().map_or_else(|| PlantLaws::new(plant, site), |laws| *laws);
-    let _not_of_this_rig = own.add(&written.law, written.values(values), plant.cables.len()).is_err();
+    let _not_of_this_rig =
+        own.add(&written.at(effect.element), written.values(&effect.values), plant.cables.len()).is_err();
     plant.laws = Some(Box::new(own));
 }
 

@@ -226,7 +226,7 @@ impl<D: Scalar> MusclePlant<D> {
         let (law, (extra_n, extra_k)) = if self.extras.acts {
             let seen = elongation_m - self.extras.set_m(slow);
             let law = self.elastic.softened(seen, pressure_pa, self.extras.mullins.as_ref(), greatest_j);
-            (law, self.extras.pull_and_stiffness(elongation_m, pressure_pa, slow))
+            (law, self.extras.pull_and_stiffness(elongation_m, slow))
         } else {
             (self.elastic.at(elongation_m, pressure_pa), (zero, zero))
         };

@@ -53,13 +53,13 @@ pub fn judge(case: &TrialCase, outcome: &Outcome, seconds: f64) -> Row {
     let d = &outcome.diagnosis;
     let truth = case.effect.as_ref();
     let named = truth.and_then(|t| d.effects.iter().find(|e| is_same(e, t)));
-    let estimate = truth.zip(named).and_then(|(t, e)| e.parameters.get(t.spec().parameters[0].key));
+    let estimate = truth.zip(named).and_then(|(t, e)| e.parameters.get(&t.entry.parameters[0].key));
     let value = truth.map_or(0.0, |t| t.values[0]);
     Row {
         name: case.name.clone(),
         scene: case.scene.clone(),
         seed: case.seed,
-        effect: truth.map_or("nothing", |t| t.spec().name).to_owned(),
+        effect: truth.map_or("nothing", |t| &t.entry.name).to_owned(),
         element: truth.map_or(String::new(), |t| t.channel.clone().unwrap_or_else(|| t.element.to_string())),
         size: case.size.map_or(String::new(), |s| format!("{s:?}").to_lowercase()),
         value,
@@ -93,7 +93,7 @@ fn judgement(truth: Option<&Effect<f64>>, verdict: Verdict, effects: &[NamedEffe
 }
 
 fn is_same(named: &NamedEffect, truth: &Effect<f64>) -> bool {
-    named.name == truth.spec().name && named.element == truth.element.to_string() && named.channel == truth.channel
+    named.name == truth.entry.name && named.element == truth.element.to_string() && named.channel == truth.channel
 }
 
 fn words(e: &NamedEffect) -> String {
@@ -103,12 +103,13 @@ fn words(e: &NamedEffect) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Element, ElementKind, Kind};
+    use crate::effects::{Element, ElementKind, find};
 
     #[test]
     fn a_rival_of_a_few_percent_makes_no_answer_wrong() {
         let element = Element::of(ElementKind::Line, 0, 1);
-        let truth = Effect { kind: Kind::Leak, element, channel: None, values: vec![1e-17] };
+        let truth =
+            Effect { entry: find("leak").expect("of the catalogue"), element, channel: None, values: vec![1e-17] };
         let named = |name: &str, probability: f64| NamedEffect {
             name: name.to_owned(),
             element: "line".to_owned(),

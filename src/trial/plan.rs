@@ -49,7 +49,7 @@ pub fn plan(scene: &str, nulls: usize, only: Option<&str>, seed: u64) -> Result<
             let on = effect.channel.clone().unwrap_or_else(|| effect.element.to_string());
             let number = cases.len() as u64;
             cases.push(TrialCase {
-                name: format!("{scene} {} {on} {} {size:?}", effect.spec().name, effect.spec().parameters[0].key),
+                name: format!("{scene} {} {on} {} {size:?}", effect.entry.name, effect.entry.parameters[0].key),
                 scene: scene.to_owned(),
                 size: Some(size),
                 effect: Some(effect),
@@ -58,7 +58,7 @@ pub fn plan(scene: &str, nulls: usize, only: Option<&str>, seed: u64) -> Result<
         }
     }
     // Left out at the end: a case has the same seed whether it is tried alone or among all.
-    cases.retain(|c| only.is_none_or(|name| c.effect.as_ref().is_some_and(|e| e.spec().name == name)));
+    cases.retain(|c| only.is_none_or(|name| c.effect.as_ref().is_some_and(|e| e.entry.name == name)));
     Ok(cases)
 }
 
@@ -71,7 +71,7 @@ fn just_visible(scene: &str, seed: u64) -> Result<Vec<Effect<f64>>, TrialError> 
     let mut least: Vec<Effect<f64>> = Vec::new();
     for effect in outcome.just_visible {
         let alike = |e: &&mut Effect<f64>| {
-            e.kind == effect.kind && e.element.kind == effect.element.kind && e.channel == effect.channel
+            e.entry == effect.entry && e.element.kind == effect.element.kind && e.channel == effect.channel
         };
         match least.iter_mut().find(alike) {
             Some(known) if known.element == effect.element && effect.values[0].abs() < known.values[0].abs() => {
@@ -81,12 +81,13 @@ fn just_visible(scene: &str, seed: u64) -> Result<Vec<Effect<f64>>, TrialError> 
             None => least.push(effect),
         }
     }
-    least.sort_by_key(|e| (e.kind, e.channel.clone()));
+    // Texts come after code: an entry more leaves the numbers of the others, and their seeds, as they are.
+    least.sort_by_key(|e| (e.entry.native.is_none(), e.entry.native, e.entry, e.channel.clone()));
     Ok(least)
 }
 
 fn sized(least: &Effect<f64>, size: Size) -> Effect<f64> {
-    let p = &least.spec().parameters[0];
+    let p = &least.entry.parameters[0];
     let small = SMALL * least.values[0];
     let large = (LARGE * least.values[0]).abs().max(TYPICAL * p.typical.abs()).copysign(small);
     let value = match size {

@@ -117,13 +117,13 @@ const PAIRS: &[Pair] = &[
         "hypothetical_force",
         "{name=\"hypothetical_force\",element=\"muscle\",force_n=0.02,elongation_power=2,pressure_power=1}",
         &["muscle.pull adds 0.02 * (elongation_m/0.01)^2 * (pressure_pa/1e6)"],
-        TANGENTS,
+        ROUNDING,
     ),
     bench(
         "hypothetical_flow",
         "{name=\"hypothetical_flow\",element=\"line\",flow_m3_s=1e-11,pressure_power=2}",
         &["line.outflow adds 1e-11 * (pressure_pa/1e6)^2"],
-        TANGENTS,
+        ROUNDING,
     ),
     pulley(
         "cable_slack",

@@ -1,6 +1,6 @@
 //! An axis moved at a recorded position that answers with a force.
 
-use crate::effects::{Effect, Kind};
+use crate::effects::{Effect, Native};
 use crate::scalar::Scalar;
 use crate::scene::{AxisSpec, Scene};
 
@@ -105,7 +105,7 @@ pub(in crate::system) struct AxisFriction<D> {
 impl<D: Scalar> AxisFriction<D> {
     /// The seals among the effects of a scene.
     pub fn of(effects: &[Effect<D>]) -> Self {
-        let seals = effects.iter().filter(|e| e.kind == Kind::SealFriction);
+        let seals = effects.iter().filter(|e| e.entry.native == Some(Native::SealFriction));
         let numbers = seals.filter_map(|e| e.values.first_chunk::<3>().copied());
         Self { seals: numbers.map(|n| (n, D::constant(0.0))).collect(), position_m: None }
     }

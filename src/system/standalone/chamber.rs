@@ -1,6 +1,6 @@
 //! Gas in a closed chamber.
 
-use crate::effects::{Effect, Kind};
+use crate::effects::{Effect, Native};
 use crate::hydraulics::GasLeak;
 use crate::scalar::Scalar;
 use crate::scene::ChamberSpec;
@@ -41,10 +41,10 @@ impl Chamber {
         let mut leak = GasLeak::none();
         let is_own = |e: &&Effect<D>| !e.element.is_numbered || e.element.index + 1 == self.spec.number;
         for effect in effects.iter().filter(is_own) {
-            match effect.kind {
-                Kind::ChamberLeak => leak.rate_1_s += effect.values[0],
-                Kind::ChamberGap => leak.laminar_1_s += effect.values[0],
-                Kind::ChamberOrifice => leak.orifice_1_s += effect.values[0],
+            match effect.entry.native {
+                Some(Native::ChamberLeak) => leak.rate_1_s += effect.values[0],
+                Some(Native::ChamberGap) => leak.laminar_1_s += effect.values[0],
+                Some(Native::ChamberOrifice) => leak.orifice_1_s += effect.values[0],
                 _ => {}
             }
         }

@@ -1,6 +1,6 @@
 //! A strip of rubber in a testing machine.
 
-use crate::effects::{Effect, Kind, MaxwellBranch, logarithmic_creep};
+use crate::effects::{Effect, MaxwellBranch, Native, logarithmic_creep};
 use crate::muscle::{Material, RubberTerm};
 use crate::scalar::Scalar;
 use crate::scene::{Scene, StripSpec};
@@ -69,7 +69,7 @@ impl Strip {
         let terms: Vec<RubberTerm<D>> = effects.iter().filter_map(term).collect();
         let shear_pa = terms.iter().fold(material.shear_modulus_pa(), |sum, term| sum + term.shear_modulus_pa());
         let stiffness_n_m = shear_pa * (3.0 * self.spec.section_m2) / length_m;
-        let relaxing = effects.iter().filter(|e| e.kind == Kind::Viscoelasticity);
+        let relaxing = effects.iter().filter(|e| e.entry.native == Some(Native::Viscoelasticity));
         let branches = relaxing.flat_map(|e| branches(&e.values, stiffness_n_m));
         StripRubber {
             position: self.position,
@@ -99,11 +99,11 @@ fn put<D: Scalar>(material: Material<D>, which: StripNumber, value: D) -> Materi
 /// The term of a law that an effect adds, if it is one.
 fn term<D: Scalar>(effect: &Effect<D>) -> Option<RubberTerm<D>> {
     let v = &effect.values;
-    Some(match effect.kind {
-        Kind::RubberYeoh => RubberTerm::Yeoh { c2_pa: v[0], c3_pa: v[1] },
-        Kind::RubberMooneyRivlin => RubberTerm::MooneyRivlin { c01_pa: v[0] },
-        Kind::RubberOgden => RubberTerm::Ogden { mu_pa: v[0], alpha: v[1] },
-        Kind::RubberGent => RubberTerm::Gent { inverse_limit: v[0] },
+    Some(match effect.entry.native {
+        Some(Native::RubberYeoh) => RubberTerm::Yeoh { c2_pa: v[0], c3_pa: v[1] },
+        Some(Native::RubberMooneyRivlin) => RubberTerm::MooneyRivlin { c01_pa: v[0] },
+        Some(Native::RubberOgden) => RubberTerm::Ogden { mu_pa: v[0], alpha: v[1] },
+        Some(Native::RubberGent) => RubberTerm::Gent { inverse_limit: v[0] },
         _ => return None,
     })
 }

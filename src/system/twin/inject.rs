@@ -38,7 +38,7 @@ impl Twin {
     ) -> Vec<Option<Vec<Vec<f64>>>> {
         type D = Lanes<TOGETHER>;
         let constant = |effect: &Effect<f64>| Effect {
-            kind: effect.kind,
+            entry: effect.entry,
             element: effect.element,
             channel: effect.channel.clone(),
             values: effect.values.iter().map(|&x| D::constant(x)).collect(),

@@ -131,7 +131,7 @@ fn groups(settings: &[TwinSetting<f64>]) -> Vec<Vec<usize>> {
 fn is_like(one: &TwinSetting<f64>, other: &TwinSetting<f64>) -> bool {
     let parameters = one.parameters.iter().map(|p| &p.0).eq(other.parameters.iter().map(|p| &p.0));
     let effects = one.effects.iter().zip(&other.effects).all(|(a, b)| {
-        (a.kind, a.element, &a.channel, a.values.len()) == (b.kind, b.element, &b.channel, b.values.len())
+        (a.entry, a.element, &a.channel, a.values.len()) == (b.entry, b.element, &b.channel, b.values.len())
     });
     parameters && effects && one.effects.len() == other.effects.len()
 }
@@ -146,7 +146,7 @@ fn side_by_side<const L: usize>(settings: [&TwinSetting<f64>; L]) -> TwinSetting
         parameters: parameters.map(|(i, (which, _))| (which.clone(), lanes(&|s| s.parameters[i].1))).collect(),
         effects: effects
             .map(|(i, effect)| Effect {
-                kind: effect.kind,
+                entry: effect.entry,
                 element: effect.element,
                 channel: effect.channel.clone(),
                 values: (0..effect.values.len()).map(|j| lanes(&|s| s.effects[i].values[j])).collect(),

@@ -1,6 +1,6 @@
 //! Output channels of the fast model.
 
-use crate::effects::{Effect, Kind, Sensor, SensorHistory};
+use crate::effects::{Effect, Native, Sensor, SensorHistory};
 use crate::laws::Law;
 use crate::recording::{PiecewiseLinear, parse_column};
 use crate::scalar::Scalar;
@@ -153,11 +153,11 @@ impl<D: Scalar> Sensors<D> {
 /// The sensor law of an effect, if it is one.
 pub(in crate::system) fn sensor<D: Scalar>(effect: &Effect<D>) -> Option<Sensor<D>> {
     let size = *effect.values.first()?;
-    Some(match effect.kind {
-        Kind::SensorLag => Sensor::Lag { time_constant_s: size },
-        Kind::SensorDelay => Sensor::Delay { delay_s: size },
-        Kind::SensorDrift => Sensor::Drift { rate_per_s: size },
-        Kind::SensorGain => Sensor::Gain { gain_error: size },
+    Some(match effect.entry.native {
+        Some(Native::SensorLag) => Sensor::Lag { time_constant_s: size },
+        Some(Native::SensorDelay) => Sensor::Delay { delay_s: size },
+        Some(Native::SensorDrift) => Sensor::Drift { rate_per_s: size },
+        Some(Native::SensorGain) => Sensor::Gain { gain_error: size },
         _ => return None,
     })
 }
