@@ -182,10 +182,13 @@ mod tests {
 
     #[test]
     fn a_law_is_written_down_once() {
-        let table = LawTable::parse("muscle.pull adds 2.0 * elongation_m", "mine").expect("a law");
+        let text =
+            "name = 'mine'\nport = 'muscle.pull'\nadds = 'k_n_m * elongation_m'\nparameter.k_n_m = { value = 2.0 }";
+        let table: LawTable = toml::from_str(text).expect("TOML");
         let law = table.law(&Surroundings::default()).expect("right");
-        let first = EntryId::write(&table, &law, 0, &[]);
-        assert_eq!(EntryId::write(&table, &law, 0, &[]), first);
+        let numbers = [Fitted { typical: 2.0, range: Range { min: 0.0, max: 9.0 }, is_fitted: true }];
+        let first = EntryId::write(&table, &law, 0, &numbers);
+        assert_eq!(EntryId::write(&table, &law, 0, &numbers), first);
         assert!(first.unlisted().is_some() && registry::catalogue().all(|listed| listed < first));
     }
 }

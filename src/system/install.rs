@@ -69,7 +69,12 @@ impl Site {
 /// The element must exist in the plant; scenes are checked for it.
 pub(super) fn install<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>) {
     if let Some(written) = &effect.entry.law {
-        return install_written(plant, site, written, effect);
+        // At zero an effect of the catalogue is absent to the last bit; derivatives to its size need it all the same.
+        let is_absent = effect.entry.is_listed && D::DERIVATIVES == 0 && effect.values[0].is_at(0.0);
+        if !is_absent {
+            install_written(plant, site, written, effect);
+        }
+        return;
     }
     match effect.element.kind {
         ElementKind::Syringe | ElementKind::Line | ElementKind::Muscle => {
