@@ -42,7 +42,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("diagnose", &["effects", "files", "identify", "laws", "recording", "scalar", "scene", "stock", "system"]),
     // Nothing of the simulation, so that the proof is one.
     ("conceal", &["files", "recording"]),
-    ("proof", &["conceal", "diagnose", "files", "identify", "recording"]),
+    ("proof", &["conceal", "diagnose", "files", "identify", "laws", "recording", "scene"]),
     ("sweep", &["columns", "files", "mechanism", "muscle", "nearest", "recording", "scene", "stock", "system"]),
     ("trial", &["diagnose", "effects", "files", "recording", "scene", "system"]),
     ("report", &["diagnose", "recording"]),
