@@ -38,7 +38,8 @@ fn header_errors() {
     );
     assert_eq!(
         refusal("time_s,a_n,a_n\n0,1,2\n"),
-        "a.csv: line 1: column \"a_n\" occurs twice\n  remedy: rename or remove one"
+        "a.csv: line 1: column \"a_n\" occurs twice\n  remedy: rename or remove one; or give the columns names in \
+         recordings.toml, by header = false, skip_rows and names (`smam import` writes them)"
     );
     // A comma at the end makes a column that is none; one in the middle has to have a name.
     assert_eq!(read("time_s,a_n,\n0,1,\n").unwrap().columns(), ["a_n"]);
