@@ -57,6 +57,7 @@ pub struct Detection {
     pub excess_chi2_per_sample: f64,
     /// The same with the effects found in place.
     pub excess_chi2_per_sample_corrected: f64,
+    /// Probability that noise alone leaves so much in the baseline, or more, by the excess and its standard error.
     pub p_value: f64,
     pub noise_sd: BTreeMap<String, f64>,
     /// Ratio of slow noise to white noise of the same deviation.
@@ -91,6 +92,9 @@ pub struct NamedEffect {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub size_by_run: BTreeMap<String, Estimate>,
     pub law: String,
+    /// What a law outside the catalogue is called where it has a name: breakaway friction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known_as: Option<String>,
     /// Where it acts, `muscle_1.friction`, and whether it adds to the port or scales it.
     #[serde(default)]
     pub port: String,
@@ -114,6 +118,8 @@ pub struct Form {
     pub port: String,
     pub acts: String,
     pub law: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known_as: Option<String>,
     /// By how much its chi² is higher, in units of what the best leaves.
     pub score_difference: f64,
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use statrs::distribution::{ContinuousCDF, Normal};
+
 use super::answer::{Detection, Estimate};
 use super::case::Case;
 use super::fit::Fit;
@@ -20,16 +22,19 @@ pub(super) fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Exc
         *size = size.min(s.least_size);
     }
     smallest.retain(|_, size| size.is_finite());
-    let z = excess.baseline / excess.error;
-    let gain = found.baseline.cost - found.best.cost;
     Detection {
         excess_chi2_per_sample: excess.baseline,
         excess_chi2_per_sample_corrected: excess.best,
-        p_value: (-0.5 * z.max(0.0).powi(2)).exp().min((-0.5 * gain.max(0.0)).exp()),
+        p_value: by_chance(excess.baseline / excess.error),
         noise_sd: by_channel(|n| n.sd),
         noise_inflation: by_channel(|n| n.inflation()),
         smallest_detectable: smallest,
     }
+}
+
+/// Probability that noise alone leaves so many standard errors, or more.
+fn by_chance(standard_errors: f64) -> f64 {
+    Normal::standard().sf(standard_errors)
 }
 
 /// The calibrated numbers with their intervals.
@@ -52,4 +57,16 @@ pub(super) fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
         )
     });
     words.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_noise_leaves_by_chance() {
+        assert!((by_chance(0.0) - 0.5).abs() < 1e-12);
+        assert!((by_chance(1.959_963_984_540_054) - 0.025).abs() < 1e-9);
+        assert!(by_chance(10.0) > 0.0 && by_chance(10.0) < 1e-20);
+    }
 }

@@ -31,6 +31,7 @@ mod broad;
 mod candidates;
 mod case;
 mod case_load;
+mod caveats;
 mod confirm;
 mod corrected;
 mod descent;
@@ -45,6 +46,7 @@ mod grammar;
 mod hypothesis;
 mod instants;
 mod intervals;
+mod known_as;
 mod locate;
 #[cfg(test)]
 mod made;
@@ -313,7 +315,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         }
     }
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
-    steady::report(sizes, &complete, &mut effects, &mut warnings);
+    let contradicted = steady::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
     let verdict = match confirmed {
         Confirmed::InPart if is_open_set => Verdict::UnknownPhysics,
@@ -350,7 +352,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         next_experiment: experiment.next,
         warnings,
     };
-    diagnosis.summary = summary::summary(&diagnosis);
+    diagnosis.summary = summary::summary(&diagnosis, &caveats::caveats(&case, &complete, &noise, &contradicted));
     let rivals = verdict::lost(&found);
     Ok(Outcome {
         diagnosis,

@@ -62,6 +62,11 @@ impl Noise {
         1.0 + 2.0 * self.slow_share * self.kept / (1.0 - self.kept)
     }
 
+    /// The same, or white noise of this deviation where that is more.
+    fn at_least(self, sd: f64) -> Self {
+        if self.sd < sd { Self::white(sd) } else { self }
+    }
+
     /// Whether weights from one are good enough for the other.
     pub fn is_near(&self, other: &Self) -> bool {
         (self.scale() / other.scale() - 1.0).abs() < 0.1
@@ -99,15 +104,26 @@ pub fn estimate(case: &Case, residuals: &[Vec<Vec<f64>>]) -> Vec<Noise> {
     (0..case.channels.len())
         .map(|c| {
             let stated_sd = case.channels[c].stated_sd;
+            let least = |noise: Noise| if stated_sd.is_none() { noise.at_least(least(case, c)) } else { noise };
             if is_short && stated_sd.is_none() {
-                return Noise::white(of_recording(case, c));
+                return least(Noise::white(of_recording(case, c)));
             }
             let channel = on_own_clock(residuals, c);
             let runs: Vec<&[f64]> = channel.runs.iter().map(AsRef::as_ref).collect();
-            of_channel(&runs, channel.rows_per_sample * interval_s, stated_sd)
-                .unwrap_or_else(|| Noise::white(of_recording(case, c)))
+            let found = of_channel(&runs, channel.rows_per_sample * interval_s, stated_sd);
+            least(found.unwrap_or_else(|| Noise::white(of_recording(case, c))))
         })
         .collect()
+}
+
+/// Share of a channel's range below which no estimate of its noise is believed: what a converter of 17 bits resolves, and more than two
+/// integrators of the same equations differ by. A recording with less is one of a simulation.
+const LEAST_SHARE: f64 = 1e-5;
+
+/// The least noise of a channel that is believed where none is stated, in its unit.
+pub fn least(case: &Case, channel: usize) -> f64 {
+    let all = case.runs.iter().flat_map(|r| r.measured[channel].iter().copied()).filter(|v| v.is_finite());
+    LEAST_SHARE * range(&all.collect::<Vec<f64>>())
 }
 
 /// Residuals of a channel as it was sampled.

@@ -99,24 +99,26 @@ fn is_outside(size: Estimate, range: Range) -> bool {
     size.value + margin < range.min || size.value - margin > range.max
 }
 
-/// Puts the sizes into the answer, and says where runs disagree.
-pub fn report(sizes: Vec<RunSizes>, fit: &Fit, effects: &mut [NamedEffect], warnings: &mut Vec<String>) {
+/// Puts the sizes into the answer, and says where runs disagree: on what, as words.
+pub fn report(sizes: Vec<RunSizes>, fit: &Fit, effects: &mut [NamedEffect], warnings: &mut Vec<String>) -> Vec<String> {
+    let mut contradicted = Vec::new();
     for s in sizes {
         let placed = &fit.model.effects[s.effect];
         if disagree(&s.runs) {
             let each: Vec<String> = s.runs.iter().map(|(file, e)| format!("{:.3e} in {file}", e.value)).collect();
+            let what = format!("{} of {}", s.key, placed.title());
             warnings.push(format!(
-                "runs disagree on {} of {}: {}; the rig changed between them, or the law is not quite this",
-                s.key,
-                placed.title(),
+                "runs disagree on {what}: {}; the rig changed between them, or the law is not quite this",
                 each.join(", ")
             ));
+            contradicted.push(what);
         }
         let own = effects.iter_mut().find(|e| is_said(e, placed));
         if let Some(own) = own.filter(|e| e.size_by_run.is_empty()) {
             own.size_by_run = s.runs.into_iter().collect();
         }
     }
+    contradicted
 }
 
 fn disagree(runs: &[(String, Estimate)]) -> bool {

@@ -2,8 +2,13 @@
 
 use super::answer::{Diagnosis, NamedEffect, Verdict};
 
-/// The verdict in two sentences.
-pub fn summary(d: &Diagnosis) -> String {
+/// The verdict in two sentences, and what it has to be read with.
+pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
+    let verdict = verdict(d);
+    if caveats.is_empty() { verdict } else { format!("{verdict} Read it with care: {}.", caveats.join("; ")) }
+}
+
+fn verdict(d: &Diagnosis) -> String {
     let effects: Vec<String> = d
         .effects
         .iter()
@@ -49,20 +54,34 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
     {
         return format!("A number of the scene is another on the rig: {number} explains it. {closed}");
     }
-    let named = |hypothetical: bool| -> String {
-        let own = d.effects.iter().filter(|e| e.hypothetical == hypothetical);
-        own.map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ")
+    let (laws, listed): (Vec<&NamedEffect>, Vec<&NamedEffect>) = d.effects.iter().partition(|e| e.hypothetical);
+    let known = listed.iter().map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ");
+    let law = laws.iter().map(|e| law(e)).collect::<Vec<_>>().join(", and ");
+    let others: usize = laws.iter().map(|e| e.forms.len()).sum();
+    let as_well = match others {
+        0 => String::new(),
+        1 => " (one other form explains as much: see forms)".to_owned(),
+        n => format!(" ({n} other forms explain as much: see forms)"),
     };
-    match (named(false).as_str(), named(true).as_str()) {
+    match (known.as_str(), law.as_str()) {
         ("", "") => "No known effect explains any of it.".to_owned(),
         (known, "") => format!("The nearest known effect, {known}, leaves a part of it. {closed}"),
-        ("", terms) => format!("No known effect explains any of it; a hypothesis, {terms}, does. {closed}"),
-        (known, terms) => {
+        ("", law) => format!("No known effect explains it as well as a law does: {law}{as_well}. {closed}"),
+        (known, law) => {
             format!(
-                "The nearest known effect, {known}, leaves a part of it; a hypothesis, {terms}, takes more. {closed}"
+                "The nearest known effect, {known}, leaves a part of it; a law takes more: {law}{as_well}. {closed}"
             )
         }
     }
+}
+
+/// A law with where it acts and its numbers: `muscle.friction times (1 + ...)`.
+fn law(effect: &NamedEffect) -> String {
+    let own = match effect.acts.as_str() {
+        "scales" => format!("{} times ({})", effect.port, effect.law),
+        _ => format!("{} plus {}", effect.port, effect.law),
+    };
+    effect.known_as.as_ref().map_or_else(|| own.clone(), |name| format!("{own} - {name}"))
 }
 
 /// A law that depends on nothing, as a number: `muscle_2.wall times 1.08`.

@@ -6,6 +6,7 @@ use crate::laws::{Law, Symbol};
 use super::answer::{Curve, Form, NamedEffect};
 use super::case::Case;
 use super::fit::Fit;
+use super::known_as;
 use super::model::Placed;
 
 /// Points of a curve.
@@ -24,6 +25,7 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
         effect.acts = own.law.acts.word().to_owned();
         effect.variables = own.law.variables().iter().map(|v| v.name()).collect();
         effect.law = with_numbers(&own.law, &own.values(&values(fit, at)));
+        effect.known_as = known_as(own, &values(fit, at));
         return;
     }
     let place = placed.spec();
@@ -54,13 +56,29 @@ fn with_numbers(law: &Law, values: &[f64]) -> String {
             continue;
         }
         match law.parameter(&word) {
-            Some(p) => text += &format!("{:.6e}", values[p]),
+            Some(p) => push_number(&mut text, values[p]),
             None => text += &word,
         }
         word.clear();
         text.push(c);
     }
     text.trim_end().to_owned()
+}
+
+/// Adds a number with six significant digits; after a plus a negative one becomes a difference.
+fn push_number(text: &mut String, value: f64) {
+    let is_difference = value < 0.0 && text.ends_with("+ ");
+    if is_difference {
+        text.truncate(text.len() - 2);
+        text.push_str("- ");
+    }
+    let value = if is_difference { -value } else { value };
+    // What was written with six digits is read as a number.
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    *text += &match rounded.abs() {
+        size if size == 0.0 || (1e-3..1e6).contains(&size) => format!("{rounded}"),
+        _ => format!("{rounded:e}"),
+    };
 }
 
 /// The other laws that explain as much, with what their chi² is higher by, in units of `unit`.
@@ -72,6 +90,7 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
             port: own.law.address.to_string(),
             acts: own.law.acts.word().to_owned(),
             law: with_numbers(&own.law, &own.values(&values(fit, at))),
+            known_as: known_as(own, &values(fit, at)),
             score_difference: (fit.cost - against) / unit,
         })
     };
@@ -101,6 +120,11 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
     let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
     Some(Curve { variable: variable.name(), x, y, low, high })
+}
+
+/// What a law is called by those who know it.
+fn known_as(own: &WrittenLaw, numbers: &[f64]) -> Option<String> {
+    known_as::known_as(&own.law, &own.values(numbers), &|x| value(own, numbers, x)).map(str::to_owned)
 }
 
 /// Value of a law at its variable, with the numbers of an effect.
@@ -155,6 +179,7 @@ mod tests {
         )
         .expect("TOML");
         let law = table.law(&Surroundings::default()).expect("a law");
-        assert_eq!(with_numbers(&law, &[0.5, 20.0]), "1 + 5.000000e-1 * exp(-abs(time_s/2.000000e1))");
+        assert_eq!(with_numbers(&law, &[0.5, 20.0]), "1 + 0.5 * exp(-abs(time_s/20))");
+        assert_eq!(with_numbers(&law, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
     }
 }

@@ -13,6 +13,7 @@ use super::coordinate::Coordinate;
 use super::error::MechanismError;
 use super::geometry::{self, Visual};
 use super::joints::{self, JointModel};
+use super::linkage::Linkage;
 use super::reduce::{Share, reduce};
 use super::snapshot::World;
 use super::spec::MechanismSpec;
@@ -73,6 +74,7 @@ pub struct Mechanism {
     pub(super) visuals: Vec<Visual>,
     pub(super) weights: Vec<Weight>,
     pub(super) warnings: Vec<String>,
+    linkage: Linkage,
     /// Columns: what one unit of each coordinate moves each dof.
     pub(super) projection: DMatrix<f64>,
     /// Bare mass matrix over all dofs, at the current pose.
@@ -122,6 +124,7 @@ impl Mechanism {
             built.add_contacts(file, &robot, &assembly, contact)?;
         }
         let mut link_names: Vec<String> = robot.links.iter().map(|l| l.name.clone()).collect();
+        let linkage = Linkage::new(&assembly, &joints, &shares, spec.gravity_m_s2);
         let free_bodies = free_bodies::insert(spec, &mut link_names, &mut visuals, &mut built)?;
         let mut mechanism = Self {
             link_names,
@@ -131,6 +134,7 @@ impl Mechanism {
             placement: assembly.placement,
             weights: assembly.weights,
             warnings: remarks.lines(),
+            linkage,
             ..Self::new(built, joints, coordinates, shares)
         };
         mechanism.refresh_mass();
@@ -159,8 +163,14 @@ impl Mechanism {
             visuals: Vec::new(),
             weights: Vec::new(),
             warnings: Vec::new(),
+            linkage: Linkage::default(),
             last_step_s: 0.0,
         }
+    }
+
+    /// Where its links stand, as a function of the coordinates.
+    pub fn linkage(&self) -> &Linkage {
+        &self.linkage
     }
 
     /// What the URDF holds that has no effect, one line for each kind.

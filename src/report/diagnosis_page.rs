@@ -7,6 +7,7 @@ use super::HtmlPage;
 use super::axis::three_digits;
 use super::compare_figure::{ComparedChannel, ComparedRun, compare_svg};
 use super::diagnosis_bars::bars_svg;
+use super::diagnosis_law::laws;
 use super::diagnosis_map::{state_map_svg, time_lines_svg};
 use super::diagnosis_words::{estimate, is_good, last_name, next_words, region_words, sensor_words, smallest_words};
 use super::quantity::with;
@@ -39,8 +40,12 @@ fn location(page: &mut HtmlPage, outcome: &Outcome) {
         return;
     }
     page.heading("Where");
+    let by_laws = outcome.diagnosis.effects.iter().any(|e| e.hypothetical);
     let rows: Vec<Vec<String>> = location.ranked.iter().map(|(e, p)| vec![e.clone(), format!("{p:.3}")]).collect();
-    page.table(&["element", "probability"], &rows);
+    page.table(
+        &["element", if by_laws { "share of the misfit that a law there explains" } else { "probability" }],
+        &rows,
+    );
     if !location.state_region.is_empty() {
         page.paragraph(&format!("The calibrated scene is furthest off at {}.", region_words(&location.state_region)));
     }
@@ -72,6 +77,7 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
         let rows: Vec<Vec<String>> = d.effects.iter().flat_map(effect_rows).collect();
         page.table(&["effect", "element", "probability", "number", "value", "95 % interval", "law"], &rows);
     }
+    laws(page, &d.effects);
     from_run_to_run(page, &d.effects);
     if !outcome.rivals.is_empty() {
         let best = outcome.corrected.as_ref().map_or(0.0, |f| f.cost);
@@ -142,10 +148,10 @@ fn better(page: &mut HtmlPage, outcome: &Outcome) {
         page.paragraph(&format!(
             "{:.1} % of the gap between the calibrated scene and the noise is closed on sealed runs ({}), 95 % interval \
              {:.1} to {:.1} %.",
-            100.0 * d.fit.gap_closed,
+            100.0 * d.fit.gap_closed.min(1.0),
             d.fit.holdout.join(", "),
-            100.0 * d.fit.gain_ci95[0],
-            100.0 * d.fit.gain_ci95[1]
+            100.0 * d.fit.gain_ci95[0].min(1.0),
+            100.0 * d.fit.gain_ci95[1].min(1.0)
         ));
     }
     let Some([before, after]) = &outcome.residuals else { return };
@@ -178,7 +184,7 @@ fn placebos(page: &mut HtmlPage, outcome: &Outcome) {
         return;
     }
     let rows: Vec<Vec<String>> =
-        placebos.iter().map(|(title, gap)| vec![title.clone(), format!("{:.1} %", 100.0 * gap)]).collect();
+        placebos.iter().map(|(title, gap)| vec![title.clone(), format!("{:.1} %", 100.0 * gap.min(1.0))]).collect();
     page.paragraph("What other effects would have closed of the gap on the sealed runs:");
     page.table(&["instead", "gap closed"], &rows);
 }

@@ -5,6 +5,7 @@ mod bar_figure;
 mod compare_figure;
 mod decimate;
 mod diagnosis_bars;
+mod diagnosis_law;
 mod diagnosis_map;
 mod diagnosis_page;
 mod diagnosis_words;

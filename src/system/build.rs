@@ -67,6 +67,7 @@ impl Builder<'_> {
                 cables,
                 mechanism: MechanismExtras::default(),
                 laws: None,
+                posed: None,
             },
             state: self.start(displaced),
             path_0_m: vec![0.0; routes.len()],

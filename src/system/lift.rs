@@ -20,6 +20,7 @@ impl Plant<f64> {
             cables: self.cables.iter().map(CablePlant::lift).collect(),
             mechanism: MechanismExtras::default(),
             laws: self.laws.as_ref().map(|laws| Box::new(laws.lift())),
+            posed: self.posed.as_ref().map(|posed| Box::new(posed.lift())),
         }
     }
 }

@@ -42,6 +42,7 @@ mod lift;
 mod measured_pose;
 pub mod observe;
 mod plant;
+mod posed;
 mod rates;
 mod rosenbrock;
 mod run;
@@ -67,6 +68,7 @@ pub use measured_pose::measured_poses;
 pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
 };
+pub use posed::Posed;
 pub use rosenbrock::Stepper;
 pub use run::{Driver, RunError, record, record_driven, run};
 pub use schedule::Schedule;

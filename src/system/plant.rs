@@ -12,6 +12,7 @@ use crate::scalar::Scalar;
 use super::elastic::Elastic;
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
 use super::laws::{Acts, PlantLaws};
+use super::posed::Posed;
 use super::state::{Parts, PlantState, sized, sized_mut};
 
 /// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
@@ -125,6 +126,8 @@ pub struct Plant<D> {
     pub mechanism: MechanismExtras<D>,
     /// Laws that the scene has written down; none costs nothing.
     pub laws: Option<Box<PlantLaws<D>>>,
+    /// What follows the pose in a plant that no engine renews; none where nothing does.
+    pub posed: Option<Box<Posed<D>>>,
 }
 
 /// Inputs over one fine step: their value at its start and the (constant) slope, SI.

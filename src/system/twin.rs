@@ -1,7 +1,7 @@
 //! The fast model of a scene: the same elements on a mechanism reduced to its few coordinates.
 //!
 //! Hinges in series with equal lever, spring and damper become one coordinate, their sum; inertia is that of the start
-//! pose. Everything else - line, muscles, cables, effects, the integrator - is the code of the full scene, so the two
+//! pose, and so are weights where no cable runs over via points (`posed.rs`). Everything else - line, muscles, cables, effects, the integrator - is the code of the full scene, so the two
 //! differ only by what the engine adds: pose-dependent inertia and contacts. Generic over [`Scalar`], so that
 //! sensitivities to calibrated parameters and effects are exact.
 
@@ -26,6 +26,7 @@ use super::build::{build, wrong_law};
 use super::install::{Site, install, install_laws, settle_memory};
 use super::laws::Visit;
 use super::plant::{Drive, InputSpan, Plant, dot};
+use super::posed;
 use super::state::PlantState;
 use super::{Schedule, SystemError};
 
@@ -135,7 +136,7 @@ impl Twin {
     /// The fast model of a scene.
     ///
     /// # Errors
-    /// Scenes that have none: free bodies (their contacts need the engine), via-point routes, displacement models.
+    /// Scenes that have none: free bodies (their contacts need the engine), displacement models.
     pub fn new(scene: &Scene) -> Result<Self, SystemError> {
         let mut bare = scene.clone();
         bare.file.effect.clear();
@@ -212,12 +213,12 @@ impl Twin {
         setting: &TwinSetting<D>,
         mut show: impl FnMut(usize, &Plant<D>, &PlantState<D>, &[InputSpan]),
     ) -> Option<()> {
-        let (plant, state) = self.prepare(setting);
-        let mut course = Course::new(&plant, state, run);
+        let (mut plant, state) = self.prepare(setting);
+        let mut course = Course::new(&mut plant, state, run);
         for k in 0..run.times_s.len() {
             if k > 0 {
                 let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
-                course.advance(&plant, run, k, steps);
+                course.advance(&mut plant, run, k, steps);
                 if !course.is_sound(&plant) {
                     return None;
                 }
@@ -239,6 +240,7 @@ impl Twin {
             install(&mut plant, &self.site, effect);
         }
         settle_memory(&mut plant, &mut state);
+        posed::begin(&mut plant, &state);
         (plant, state)
     }
 

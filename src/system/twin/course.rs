@@ -6,6 +6,7 @@ use crate::system::PlantState;
 use crate::system::Stepper;
 use crate::system::laws::PlantLaws;
 use crate::system::plant::{InputSpan, Instant, Plant};
+use crate::system::posed;
 
 /// State and inputs at one instant, and the integrator that carries them on.
 #[derive(Clone, Debug)]
@@ -17,15 +18,16 @@ pub(super) struct Course<D> {
 
 impl<D: Scalar> Course<D> {
     /// At a run's first sample.
-    pub fn new(plant: &Plant<D>, mut state: PlantState<D>, run: &TwinRun) -> Self {
+    pub fn new(plant: &mut Plant<D>, mut state: PlantState<D>, run: &TwinRun) -> Self {
         state.time_s = run.times_s.first().copied().unwrap_or(0.0);
         let spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         PlantLaws::begin(plant, &mut state, &spans);
+        posed::renew(plant, &state, &spans);
         Self { stepper: Stepper::new(plant, &state), state, spans }
     }
 
     /// Over the interval that ends at the run's sample `k`, in so many steps.
-    pub fn advance(&mut self, plant: &Plant<D>, run: &TwinRun, k: usize, steps: u16) {
+    pub fn advance(&mut self, plant: &mut Plant<D>, run: &TwinRun, k: usize, steps: u16) {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
         let h = (to - from) / f64::from(steps);
         for (span, values) in self.spans.iter_mut().zip(&run.inputs) {
@@ -33,9 +35,13 @@ impl<D: Scalar> Course<D> {
         }
         self.stepper.plant_changed();
         self.state.time_s = from;
+        posed::renew(plant, &self.state, &self.spans);
         let mut pulling = plant.pulling::<0>(&Instant::of(&self.state, &self.spans, 0.0));
         for _ in 0..steps {
             self.stepper.advance(plant, &mut self.state, &mut self.spans, h, &mut pulling, &mut ());
+            if posed::renew(plant, &self.state, &self.spans) {
+                self.stepper.plant_changed();
+            }
         }
         for (span, values) in self.spans.iter_mut().zip(&run.inputs) {
             span.value = values[k];

@@ -48,7 +48,7 @@ impl Twin {
             effects: setting.effects.iter().chain([at]).map(constant).collect(),
         };
         let (mut plant, state) = self.prepare(&setting);
-        let mut course = Course::new(&plant, state, run);
+        let mut course = Course::new(&mut plant, state, run);
         let mut changes = vec![vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()]; signals.len()];
         for k in 0..run.times_s.len() {
             if k > 0 {
@@ -60,7 +60,7 @@ impl Twin {
                     laws.set_last(Lanes(std::array::from_fn(mean)));
                 }
                 let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
-                course.advance(&plant, run, k, steps);
+                course.advance(&mut plant, run, k, steps);
             }
             for (o, output) in self.outputs.iter().enumerate() {
                 let Lanes(shown) = output.read(&plant, &course.state, &course.spans);

@@ -1,13 +1,16 @@
 //! Equal hinges in series as one coordinate: their sum.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
-use crate::mechanism::{Mechanism, Route};
+use crate::mechanism::{LinkPoint, Mechanism, Route};
 use crate::scene::Scene;
 use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::build::{Built, slides};
 use crate::system::plant::{CoordinateStop, Coordinates, Plant};
+use crate::system::posed::{Posed, Posture};
 
 /// A plant on few coordinates.
 pub(super) struct Lumped {
@@ -19,6 +22,9 @@ pub(super) struct Lumped {
     pub names: Vec<Vec<String>>,
     pub slides: Vec<bool>,
     pub spring_table: Vec<Option<usize>>,
+    /// Where links stand; none without a mechanism.
+    pub posture: Option<Arc<Posture>>,
+    pub link_names: Vec<String>,
 }
 
 /// Refuses scenes whose mechanism cannot be reduced.
@@ -34,9 +40,6 @@ pub(super) fn refuse_what_has_none(scene: &Scene, built: &Built) -> Result<(), S
     if scene.file.mechanism.as_ref().is_some_and(|m| !m.body.is_empty()) {
         return refuse("[[mechanism.body]]", "free bodies need the rigid-body engine");
     }
-    if built.routes.iter().any(|r| matches!(r, Route::Via(_))) {
-        return refuse("[[cable]]", "a route through via points has levers that change with the pose");
-    }
     if !built.displacements.is_empty() {
         return refuse("[muscles.displacement]", "a displacement model has no forces");
     }
@@ -50,7 +53,9 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
         mechanism.iter().flat_map(|m| m.coordinates()).map(|coordinate| coordinate.name.clone()).collect();
     let joints = names.len();
     let inertia = joint_inertia(mechanism, joints);
-    let alone: Vec<bool> = names.iter().map(|name| has_own_law(scene, name)).collect();
+    let via = via(&built.routes);
+    // A cable on via points has another lever on each hinge, and another in each pose.
+    let alone: Vec<bool> = names.iter().map(|name| !via.is_empty() || has_own_law(scene, name)).collect();
     let groups = groups(full, &alone, &built.state, &inertia);
     let shares = Shares::of(&groups, joints, full.dim());
     let entry = |i: usize, j: usize| match i < joints && j < joints {
@@ -62,11 +67,22 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
         damping: shares.sum(&full.coordinates.damping, 2),
         stiffness: shares.sum(&full.coordinates.stiffness, 2),
         rest: shares.sum(&full.coordinates.rest, 0),
-        force: shares.sum(&joint_forces(scene, mechanism, &names), 1),
+        force: shares.sum(&with_weights(mechanism, loads(scene, &names)), 1),
         stops: groups.iter().enumerate().flat_map(|(new, group)| lumped_stops(full, new, group)).collect(),
         contact: None,
     };
-    let mut plant = Plant { coordinates, ..full.clone() };
+    let posture = mechanism.map(|m| {
+        Arc::new(Posture {
+            linkage: m.linkage().clone(),
+            shares: shares.place[..joints].to_vec(),
+            joints: groups.len(),
+            via,
+            loads: shares.sum(&loads(scene, &names), 1),
+        })
+    });
+    // Elsewhere levers stand still, and weights are those of the start pose.
+    let posed = posture.clone().filter(|p| !p.via.is_empty()).map(|p| Box::new(Posed::new(p)));
+    let mut plant = Plant { coordinates, posed, ..full.clone() };
     plant.muscles.iter_mut().for_each(|m| m.jacobian = shares.sum(&m.jacobian, 1));
     plant.cables.iter_mut().for_each(|c| c.jacobian = shares.sum(&c.jacobian, 1));
     let state = built.state.on_coordinates(&shares.sum(built.state.y(), 0));
@@ -77,7 +93,8 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
     let kinds = slides(mechanism.map_or(&[][..], Mechanism::coordinates));
     let slides = groups.iter().map(|g| kinds[g[0]]).collect();
-    Ok(Lumped { plant, state, hinges, names: group_names, slides, spring_table })
+    let link_names = mechanism.map_or_else(Vec::new, |m| m.link_names().to_vec());
+    Ok(Lumped { plant, state, hinges, names: group_names, slides, spring_table, posture, link_names })
 }
 
 /// Whether a law names this very joint.
@@ -93,18 +110,33 @@ fn joint_inertia(mechanism: Option<&Mechanism>, joints: usize) -> DMatrix<f64> {
     inertia
 }
 
-/// Weights in the start pose, and loads.
-fn joint_forces(scene: &Scene, mechanism: Option<&Mechanism>, names: &[String]) -> Vec<f64> {
+/// Cables on via points.
+fn via(routes: &[Route]) -> Vec<(usize, Vec<LinkPoint>)> {
+    let points = |route: &Route| match route {
+        Route::Via(points) => Some(points.clone()),
+        Route::Levers { .. } => None,
+    };
+    routes.iter().enumerate().filter_map(|(i, route)| Some((i, points(route)?))).collect()
+}
+
+/// Loads on the joints.
+fn loads(scene: &Scene, names: &[String]) -> Vec<f64> {
     let mut force = vec![0.0; names.len()];
-    if let (Some(mechanism), false) = (mechanism, names.is_empty()) {
-        mechanism.weight(&mut force);
-    }
     for load in &scene.file.load {
         if let Some(i) = names.iter().position(|n| *n == load.joint) {
             force[i] += load.force_n.or(load.torque_n_m).unwrap_or(0.0);
         }
     }
     force
+}
+
+/// The same with the weights in the start pose.
+fn with_weights(mechanism: Option<&Mechanism>, loads: Vec<f64>) -> Vec<f64> {
+    let mut force = vec![0.0; loads.len()];
+    if let (Some(mechanism), false) = (mechanism, loads.is_empty()) {
+        mechanism.weight(&mut force);
+    }
+    force.iter().zip(&loads).map(|(weight, load)| weight + load).collect()
 }
 
 /// How old coordinates go into new ones: hinges that are joined turn by equal shares of their group's angle.

@@ -64,7 +64,9 @@ impl Twin {
     }
 
     fn group(&self, run: &TwinRun, group: &[&TwinSetting<f64>]) -> Vec<Outputs> {
+        // Levers that follow the pose are the lanes' own at once.
         let together = match group.len() {
+            _ if self.plant.posed.is_some() => None,
             0 | 1 => None,
             2..=FEW => self.together::<FEW>(run, group),
             _ => self.together::<TOGETHER>(run, group),
@@ -84,14 +86,14 @@ impl Twin {
         let filled: [&TwinSetting<f64>; L] = std::array::from_fn(|i| group[i.min(group.len() - 1)]);
         let setting = side_by_side(filled);
         take_disagreement();
-        let (plant, state) = self.prepare(&setting);
+        let (mut plant, state) = self.prepare(&setting);
         if take_disagreement() {
             return None;
         }
-        let course = Course::new(&plant, state, run);
+        let course = Course::new(&mut plant, state, run);
         let apart = filled.map(|setting| {
-            let (plant, state) = self.prepare(setting);
-            let course = Course::new(&plant, state, run);
+            let (mut plant, state) = self.prepare(setting);
+            let course = Course::new(&mut plant, state, run);
             Single { plant, course, has_diverged: false }
         });
         Some(Bundle { run, plant, before: course.state.clone(), course, apart, phase: Phase::Together, patience: 0 })
@@ -207,7 +209,7 @@ impl<const L: usize> Bundle<'_, L> {
         let steps = self.run.plan.as_ref().map_or_else(|| twin.steps_by_rule(self.run, k), |plan| plan[k - 1]);
         if self.phase == Phase::Together {
             self.before.clone_from(&self.course.state);
-            self.course.advance(&self.plant, self.run, k, steps);
+            self.course.advance(&mut self.plant, self.run, k, steps);
             let is_finite = self.course.is_sound(&self.plant);
             if !take_disagreement() && is_finite {
                 self.patience /= 2;
@@ -216,7 +218,7 @@ impl<const L: usize> Bundle<'_, L> {
             self.part();
         }
         for single in self.apart.iter_mut().filter(|single| !single.has_diverged) {
-            single.course.advance(&single.plant, self.run, k, steps);
+            single.course.advance(&mut single.plant, self.run, k, steps);
             single.has_diverged = !single.course.is_sound(&single.plant);
         }
         self.reunite();

@@ -1,7 +1,10 @@
 //! Output channels of the fast model.
 
+use std::sync::Arc;
+
 use crate::effects::{Effect, Native, Sensor, SensorHistory};
 use crate::laws::Law;
+use crate::mechanism::LinkPoint;
 use crate::recording::{PiecewiseLinear, parse_column};
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
@@ -11,6 +14,7 @@ use crate::system::arc::ArcSide;
 use crate::system::channels::sensor_laws;
 use crate::system::laws::LawSensor;
 use crate::system::plant::{Drive, InputSpan, Plant};
+use crate::system::posed::Posture;
 use crate::system::standalone::Standalone;
 
 use super::lump::Lumped;
@@ -27,6 +31,13 @@ enum Reader {
     /// Coordinates and the share of each that is asked for.
     Joints(Vec<(usize, f64)>),
     Standalone,
+    /// A coordinate of a link's origin: the link, which axis, and in which other link's frame, if not the world's.
+    Link {
+        posture: Arc<Posture>,
+        link: usize,
+        axis: usize,
+        frame: Option<usize>,
+    },
     /// The tip of a rod of a length that these coordinates bend.
     ArcTip(Vec<(usize, f64)>, f64, ArcSide),
 }
@@ -54,6 +65,14 @@ impl TwinOutput {
             },
             Reader::Tension(c) => plant.cable(*c, state, inputs, 0.0).2,
             Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y()[*i] * *share).sum(),
+            Reader::Link { posture, link, axis, frame } => {
+                let here = posture.positions(state.y());
+                let placement = posture.linkage.at(&here);
+                match frame {
+                    Some(frame) => placement.origin_in(*link, *frame)[*axis],
+                    None => placement.point(&LinkPoint { link: *link, point_m: [0.0; 3] })[*axis],
+                }
+            }
             Reader::Standalone => D::constant(f64::NAN),
             Reader::ArcTip(parts, length_m, side) => {
                 side.of_tip(*length_m, parts.iter().map(|(i, share)| state.y()[*i] * *share).sum())
@@ -87,7 +106,9 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
             let side = ArcSide::of(spec.quantity);
             side.zip(spec.arc_length_m).map(|(side, length_m)| Reader::ArcTip(joints(spec, lumped), length_m, side))
         }
-        Quantity::BodyX | Quantity::BodyY | Quantity::BodyZ => None,
+        Quantity::BodyX => link(spec, lumped, 0),
+        Quantity::BodyY => link(spec, lumped, 1),
+        Quantity::BodyZ => link(spec, lumped, 2),
     };
     let reader = reader.ok_or_else(|| SystemError::Name {
         file: scene.path.clone(),
@@ -97,6 +118,15 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
     })?;
     let laws = sensor_laws(&scene.laws, &spec.channel).cloned().collect();
     Ok(TwinOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor, laws })
+}
+
+/// A link's origin, if a link is what is named.
+fn link(spec: &OutputSpec, lumped: &Lumped, axis: usize) -> Option<Reader> {
+    let find = |name: &String| lumped.link_names.iter().position(|l| l == name);
+    let (link, frame) = (find(spec.of.first()?)?, spec.of.get(1).map(find));
+    // A frame that there is not is no frame.
+    let frame = if let Some(frame) = frame { Some(frame?) } else { None };
+    Some(Reader::Link { posture: lumped.posture.clone()?, link, axis, frame })
 }
 
 fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::system::plant::Plant;
+
 use super::course::Course;
 use super::{Twin, TwinRun, TwinSetting};
 
@@ -32,10 +34,10 @@ impl Twin {
         if self.standalone.is_some() {
             return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
         }
-        let (plant, state) = self.prepare(setting);
-        let mut course = Course::new(&plant, state, run);
-        let shown = |course: &Course<f64>| -> Vec<f64> {
-            self.outputs.iter().map(|o| o.read(&plant, &course.state, &course.spans)).collect()
+        let (mut plant, state) = self.prepare(setting);
+        let mut course = Course::new(&mut plant, state, run);
+        let shown = |plant: &Plant<f64>, course: &Course<f64>| -> Vec<f64> {
+            self.outputs.iter().map(|o| o.read(plant, &course.state, &course.spans)).collect()
         };
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
@@ -46,19 +48,21 @@ impl Twin {
             // What was enough before may be more than enough now.
             steps = (steps / 2).max(fewest_steps(run, k, longest_s, &greatest, &mut corner_s));
             let mut coarse = course.clone();
-            coarse.advance(&plant, run, k, steps);
+            coarse.advance(&mut plant, run, k, steps);
+            let mut of_coarse = shown(&plant, &coarse);
             loop {
                 let mut fine = course.clone();
-                fine.advance(&plant, run, k, 2 * steps);
+                fine.advance(&mut plant, run, k, 2 * steps);
+                let of_fine = shown(&plant, &fine);
                 if !fine.is_sound(&plant) {
                     return None;
                 }
-                let pairs = shown(&coarse).into_iter().zip(shown(&fine));
+                let pairs = of_coarse.iter().zip(&of_fine);
                 let is_enough = pairs.zip(tolerance).all(|((a, b), t)| t.is_none_or(|t| (a - b).abs() <= t));
                 if is_enough || steps >= MOST {
                     break;
                 }
-                coarse = fine;
+                (coarse, of_coarse) = (fine, of_fine);
                 steps *= 2;
             }
             plan.push(steps);
