@@ -188,6 +188,7 @@ impl Builder<'_> {
             jacobian,
             drive,
             friction: None,
+            lean: None,
         }
     }
 

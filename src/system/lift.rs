@@ -110,6 +110,7 @@ impl CablePlant<f64> {
             jacobian: self.jacobian.clone(),
             drive: self.drive,
             friction: None,
+            lean: None,
         }
     }
 }

@@ -115,6 +115,24 @@ pub struct CablePlant<D> {
     /// An input that pulls at the cable's near end, and how much stretch one unit of it makes, m per input unit.
     pub drive: Option<(usize, f64)>,
     pub friction: Option<CableFriction<D>>,
+    /// What derivatives and lanes change of a lever that follows the pose; none of plain numbers.
+    pub lean: Option<Box<Lean<D>>>,
+}
+
+/// Levers less their plain values, by joint, and the positions from which they count.
+#[derive(Clone, Debug)]
+pub struct Lean<D> {
+    pub levers: Vec<D>,
+    pub from: Vec<D>,
+}
+
+impl<D: Scalar> Lean<D> {
+    /// What they add to stretch and stretching rate.
+    fn stretch_and_rate(&self, y: &[D], w: &[D]) -> (D, D) {
+        let each = self.levers.iter().zip(&self.from).zip(y.iter().zip(w));
+        let zero = D::constant(0.0);
+        each.fold((zero, zero), |(s, r), ((lever, from), (y, w))| (s + *lever * (*y - *from), r + *lever * *w))
+    }
 }
 
 /// The whole system.
@@ -283,6 +301,10 @@ impl<D: Scalar> CablePlant<D> {
         if let Some((input, gain)) = self.drive {
             stretch += gain * now.input(input);
             rate += gain * now.inputs[input].slope;
+        }
+        if let Some(lean) = &self.lean {
+            let more = lean.stretch_and_rate(now.at.y(), now.at.w());
+            (stretch, rate) = (stretch + more.0, rate + more.1);
         }
         (stretch, rate)
     }

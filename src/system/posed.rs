@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::mechanism::{LinkPoint, Linkage};
 use crate::scalar::Scalar;
 
-use super::plant::{InputSpan, Plant};
+use super::plant::{InputSpan, Lean, Plant};
 use super::state::PlantState;
 
 /// How a mechanism's coordinates hang on a plant's: each is a share of one.
@@ -91,9 +91,14 @@ pub(super) fn renew<D: Scalar>(plant: &mut Plant<D>, state: &PlantState<D>, inpu
         let own = &mut plant.cables[*cable];
         own.jacobian.iter_mut().zip(&levers).for_each(|(plain, lever)| *plain = lever.value());
         own.stretch_0_m = *slack + length - along(&own.jacobian, state.y(), posture.joints);
+        let lean: Vec<D> = levers.iter().map(|lever| *lever - lever.value()).collect();
+        let is_lean = D::DERIVATIVES > 0 || lean.iter().any(|lever| *lever != D::constant(0.0));
+        own.lean = None;
         let (_, _, tension) = plant.cable(*cable, state, inputs, 0.0);
-        for (force, lever) in forces.iter_mut().zip(&levers) {
-            *force -= (*lever - lever.value()) * tension;
+        if is_lean {
+            forces.iter_mut().zip(&lean).for_each(|(force, lever)| *force -= *lever * tension);
+            let from = state.y()[..posture.joints].to_vec();
+            plant.cables[*cable].lean = Some(Box::new(Lean { levers: lean, from }));
         }
     }
     for ((force, own), load) in plant.coordinates.force.iter_mut().zip(forces).zip(&posture.loads) {
