@@ -7,26 +7,26 @@ use super::noise::{self, Noise};
 /// So near to an end of its range, in shares of the range, a number stands on it.
 const ON_BOUND: f64 = 1e-6;
 
-/// Clauses of one sentence, for an answer whose scene has the numbers of `fit`; `contradicted` are numbers of which single runs say
+/// Clauses for an answer whose scene has the numbers of `fit`; `contradicted` are numbers of which single runs say
 /// otherwise.
 pub(super) fn caveats(case: &Case, fit: &Fit, noise: &[Noise], contradicted: &[String]) -> Vec<String> {
     let clauses = [
         counted(
+            "channels with next to no noise, of whose range a hundred-thousandth is taken for it",
             &without_noise(case, noise),
-            "hold next to no noise, so that a hundred-thousandth of the range was taken for it",
         ),
-        counted(&on_bounds(case, fit), "ended on an end of the range, where intervals say nothing"),
-        counted(contradicted, "differ from run to run"),
-        counted(&slack_in(case), "lack the samples in which cables hardly hold the joint"),
+        counted("numbers on an end of their range, where intervals say nothing", &on_bounds(case, fit)),
+        counted("numbers that differ from run to run", contradicted),
+        counted("runs that lack the samples in which cables hardly hold the joint", &slack_in(case)),
     ];
     clauses.into_iter().flatten().collect()
 }
 
-/// `a, b and 3 more WORDS`; nothing of nothing.
-fn counted(names: &[String], words: &str) -> Option<String> {
+/// `WORDS: a, b and 3 more`; nothing of nothing.
+fn counted(words: &str, names: &[String]) -> Option<String> {
     let (shown, more) = names.split_at(names.len().min(2));
     let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-    (!shown.is_empty()).then(|| format!("{}{more}: {words}", shown.join(", ")))
+    (!shown.is_empty()).then(|| format!("{words}: {}{more}", shown.join(", ")))
 }
 
 /// Columns whose noise is the least that is believed.
@@ -61,8 +61,8 @@ mod tests {
     #[test]
     fn two_are_named_and_the_others_counted() {
         let names = |n: usize| (0..n).map(|i| format!("n{i}")).collect::<Vec<_>>();
-        assert_eq!(counted(&names(0), "late"), None);
-        assert_eq!(counted(&names(2), "late").as_deref(), Some("n0, n1: late"));
-        assert_eq!(counted(&names(5), "late").as_deref(), Some("n0, n1 and 3 more: late"));
+        assert_eq!(counted("late", &names(0)), None);
+        assert_eq!(counted("late", &names(2)).as_deref(), Some("late: n0, n1"));
+        assert_eq!(counted("late", &names(5)).as_deref(), Some("late: n0, n1 and 3 more"));
     }
 }

@@ -107,10 +107,11 @@ pub(super) fn propose(problem: &Problem, from: &Fit, reach: Reach, say: &dyn Fn(
 const AS_MUCH: f64 = 0.97;
 const SHAPES_OF_PLACE: usize = 2;
 
-/// Laws over the variables of an effect, in its place, that explain as much of what `from` leaves as `best` does; cheapest first.
+/// Laws over the variables of an effect, and mere numbers, in its place, that explain as much of what `from` leaves as `best` does; cheapest
+/// first.
 pub(super) fn alternatives(problem: &Problem, from: &Fit, best: &Fit, variables: &[&str]) -> Vec<Fit> {
     let mut all = slots(problem.case, from, Reach::Plain);
-    all.retain(|slot| variables.contains(&slot.variable.as_str()));
+    all.retain(|slot| slot.is_constant() || variables.contains(&slot.variable.as_str()));
     let Some(known) = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both) else { return Vec::new() };
     let basis = known.slopes.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
