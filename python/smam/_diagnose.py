@@ -18,7 +18,10 @@ from ._toml import set_arguments
 
 _EFFECT_COLUMNS = [
     "name", "element", "channel", "probability", "parameter", "value", "ci95_low", "ci95_high", "rivals", "law", "hypothetical",
+    "port", "acts", "known_as",
 ]  # fmt: skip
+_FORM_COLUMNS = ["of", "port", "acts", "law", "known_as", "score_difference"]
+_SPECIMEN_COLUMNS = ["number", "specimen", "value", "ci95_low", "ci95_high", "differs"]
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,11 @@ class Diagnosis:
     summary: str
     """The verdict in plain words."""
     effects: pd.DataFrame = field(repr=False)
-    """One row per effect and number of it: size in SI units with its 95 % interval, probability, rivals, law."""
+    """One row per effect and number of it: size in SI units with its 95 % interval, probability, rivals, law, where it acts."""
+    forms: pd.DataFrame = field(repr=False)
+    """Other laws that explain the recordings as well: of which effect, port, law, what the field calls it."""
+    specimens: pd.DataFrame = field(repr=False)
+    """Calibrated numbers of each specimen, and whether they differ between specimens."""
     channels: pd.DataFrame = field(repr=False)
     """Errors on the sealed runs by channel, in its unit: ``rmse_baseline``, ``rmse_corrected``, ``noise_sd``."""
     gap_closed: float
@@ -76,6 +83,7 @@ def diagnose(
     seed: int = 1,
     threads: int | None = None,
     rrd: bool = False,
+    transfer: str | None = None,
 ) -> Diagnosis:
     """Finds what physics the scene of some recordings lacks.
 
@@ -83,6 +91,7 @@ def diagnose(
     ``scene``: instead of the one that recordings.toml names. ``set``: keys of the scene with other values.
     ``laws``: as in :func:`run`.
     ``out``: where to write, ``out/diagnose_NAME`` if left out. ``rrd``: also a stream for the Rerun viewer.
+    ``transfer``: a specimen that is predicted from the others with its stated conditions alone.
     Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
     """
     given = [folders] if isinstance(folders, (str, OsPathLike)) else list(folders)
@@ -97,6 +106,8 @@ def diagnose(
         words += ["--threads", str(threads)]
     if rrd:
         words.append("--rrd")
+    if transfer is not None:
+        words += ["--transfer", transfer]
     call(words, also_fine=[1])
     return _read(folder)
 
@@ -111,6 +122,8 @@ def _read(folder: Path) -> Diagnosis:
         verdict=raw["verdict"],
         summary=raw.get("summary", ""),
         effects=_effects(raw.get("effects", [])),
+        forms=_forms(raw.get("effects", [])),
+        specimens=_specimens(raw.get("specimens", {})),
         channels=channels.rename_axis("channel"),
         gap_closed=float(fit.get("gap_closed", 0.0)),
         warnings=list(raw.get("warnings", [])),
@@ -137,6 +150,25 @@ def _effects(found: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
                     "rivals": ", ".join(effect.get("rivals", [])),
                     "law": effect.get("law", ""),
                     "hypothetical": effect.get("hypothetical", False),
+                    "port": effect.get("port", ""),
+                    "acts": effect.get("acts", ""),
+                    "known_as": effect.get("known_as", ""),
                 }
             )
     return pd.DataFrame(rows, columns=_EFFECT_COLUMNS)
+
+
+def _forms(found: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    rows = [{"of": effect["name"], "known_as": "", **form} for effect in found for form in effect.get("forms", [])]
+    return pd.DataFrame(rows, columns=_FORM_COLUMNS)
+
+
+def _specimens(numbers: Mapping[str, Mapping[str, Any]]) -> pd.DataFrame:
+    rows = []
+    for number, own in numbers.items():
+        for specimen, estimate in own["values"].items():
+            low, high = estimate["ci95"]
+            value = estimate["value"]
+            row = [number, specimen, value, low, high, own["differs"]]
+            rows.append(dict(zip(_SPECIMEN_COLUMNS, row, strict=True)))
+    return pd.DataFrame(rows, columns=_SPECIMEN_COLUMNS)

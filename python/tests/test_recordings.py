@@ -1,5 +1,6 @@
 """Recordings: diagnosed, compared, identified."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import rig
 
 import smam
+from smam._diagnose import _read
 
 LEAK = {"name": "leak", "element": "line", "conductance_m3_s_pa": 5e-18}
 
@@ -101,3 +103,23 @@ def test_a_loop_is_identified() -> None:
     assert found.parameters.loc[("paper", "n"), "half_width_95"] > 0.0
     assert "displacement" in found.tables["paper"].read_text(encoding="utf-8")
     assert found.page.is_file()
+
+
+def test_forms_and_specimens_of_an_answer_are_tables(folder: Path) -> None:
+    estimate = {"value": 0.1, "ci95": [0.09, 0.11]}
+    form = {"port": "muscle.coil", "acts": "scales", "law": "1 + 2 * time_s/30", "score_difference": 0.5}
+    law = {
+        "name": "muscle_wall", "element": "muscle", "probability": 1.0, "parameters": {"a": estimate}, "port": "muscle.wall", "acts": "scales",
+        "law": "1 - 0.1 * time_s/30", "known_as": "stress relaxation", "hypothetical": True, "forms": [form],
+    }  # fmt: skip
+    answer = {
+        "verdict": "unknown_physics",
+        "effects": [law],
+        "specimens": {"tube_c1_pa": {"values": {"old": estimate, "new": estimate}, "differs": False}},
+    }
+    (folder / "diagnosis.json").write_text(json.dumps(answer), encoding="utf-8")
+    found = _read(folder)
+    assert found.effects.iloc[0][["port", "acts", "known_as"]].tolist() == ["muscle.wall", "scales", "stress relaxation"]
+    assert found.forms.iloc[0][["of", "port", "known_as"]].tolist() == ["muscle_wall", "muscle.coil", ""]
+    assert found.specimens["specimen"].tolist() == ["old", "new"]
+    assert not found.specimens["differs"].any()
