@@ -40,6 +40,7 @@ mod steps;
 mod sweep;
 mod sweep_page;
 mod sweep_panels;
+mod sweep_trouble;
 mod trial;
 
 use std::process::ExitCode;

@@ -10,12 +10,14 @@ use smam::sweep::{
     Journal, MeasureSpec, Plan, SamplingSpec, Shard, SweepFile, Table, VarySpec, Watch, check_shard, sensitivity,
     write_best,
 };
+use smam::system::Concern;
 
 use super::CliError;
 use super::changes::laws;
 use super::diagnose::{threads, use_threads};
 use super::interrupt::stop_flag;
 use super::sweep_page::write_page;
+use super::sweep_trouble::said_of_trouble;
 
 /// Arguments of `smam sweep`.
 #[derive(Args)]
@@ -70,6 +72,9 @@ struct RunSweep {
     /// Add a law of your own to the scene of --vary: 'PORT adds|scales EXPRESSION'; may be given several times
     #[arg(long, value_name = "LAW")]
     law: Vec<String>,
+    /// Trouble that a point may be in and still count: slack, cavitation, yield, penetration; may be given several times
+    #[arg(long, value_name = "TROUBLE", value_parser = concern)]
+    allow: Vec<Concern>,
     /// Length of each run, s, instead of the scene's
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
@@ -134,6 +139,9 @@ fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCo
     let failed = table.failed().count();
     let missing = shard.points(plan.count()).filter(|i| !table.has(*i)).count();
     eprintln!("{} rows, {failed} of them failed: {}", table.rows.len(), out.join("table.csv").display());
+    if let Some(words) = said_of_trouble(plan, table) {
+        eprintln!("warning: {words}");
+    }
     if failed > 0 && failed == table.rows.len() {
         eprintln!("every point failed: the first says why");
         return Ok(ExitCode::from(1));
@@ -177,8 +185,9 @@ fn plot(sweep: &Path, folder: &Path) -> Result<ExitCode, CliError> {
 fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
     let what = arguments.what.as_deref().unwrap_or_default();
     if arguments.vary.is_empty() {
-        if !arguments.measure.is_empty() || arguments.duration.is_some() || !arguments.law.is_empty() {
-            let message = "--measure, --law and --duration need --vary and the name of a scene";
+        let of_scenes = [!arguments.measure.is_empty(), !arguments.law.is_empty(), !arguments.allow.is_empty()];
+        if of_scenes.contains(&true) || arguments.duration.is_some() {
+            let message = "--measure, --law, --allow and --duration need --vary and the name of a scene";
             let remedy =
                 "a sweep file holds its own measures, and laws as set = ['law.NAME={port=\"...\", adds=\"...\"}']";
             return Err(CliError::Usage(format!("{message}\n  remedy: {remedy}")));
@@ -201,9 +210,16 @@ fn file(arguments: &RunSweep) -> Result<SweepFile, CliError> {
         measure: arguments.measure.iter().map(|m| measure(m)).collect(),
         objective: Vec::new(),
         limit: Vec::new(),
+        allow: arguments.allow.clone(),
         output: Vec::new(),
         set: laws(&arguments.law)?.iter().map(Override::text).collect(),
     })
+}
+
+/// Reads a kind of trouble.
+fn concern(text: &str) -> Result<Concern, String> {
+    let words = Concern::ALL.map(Concern::word).join(", ");
+    Concern::ALL.into_iter().find(|c| c.word() == text).ok_or_else(|| format!("one of {words} is wanted"))
 }
 
 /// Reads `KEY=0.2:0.8:25` or `KEY=0.2,0.5,0.8`.

@@ -8,6 +8,7 @@ use smam::sweep::{Goal, MeasureSpec, Plan, Sensitivity, Table, best, sensitivity
 use super::CliError;
 use super::files::write;
 use super::sweep_panels::{bars, broken, front_panel, panels, scale_of, short};
+use super::sweep_trouble::{is_sound, said_of_trouble};
 
 const SIZE: (f64, f64) = (860.0, 260.0);
 /// Rows of the table of the best; `best.csv` has them all.
@@ -30,6 +31,9 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         plain(&file.scene),
         keys.join(", ")
     ));
+    if let Some(words) = said_of_trouble(plan, table) {
+        page.paragraph(&format!("{}.", capital(&words)));
+    }
     let best = best(plan, table);
     if !file.objective.is_empty() {
         best_points(&mut page, plan, table, &best);
@@ -46,7 +50,7 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     }
     let svg = figure_svg(&panels(plan, table, &best), SIZE.0, SIZE.1);
     page.figure(&svg, "Each measure over the first key. A gap is a point that failed.");
-    page.heading("Extremes");
+    page.heading("Extremes of points without a warning");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
     write(&folder.join("sweep.svg"), &svg)?;
     write(&folder.join("sweep.html"), &page.finish())
@@ -60,6 +64,11 @@ fn what(plan: &Plan) -> String {
     let measures: Vec<&str> = file.measure.iter().map(|m| m.name.as_str()).collect();
     let keys: Vec<&str> = file.vary.iter().map(|v| short(&v.key)).collect();
     format!("{} of {scene} over {}", measures.join(", "), keys.join(", "))
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A number to five digits.
@@ -105,8 +114,7 @@ fn best_points(page: &mut HtmlPage, plan: &Plan, table: &Table, best: &[usize]) 
     let every = best.len().div_ceil(BEST_SHOWN).max(1);
     let row = |i: &usize| {
         let row = &table.rows[*i];
-        let numbers = row.values.iter().chain(row.outcome.as_deref().unwrap_or(&[]));
-        std::iter::once(row.index.to_string()).chain(numbers.map(|v| digits(*v))).collect()
+        std::iter::once(row.index.to_string()).chain(row.numbers(plan.measures.len()).map(digits)).collect()
     };
     let rows: Vec<Vec<String>> = best.iter().step_by(every).map(row).collect();
     page.table(&header, &rows);
@@ -138,7 +146,10 @@ fn at(plan: &Plan, table: &Table, row: usize) -> String {
 fn extremes(plan: &Plan, table: &Table) -> Vec<Vec<String>> {
     let row = |m: &MeasureSpec| {
         let values = table.column(&m.name).unwrap_or_default();
-        let there = || values.iter().enumerate().filter(|(_, v)| v.is_finite());
+        let is_sound = |i: usize| is_sound(plan, &table.rows[i]);
+        // Where no point is sound those that are not are all that there is.
+        let any = (0..values.len()).any(|i| values[i].is_finite() && is_sound(i));
+        let there = || values.iter().enumerate().filter(|(i, v)| v.is_finite() && (!any || is_sound(*i)));
         let least = there().min_by(|a, b| a.1.total_cmp(b.1));
         let greatest = there().max_by(|a, b| a.1.total_cmp(b.1));
         let at_row = |found: Option<(usize, &f64)>| match found {

@@ -3,6 +3,9 @@
 use smam::recording::parse_column;
 use smam::report::{BLUE, Bar, BarPanel, GREEN, ORANGE, PURPLE, Panel, Scale, Series, VERMILION, quantity};
 use smam::sweep::{LimitSpec, Mark, MeasureSpec, ObjectiveSpec, Plan, SamplingSpec, Sensitivity, Table, excess};
+use smam::system::Concern;
+
+use super::sweep_trouble::in_trouble;
 
 /// Lines of one panel; more values of a second key are thinned to so many.
 const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, "#404040"];
@@ -120,7 +123,7 @@ fn is_line(plan: &Plan) -> bool {
     plan.file.sampling == SamplingSpec::Grid && plan.file.vary.len() == 1
 }
 
-/// Strips below a measure along the values of the key at which limits are broken, one for each.
+/// Strips below a measure along the values of the key at which limits are broken, or runs are in trouble, one for each.
 fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
     let least = y.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
     let least = if least.is_finite() { least } else { 0.0 };
@@ -130,11 +133,16 @@ fn beyond(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
         let of = table.column(&limit.measure).unwrap_or_default();
         of.iter().map(|v| excess(limit, *v) > 0.0).collect()
     };
-    let all = plan.file.limit.iter().map(|limit| (limit, is_broken(limit))).filter(|(_, at)| at.contains(&true));
-    let strip = |(i, ((limit, at), colour)): (usize, ((&LimitSpec, Vec<bool>), &'static str))| {
+    let limits = plan.file.limit.iter().map(|limit| (broken(limit), is_broken(limit)));
+    let warned = Concern::ALL.map(|concern| {
+        let at = in_trouble(plan, table, concern).iter().map(Option::is_some).collect();
+        (format!("warning: {}", concern.word()), at)
+    });
+    let all = limits.chain(warned).filter(|(_, at): &(String, Vec<bool>)| at.contains(&true));
+    let strip = |(i, ((name, at), colour)): (usize, ((String, Vec<bool>), &'static str))| {
         let (along, level) = (stretches(x, &at), least - (i + 1) as f64 * step);
         let y = along.iter().map(|x| if x.is_finite() { level } else { f64::NAN }).collect();
-        line(broken(limit), colour, along, y)
+        line(name, colour, along, y)
     };
     all.zip(BEYOND.into_iter().cycle()).enumerate().map(strip).collect()
 }

@@ -9,6 +9,7 @@ use super::point::Row;
 use super::spec::{Goal, LimitSpec};
 use super::table::Table;
 use crate::files::write_whole;
+use crate::system::Concern;
 
 /// Indices into the table's rows: within the limits, and beaten by no other in all objectives. Without objectives none.
 pub fn best(plan: &Plan, table: &Table) -> Vec<usize> {
@@ -40,8 +41,17 @@ pub(super) fn score(plan: &Plan, row: &Row) -> Score {
     };
     let costs: Vec<f64> = plan.file.objective.iter().map(|o| cost(&o.measure, o.goal)).collect();
     let excess: f64 = plan.file.limit.iter().map(|l| excess(l, plan.measured(row, &l.measure))).sum();
+    let excess = excess + trouble(plan, row).map(|(_, share)| share).sum::<f64>();
     let known = costs.iter().all(|c| c.is_finite()) && excess.is_finite();
     Score { costs, excess: if known { excess } else { f64::INFINITY } }
+}
+
+/// Kinds of trouble that a point is in and the sweep does not allow, with the share of the run.
+pub fn trouble(plan: &Plan, row: &Row) -> impl Iterator<Item = (Concern, f64)> {
+    let duration_s = plan.schedule.last_s().unwrap_or(0.0).max(f64::MIN_POSITIVE);
+    let all = Concern::ALL.into_iter().zip(row.concerns_s);
+    let not_allowed = all.filter(|(concern, s)| *s > 0.0 && !plan.file.allow.contains(concern));
+    not_allowed.map(move |(concern, s)| (concern, s / duration_s))
 }
 
 /// By how much a value breaks a limit, as a share of the bound; infinite where there is no value.

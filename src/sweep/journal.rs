@@ -12,6 +12,7 @@ use super::SweepError;
 use super::plan::Plan;
 use super::point::Row;
 use crate::files::{Held, hold_folder};
+use crate::system::ConcernsS;
 
 /// Name of the journal in a sweep's folder.
 const NAME: &str = "journal.jsonl";
@@ -31,6 +32,9 @@ pub enum JournalLine {
         measures: Option<Vec<Option<f64>>>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         error: Option<String>,
+        /// Times in trouble, s, in the order of [`Concern::ALL`](crate::system::Concern::ALL).
+        #[serde(default)]
+        concerns_s: ConcernsS,
     },
 }
 
@@ -47,7 +51,7 @@ pub enum JournalLine {
 /// )?)?;
 /// let folder = tempfile::tempdir()?;
 /// let journal = Journal::open(folder.path(), &plan, false)?;
-/// journal.add(&Row { index: 1, values: plan.point(1), outcome: Ok(vec![26.2]) })?;
+/// journal.add(&Row { index: 1, values: plan.point(1), outcome: Ok(vec![26.2]), concerns_s: [0.0; 4] })?;
 /// drop(journal);
 /// // Begun is begun: anew only in another folder, else it goes on with what is done.
 /// assert!(Journal::open(folder.path(), &plan, false).is_err());
@@ -144,14 +148,14 @@ pub fn read(folder: &Path, fingerprint: &str) -> Result<BTreeMap<u64, Row>, Swee
 }
 
 fn row(line: JournalLine) -> Option<Row> {
-    let JournalLine::Point { index, values, measures, error } = line else { return None };
+    let JournalLine::Point { index, values, measures, error, concerns_s } = line else { return None };
     let numbers = |m: Vec<Option<f64>>| m.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect();
     let outcome = match (measures, error) {
         (Some(measures), None) => Ok(numbers(measures)),
         (_, Some(error)) => Err(error),
         (None, None) => return None,
     };
-    Some(Row { index, values, outcome })
+    Some(Row { index, values, outcome, concerns_s })
 }
 
 fn lines<'a>(plan: &Plan, rows: impl Iterator<Item = &'a Row>) -> String {
@@ -167,6 +171,7 @@ fn line(row: &Row) -> String {
         values: row.values.clone(),
         measures: row.outcome.as_ref().ok().map(|m| m.iter().map(finite).collect()),
         error: row.outcome.as_ref().err().cloned(),
+        concerns_s: row.concerns_s,
     };
     // Numbers and text only: nothing in it that JSON could refuse.
     serde_json::to_string(&line).unwrap_or_default() + "\n"
@@ -188,13 +193,13 @@ mod tests {
     #[test]
     fn a_line_comes_back_as_it_was() {
         for outcome in [Ok(vec![1.0 / 3.0, -2e-300]), Err("it \"broke\"\nhere".to_owned())] {
-            let before = Row { index: 7, values: vec![0.1, 5e17], outcome };
+            let before = Row { index: 7, values: vec![0.1, 5e17], outcome, concerns_s: [0.0, 1.5, 0.0, 0.25] };
             let text = line(&before);
             assert_eq!(text.matches('\n').count(), 1);
             let after = serde_json::from_str(&text).ok().and_then(row);
             assert_eq!(after, Some(before));
         }
-        let cut = line(&Row { index: 1, values: vec![], outcome: Ok(vec![2.5]) });
+        let cut = line(&Row { index: 1, values: vec![], outcome: Ok(vec![2.5]), concerns_s: [0.0; 4] });
         assert!(serde_json::from_str::<JournalLine>(&cut[..cut.len() - 4]).is_err());
     }
 }

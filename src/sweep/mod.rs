@@ -29,7 +29,7 @@ mod spec;
 mod table;
 mod vocabulary;
 
-pub use best::{best, excess, write_best};
+pub use best::{best, excess, trouble, write_best};
 pub use bootstrap::Estimate;
 pub use design::Design;
 pub use error::SweepError;
@@ -37,7 +37,7 @@ pub use journal::{Journal, JournalLine};
 pub use morris::{MorrisEffects, Trajectories};
 pub use nsga2::Evolution;
 pub use pareto::{Score, front};
-pub use plan::{Plan, Shard};
+pub use plan::{Plan, Shard, concern_column};
 pub use point::{Row, evaluate};
 pub use run::{Watch, check_shard, run};
 pub use sensitivity::{Influence, Sensitivity, sensitivity};

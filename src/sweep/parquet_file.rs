@@ -8,6 +8,7 @@ use super::plan::Plan;
 use super::point::Row;
 use super::table::{Table, number};
 use crate::columns::{Column, NamedColumn, decode, encode};
+use crate::system::ConcernsS;
 
 /// Writes index (int64), keys and measures (double, null where a point failed) and error (text, null where not).
 /// The file appears whole or not at all.
@@ -19,7 +20,7 @@ pub fn write_parquet(table: &Table, path: &Path) -> Result<(), SweepError> {
 
 fn columns(table: &Table) -> Vec<NamedColumn> {
     let index = Column::Whole(table.rows.iter().map(|r| r.index as i64).collect());
-    let numbers = |at: usize| Column::Numbers(table.rows.iter().map(|r| number(r, at)).collect());
+    let numbers = |at: usize| Column::Numbers(table.rows.iter().map(|r| number(r, at, table.columns.len())).collect());
     let errors = Column::Texts(table.rows.iter().map(|r| r.outcome.as_ref().err().cloned()).collect());
     let named = table.columns[1..].iter().enumerate().map(|(at, name)| (name.clone(), numbers(at)));
     std::iter::once(("index".to_owned(), index)).chain(named).chain([("error".to_owned(), errors)]).collect()
@@ -62,8 +63,13 @@ fn rows(columns: &[NamedColumn], keys: usize) -> Option<Vec<Row>> {
             // Where no point failed the column is empty, and nothing tells its kind.
             _ => None,
         };
-        let outcome = error.map_or_else(|| Ok(own(&numbers[keys..])), Err);
-        Row { index: index as u64, values: own(&numbers[..keys]), outcome }
+        let (measures, concerns) = numbers[keys..].split_at(numbers.len() - keys - ConcernsS::default().len());
+        let mut concerns_s = ConcernsS::default();
+        if error.is_none() {
+            concerns_s.iter_mut().zip(own(concerns)).for_each(|(to, from)| *to = from);
+        }
+        let outcome = error.map_or_else(|| Ok(own(measures)), Err);
+        Row { index: index as u64, values: own(&numbers[..keys]), outcome, concerns_s }
     };
     Some(index.numbers()?.into_iter().enumerate().map(row).collect())
 }

@@ -16,7 +16,7 @@ use super::spec::{SamplingSpec, SweepFile, VarySpec};
 use super::vocabulary::Vocabulary;
 use crate::scene::{OutputSpec, Override, Scene, SceneError};
 use crate::stock;
-use crate::system::Schedule;
+use crate::system::{Concern, Schedule};
 
 /// A sweep ready to run.
 ///
@@ -33,7 +33,7 @@ use crate::system::Schedule;
 /// };
 /// let plan = Plan::new(file("muscles.friction.m0_n")?)?;
 /// assert_eq!((plan.count(), plan.point(2)), (3, vec![0.2]));
-/// assert_eq!(plan.columns(), ["index", "muscles.friction.m0_n", "range_mm"]);
+/// assert_eq!(plan.columns()[..4], ["index", "muscles.friction.m0_n", "range_mm", "warning_slack_s"]);
 /// // A wrong key is found before anything runs.
 /// let message = Plan::new(file("muscles.friction.m0n")?).err().map_or_else(String::new, |e| e.to_string());
 /// assert!(message.contains("did you mean \"muscles.friction.m0_n\"?"));
@@ -131,11 +131,12 @@ impl Plan {
         with_outputs(Scene::parse(&self.text, &self.path, &all)?, &self.outputs)
     }
 
-    /// Names of the columns: index, keys, measures.
+    /// Names of the columns: index, keys, measures, times in trouble.
     pub fn columns(&self) -> Vec<String> {
         let keys = self.file.vary.iter().map(|v| v.key.clone());
         let measures = self.measures.iter().map(|m| m.name.clone());
-        std::iter::once("index".to_owned()).chain(keys).chain(measures).collect()
+        let concerns = Concern::ALL.map(concern_column);
+        std::iter::once("index".to_owned()).chain(keys).chain(measures).chain(concerns).collect()
     }
 
     /// Loads the scene with each key at either end of its range, the others at the first point: what the scene refuses
@@ -151,6 +152,11 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// Column of the time in a kind of trouble, s.
+pub fn concern_column(concern: Concern) -> String {
+    format!("warning_{}_s", concern.word())
 }
 
 fn ends(vary: &VarySpec, sampling: SamplingSpec) -> Vec<f64> {

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::SweepError;
 use super::measure::Ran;
 use super::plan::Plan;
-use crate::system::{Simulation, record};
+use crate::system::{ConcernsS, Simulation, record_watched};
 
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,19 @@ pub struct Row {
     pub values: Vec<f64>,
     /// Measures, or why there are none.
     pub outcome: Result<Vec<f64>, String>,
+    /// How long the run was in each kind of trouble, s.
+    pub concerns_s: ConcernsS,
+}
+
+impl Row {
+    /// Numbers of the columns after the index: keys, measures, times in trouble; no number where there are none.
+    pub fn numbers(&self, measures: usize) -> impl Iterator<Item = f64> {
+        let own = self.outcome.as_deref().unwrap_or(&[]);
+        let ran = self.outcome.is_ok();
+        let measured = (0..measures).map(|i| own.get(i).copied().unwrap_or(f64::NAN));
+        let concerns = self.concerns_s.iter().map(move |s| if ran { *s } else { f64::NAN });
+        self.values.iter().copied().chain(measured).chain(concerns)
+    }
 }
 
 /// Runs a point at values of the keys. What fails there is its outcome; nothing of it depends on other points.
@@ -42,12 +55,17 @@ pub fn evaluate(plan: &Plan, index: u64, values: Vec<f64>) -> Row {
     let outcome = catch_unwind(AssertUnwindSafe(|| measured(plan, &values)))
         .map_err(|_| "the engine broke off".to_owned())
         .and_then(|outcome| outcome.map_err(|e| e.to_string()));
-    Row { index, values, outcome }
+    let (outcome, concerns_s) = match outcome {
+        Ok((measures, concerns_s)) => (Ok(measures), concerns_s),
+        Err(error) => (Err(error), ConcernsS::default()),
+    };
+    Row { index, values, outcome, concerns_s }
 }
 
-fn measured(plan: &Plan, values: &[f64]) -> Result<Vec<f64>, SweepError> {
+fn measured(plan: &Plan, values: &[f64]) -> Result<(Vec<f64>, ConcernsS), SweepError> {
     let mut simulation = Simulation::new(plan.scene(values)?)?;
-    let recording = record(&mut simulation, &plan.schedule)?;
+    let (recording, concerns_s) = record_watched(&mut simulation, &plan.schedule)?;
     let ran = Ran { scene: simulation.scene(), recording: &recording };
-    plan.measures.iter().map(|m| m.of(ran)).collect()
+    let measures = plan.measures.iter().map(|m| m.of(ran)).collect::<Result<_, _>>()?;
+    Ok((measures, concerns_s))
 }

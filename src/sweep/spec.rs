@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SweepError;
 use crate::scene::OutputSpec;
+use crate::system::Concern;
 
 /// What SWEEP.toml holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,9 @@ pub struct SweepFile {
     /// What a point must keep to be among the best.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limit: Vec<LimitSpec>,
+    /// Kinds of trouble that a point may be in and still be among the best.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allow: Vec<Concern>,
     /// Outputs that the scene gets besides its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub output: Vec<OutputSpec>,

@@ -58,7 +58,7 @@ impl Table {
     /// The numbers of a column but the index; NaN where a point failed.
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
         let at = self.columns.iter().position(|c| c == name)?.checked_sub(1)?;
-        Some(self.rows.iter().map(|r| number(r, at)).collect())
+        Some(self.rows.iter().map(|r| number(r, at, self.columns.len())).collect())
     }
 
     /// The numbers of a column at every point of the sweep; NaN where it failed or is not done.
@@ -88,7 +88,7 @@ impl Table {
         for row in &self.rows {
             let _ = write!(text, "{}", row.index);
             for at in 0..self.columns.len() - 1 {
-                let value = number(row, at);
+                let value = number(row, at, self.columns.len());
                 let _ = if value.is_finite() { write!(text, ",{value}") } else { write!(text, ",") };
             }
             let error = row.outcome.as_ref().err().map_or("", String::as_str);
@@ -107,8 +107,8 @@ pub(super) fn quoted(cell: &str) -> String {
     }
 }
 
-/// The number of a row in a column after the index.
-pub(super) fn number(row: &Row, at: usize) -> f64 {
-    let measures = row.outcome.as_deref().unwrap_or(&[]);
-    row.values.iter().chain(measures).nth(at).copied().unwrap_or(f64::NAN)
+/// The number of a row in a column after the index, of so many columns.
+pub(super) fn number(row: &Row, at: usize, columns: usize) -> f64 {
+    let measures = columns - 1 - row.values.len() - row.concerns_s.len();
+    row.numbers(measures).nth(at).unwrap_or(f64::NAN)
 }

@@ -57,7 +57,7 @@ mod twin;
 pub use elastic::{Elastic, ElasticPoint};
 pub use energy::EnergyBook;
 pub use error::SystemError;
-pub use events::Warnings;
+pub use events::{Concern, ConcernsS, Warnings};
 pub use expect::{Verdict, judge};
 pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
 pub use halving::{StepError, step_errors, with_half_steps};
@@ -70,7 +70,7 @@ pub use plant::{
 };
 pub use posed::Posed;
 pub use rosenbrock::Stepper;
-pub use run::{Driver, RunError, record, record_driven, run};
+pub use run::{Driver, RunError, record, record_driven, record_watched, run};
 pub use schedule::Schedule;
 pub use simulation::Simulation;
 pub use standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber};

@@ -7,6 +7,7 @@ use crate::recording::{Channel, PiecewiseLinear, Recording};
 use crate::scene::Program;
 
 use super::channels::Channels;
+use super::events::{ConcernsS, count_concerns};
 use super::observe::Observer;
 use super::{InputSource, Schedule, Simulation, SystemError, Warnings};
 
@@ -203,6 +204,18 @@ fn check_names<'a>(
 /// ```
 pub fn record(simulation: &mut Simulation, schedule: &Schedule) -> Result<Recording, SystemError> {
     record_steps(simulation, schedule, |_, _, _, _| {})
+}
+
+/// As [`record`], and how long the run was in each kind of trouble, by its state at the start of each interval.
+///
+/// # Errors
+/// As [`record`].
+pub fn record_watched(simulation: &mut Simulation, schedule: &Schedule) -> Result<(Recording, ConcernsS), SystemError> {
+    let mut durations_s = ConcernsS::default();
+    let recording = record_steps(simulation, schedule, |simulation, next_s, _, _| {
+        count_concerns(simulation, next_s - simulation.time_s(), &mut durations_s);
+    })?;
+    Ok((recording, durations_s))
 }
 
 /// Records; before each interval `before` sees the instant at its end and the channels at its start.
