@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("stock", &["files"]),
     ("bag", &[]),
     ("recording", &["bag", "columns", "files", "nearest"]),
-    ("mechanism", &["stock"]),
+    ("mechanism", &["scalar", "stock"]),
     ("hydraulics", &["scalar"]),
     ("muscle", &["scalar"]),
     ("hysteresis", &["scalar"]),
