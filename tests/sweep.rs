@@ -232,3 +232,41 @@ fn limits_may_be_changed_afterwards() {
         assert!(page.contains("Best under these limits") && page.contains(words), "{page}");
     }
 }
+
+/// Short muscles let both cables hang: the greatest range of all is then one that nobody can build.
+const HANGING: &str = r#"
+format = 1
+name = "hanging"
+scene = "antagonistic_pulley"
+ALLOW
+[[vary]]
+key = "muscles.pre_elongation_ratio"
+values = [0.25, 0.6, 0.8]
+[[measure]]
+name = "range_deg"
+of = "range(angle_deg)"
+[[objective]]
+measure = "range_deg"
+goal = "maximise"
+"#;
+
+#[test]
+fn points_in_trouble_are_columns_and_not_the_best() {
+    let best = |allow: &str| {
+        let (_folder, file, at) = sweep(&HANGING.replace("ALLOW", allow));
+        let done = smam(&[&file, "--out", &at("out")]);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        let best = fs::read_to_string(at("out/best.csv")).expect("best.csv");
+        (text(&done.stderr), text(&tables(&at("out")).0), best.lines().nth(1).unwrap_or_default().to_owned())
+    };
+    let (said, table, sound) = best("");
+    assert!(said.contains("1 point is beyond what the rig can do (slack at 1 point, up to 4."), "{said}");
+    let header = table.lines().next().expect("a header");
+    assert!(
+        header.ends_with("range_deg,warning_slack_s,warning_cavitation_s,warning_yield_s,warning_penetration_s,error")
+    );
+    assert!(sound.starts_with("1,0.6,"), "{sound}");
+    let (said, _, allowed) = best("allow = [\"slack\"]");
+    assert!(!said.contains("beyond"), "{said}");
+    assert!(allowed.starts_with("0,0.25,"), "{allowed}");
+}

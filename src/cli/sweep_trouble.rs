@@ -14,7 +14,10 @@ pub fn said_of_trouble(plan: &Plan, table: &Table) -> Option<String> {
     let kinds: Vec<String> = Concern::ALL.into_iter().filter_map(|concern| kind(plan, table, concern)).collect();
     let words = if points == 1 { "point is" } else { "points are" };
     (points > 0).then(|| {
-        format!("{points} {words} beyond what the rig can do ({}): left out of extremes and best", kinds.join(", "))
+        format!(
+            "{points} {words} beyond what the rig can do ({}): left out of extremes and best, unless allowed",
+            kinds.join(", ")
+        )
     })
 }
 

@@ -215,7 +215,8 @@ pub fn record_watched(simulation: &mut Simulation, schedule: &Schedule) -> Resul
     let recording = record_steps(simulation, schedule, |simulation, next_s, _, _| {
         count_concerns(simulation, next_s - simulation.time_s(), &mut durations_s);
     })?;
-    Ok((recording, durations_s))
+    // Sums of intervals as they are written: to a microsecond.
+    Ok((recording, durations_s.map(|s| (s * 1e6).round() / 1e6)))
 }
 
 /// Records; before each interval `before` sees the instant at its end and the channels at its start.
