@@ -253,7 +253,8 @@ goal = "maximise"
 #[test]
 fn points_in_trouble_are_columns_and_not_the_best() {
     let best = |allow: &str| {
-        let (_folder, file, at) = sweep(&HANGING.replace("ALLOW", allow));
+        let text_of_file = HANGING.replace("ALLOW", allow);
+        let (_folder, file, at) = sweep(&text_of_file);
         let done = smam(&[&file, "--out", &at("out")]);
         assert!(done.status.success(), "{}", text(&done.stderr));
         let best = fs::read_to_string(at("out/best.csv")).expect("best.csv");
