@@ -12,7 +12,7 @@ EXAMPLES = Path(os.environ.get("SMAM_EXAMPLES", Path(__file__).resolve().parents
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [("pre_elongation", "best: 30% with 14"), ("diagnose_my_csv", "missing_physics\nThe scene lacks leak in line.")],
+    [("pre_elongation", "best: 55% with 13"), ("diagnose_my_csv", "missing_physics\nThe scene lacks leak in line.")],
 )
 def test_an_example_runs(name: str, expected: str) -> None:
     pytest.importorskip("matplotlib")

@@ -114,7 +114,7 @@ def test_scenes_and_effects_are_listed() -> None:
     # A name may have several laws, a row each: a leak of fluid, and three of gas.
     leaks = effects[effects["name"] == "leak"]
     assert set(leaks["element"]) == {"line"}
-    assert leaks["law"].is_unique
+    assert leaks["title"].is_unique
 
 
 def test_a_sweep_has_a_row_per_point(folder: Path) -> None:
