@@ -12,7 +12,7 @@ use super::nsga2::Evolution;
 use super::plan_checks::{check_duration, check_goals, check_keys, check_names};
 use super::point::Row;
 use super::sampling::Place;
-use super::spec::{SamplingSpec, SweepFile, VarySpec};
+use super::spec::{SamplingSpec, SweepFile, VarySpec, concern_column};
 use super::vocabulary::Vocabulary;
 use crate::scene::{OutputSpec, Override, Scene, SceneError};
 use crate::stock;
@@ -154,11 +154,6 @@ impl Plan {
     }
 }
 
-/// Column of the time in a kind of trouble, s.
-pub fn concern_column(concern: Concern) -> String {
-    format!("warning_{}_s", concern.word())
-}
-
 fn ends(vary: &VarySpec, sampling: SamplingSpec) -> Vec<f64> {
     match (sampling, vary.values.is_empty(), vary.count) {
         (SamplingSpec::Grid, false, _) => vary.values.clone(),
@@ -290,7 +285,8 @@ mod tests {
     fn wrong_keys_ranges_and_measures_are_refused_before_anything_runs() {
         let good = Plan::new(file("muscles.friction.m0_n", 0.1, 0.2, "range(elongation_mm)")).expect("right");
         assert_eq!((good.count(), good.point(2)), (3, vec![0.2]));
-        assert_eq!(good.columns(), ["index", "muscles.friction.m0_n", "m"]);
+        let warnings = ["warning_slack_s", "warning_cavitation_s", "warning_yield_s", "warning_penetration_s"];
+        assert_eq!(good.columns(), [&["index", "muscles.friction.m0_n", "m"][..], &warnings].concat());
         let wrong =
             |key: &str, from: f64, of: &str| Plan::new(file(key, from, 0.2, of)).expect_err("wrong").to_string();
         let message = wrong("muscles.friction.m0n", 0.1, "max(elongation_mm)");

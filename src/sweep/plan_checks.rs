@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use super::SweepError;
-use super::spec::{LimitSpec, SamplingSpec, SweepFile, VarySpec};
+use super::spec::{LimitSpec, SamplingSpec, SweepFile, VarySpec, concern_column};
 use crate::nearest::did_you_mean;
 use crate::scene::{Override, Scene, calibration_key};
+use crate::system::Concern;
 
 /// The scene's own check of its duration, on that of the sweep.
 pub(super) fn check_duration(file: &SweepFile, set: &[Override]) -> Result<(), SweepError> {
@@ -33,6 +34,7 @@ pub(super) fn check_names(file: &SweepFile) -> Result<(), SweepError> {
     }
     for (i, measure) in file.measure.iter().enumerate() {
         let is_taken = ["index", "error"].contains(&measure.name.as_str())
+            || Concern::ALL.into_iter().any(|concern| concern_column(concern) == measure.name)
             || file.measure[..i].iter().any(|m| m.name == measure.name)
             || file.vary.iter().any(|v| v.key == measure.name);
         if is_taken {

@@ -42,6 +42,11 @@ pub struct SweepFile {
     pub set: Vec<String>,
 }
 
+/// Column of the time in a kind of trouble, s.
+pub fn concern_column(concern: Concern) -> String {
+    format!("warning_{}_s", concern.word())
+}
+
 /// How points are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "method", rename_all = "snake_case", deny_unknown_fields)]
