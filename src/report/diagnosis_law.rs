@@ -18,7 +18,7 @@ pub(super) fn laws(page: &mut HtmlPage, effects: &[NamedEffect]) {
             let name = effect.known_as.as_ref().map_or_else(String::new, |n| format!(" It reads as {n}."));
             let acts = if effect.acts == "scales" { "times" } else { "plus" };
             page.paragraph(&format!(
-                "{} {acts} `{}`.{name} scene.toml holds it as [[law]]; what depends on nothing else but its size is a number of the rig.",
+                "{} {acts} `{}`.{name} scene.toml holds it as a [[law]] table.",
                 effect.port, effect.law
             ));
         }
