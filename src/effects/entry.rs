@@ -108,7 +108,7 @@ pub struct Entry {
     pub element: ElementKind,
     /// Another kind of element that may have it.
     pub also_on: Option<ElementKind>,
-    /// The element that stands alone ([strip], [chamber]) and can have it.
+    /// The element that stands alone (`[strip]`, `[chamber]`) and can have it.
     pub stands_on: Option<Part>,
     /// Port in the words of laws, what it does there, and the variables that it depends on.
     pub port: String,
