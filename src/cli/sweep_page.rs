@@ -32,7 +32,7 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         keys.join(", ")
     ));
     if let Some(words) = said_of_trouble(plan, table) {
-        page.paragraph(&format!("{}.", capital(&words)));
+        page.paragraph(&format!("{words}."));
     }
     let best = best(plan, table);
     if !file.objective.is_empty() {
@@ -50,7 +50,7 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     }
     let svg = figure_svg(&panels(plan, table, &best), SIZE.0, SIZE.1);
     page.figure(&svg, "Each measure over the first key. A gap is a point that failed.");
-    page.heading("Extremes of points without a warning");
+    page.heading("Extremes");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
     write(&folder.join("sweep.svg"), &svg)?;
     write(&folder.join("sweep.html"), &page.finish())
@@ -64,11 +64,6 @@ fn what(plan: &Plan) -> String {
     let measures: Vec<&str> = file.measure.iter().map(|m| m.name.as_str()).collect();
     let keys: Vec<&str> = file.vary.iter().map(|v| short(&v.key)).collect();
     format!("{} of {scene} over {}", measures.join(", "), keys.join(", "))
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A number to five digits.

@@ -13,9 +13,12 @@ pub fn said_of_trouble(plan: &Plan, table: &Table) -> Option<String> {
     let points = table.rows.iter().filter(|row| row.outcome.is_ok() && !is_sound(plan, row)).count();
     let kinds: Vec<String> = Concern::ALL.into_iter().filter_map(|concern| kind(plan, table, concern)).collect();
     let words = if points == 1 { "point is" } else { "points are" };
+    let ran = table.rows.iter().filter(|row| row.outcome.is_ok()).count();
+    // Where no point is left the extremes are those of all.
+    let left_out = if points == ran { "best" } else { "extremes and best" };
     (points > 0).then(|| {
         format!(
-            "{points} {words} beyond what the rig can do ({}): left out of extremes and best, unless allowed",
+            "{points} {words} beyond what the rig can do ({}): left out of {left_out}, unless allowed",
             kinds.join(", ")
         )
     })

@@ -33,7 +33,6 @@ pub enum JournalLine {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         error: Option<String>,
         /// Times in trouble, s, in the order of [`Concern::ALL`](crate::system::Concern::ALL).
-        #[serde(default)]
         concerns_s: ConcernsS,
     },
 }

@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 use super::elastic::Elastic;
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
 use super::laws::{Acts, PlantLaws};
-use super::posed::Posed;
+use super::posed::{Lean, Posed};
 use super::state::{Parts, PlantState, sized, sized_mut};
 
 /// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
@@ -117,22 +117,6 @@ pub struct CablePlant<D> {
     pub friction: Option<CableFriction<D>>,
     /// What derivatives and lanes change of a lever that follows the pose; none of plain numbers.
     pub lean: Option<Box<Lean<D>>>,
-}
-
-/// Levers less their plain values, by joint, and the positions from which they count.
-#[derive(Clone, Debug)]
-pub struct Lean<D> {
-    pub levers: Vec<D>,
-    pub from: Vec<D>,
-}
-
-impl<D: Scalar> Lean<D> {
-    /// What they add to stretch and stretching rate.
-    fn stretch_and_rate(&self, y: &[D], w: &[D]) -> (D, D) {
-        let each = self.levers.iter().zip(&self.from).zip(y.iter().zip(w));
-        let zero = D::constant(0.0);
-        each.fold((zero, zero), |(s, r), ((lever, from), (y, w))| (s + *lever * (*y - *from), r + *lever * *w))
-    }
 }
 
 /// The whole system.

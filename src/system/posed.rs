@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::mechanism::{LinkPoint, Linkage};
 use crate::scalar::Scalar;
 
-use super::plant::{InputSpan, Lean, Plant};
+use super::plant::{InputSpan, Plant};
 use super::state::PlantState;
 
 /// How a mechanism's coordinates hang on a plant's: each is a share of one.
@@ -58,6 +58,22 @@ impl Posed<f64> {
     /// The same over another number type; [`begin`] comes after.
     pub(super) fn lift<D: Scalar>(&self) -> Posed<D> {
         Posed { posture: self.posture.clone(), slack_m: self.slack_m.iter().map(|x| D::constant(*x)).collect() }
+    }
+}
+
+/// Levers less their plain values, by joint, and the positions from which they count.
+#[derive(Clone, Debug)]
+pub struct Lean<D> {
+    pub levers: Vec<D>,
+    pub from: Vec<D>,
+}
+
+impl<D: Scalar> Lean<D> {
+    /// What they add to stretch and stretching rate.
+    pub(super) fn stretch_and_rate(&self, y: &[D], w: &[D]) -> (D, D) {
+        let each = self.levers.iter().zip(&self.from).zip(y.iter().zip(w));
+        let zero = D::constant(0.0);
+        each.fold((zero, zero), |(s, r), ((lever, from), (y, w))| (s + *lever * (*y - *from), r + *lever * *w))
     }
 }
 

@@ -123,9 +123,11 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
 /// A link's origin, if a link is what is named.
 fn link(spec: &OutputSpec, lumped: &Lumped, axis: usize) -> Option<Reader> {
     let find = |name: &String| lumped.link_names.iter().position(|l| l == name);
-    let (link, frame) = (find(spec.of.first()?)?, spec.of.get(1).map(find));
-    // A frame that there is not is no frame.
-    let frame = if let Some(frame) = frame { Some(frame?) } else { None };
+    let link = find(spec.of.first()?)?;
+    let frame = match spec.of.get(1) {
+        Some(name) => Some(find(name)?),
+        None => None,
+    };
     Some(Reader::Link { posture: lumped.posture.clone()?, link, axis, frame })
 }
 
