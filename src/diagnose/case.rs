@@ -37,8 +37,8 @@ pub struct CaseRun {
     pub lead_in: usize,
     /// Of each channel, its values at the recorded times; missing ones are NaN.
     pub measured: Vec<Vec<f64>>,
-    /// Of each channel, how many values were left out because next to nothing held the joint that they show.
-    pub unheld: Vec<usize>,
+    /// Of each channel, the samples and values that were left out because next to nothing held the joint that they show.
+    pub unheld: Vec<Vec<(usize, f64)>>,
     /// Which sample, or set-up, it was recorded on, if that is stated.
     pub specimen: Option<String>,
     pub is_sealed: bool,
@@ -140,19 +140,24 @@ impl Case {
         let unheld: Vec<_> =
             self.runs.par_iter().zip(settings).map(|(r, s)| r.twin.unheld(&r.drive, s)).collect::<Option<Vec<_>>>()?;
         for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
-            run.unheld.resize(self.channels.len(), 0);
+            run.unheld.resize(self.channels.len(), Vec::new());
             for (c, channel) in self.channels.iter().enumerate() {
-                run.unheld[c] += leave_out(&mut run.measured[c], &unheld[channel.output][run.lead_in..]);
+                run.unheld[c].extend(leave_out(&mut run.measured[c], &unheld[channel.output][run.lead_in..]));
             }
         }
         Some(())
     }
 
+    /// Whether joints were held by next to nothing somewhere.
+    pub fn goes_slack(&self) -> bool {
+        self.runs.iter().any(|r| r.unheld.iter().any(|samples| !samples.is_empty()))
+    }
+
     /// What was done with the recordings, for whoever reads the answer.
     pub fn notes(&self) -> Vec<String> {
         let counted = |r: &CaseRun| -> Vec<String> {
-            let left_out = self.channels.iter().zip(&r.unheld).filter(|(_, count)| **count > 0);
-            left_out.map(|(c, count)| unheld_note(&r.file, &c.column, *count)).collect()
+            let left_out = self.channels.iter().zip(&r.unheld).filter(|(_, samples)| !samples.is_empty());
+            left_out.map(|(c, samples)| unheld_note(&r.file, &c.column, samples.len())).collect()
         };
         self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
     }
@@ -186,8 +191,8 @@ pub enum Sealed {
 /// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.
 const AROUND_UNHELD: usize = 10;
 
-/// Blanks what is unheld and its neighbours; how many values that were there. Nothing if it would be most of them.
-fn leave_out(measured: &mut [f64], unheld: &[bool]) -> usize {
+/// Blanks what is unheld and its neighbours, and gives the values that were there. Nothing if it would be most of them.
+fn leave_out(measured: &mut [f64], unheld: &[bool]) -> Vec<(usize, f64)> {
     let near = |i: usize| {
         let (from, to) = (i.saturating_sub(AROUND_UNHELD), (i + AROUND_UNHELD + 1).min(unheld.len()));
         unheld[from..to].contains(&true)
@@ -195,8 +200,7 @@ fn leave_out(measured: &mut [f64], unheld: &[bool]) -> usize {
     let blank: Vec<usize> = (0..measured.len()).filter(|&i| measured[i].is_finite() && near(i)).collect();
     let there = measured.iter().filter(|m| m.is_finite()).count();
     if 2 * blank.len() > there {
-        return 0;
+        return Vec::new();
     }
-    blank.iter().for_each(|&i| measured[i] = f64::NAN);
-    blank.len()
+    blank.into_iter().map(|i| (i, std::mem::replace(&mut measured[i], f64::NAN))).collect()
 }

@@ -51,7 +51,7 @@ fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
 }
 
 fn slack_in(case: &Case) -> Vec<String> {
-    case.runs.iter().filter(|r| r.unheld.iter().any(|count| *count > 0)).map(|r| r.file.clone()).collect()
+    case.runs.iter().filter(|r| r.unheld.iter().any(|samples| !samples.is_empty())).map(|r| r.file.clone()).collect()
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use super::search::{self, Found};
 use super::steady;
 use super::verdict;
 use super::without::Step;
-use super::{DiagnoseError, misfit};
+use super::error::DiagnoseError;
+use super::explained::misfit;
 use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.

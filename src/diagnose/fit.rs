@@ -62,8 +62,7 @@ pub(super) struct Problem<'a> {
 
 impl Problem<'_> {
     pub fn numbers(&self, model: &Model) -> Vec<Number> {
-        let goes_slack = self.case.runs.iter().any(|r| r.unheld.iter().any(|count| *count > 0));
-        let step = if goes_slack { STEP_ACROSS_SLACK } else { CALIBRATION_STEP };
+        let step = if self.case.goes_slack() { STEP_ACROSS_SLACK } else { CALIBRATION_STEP };
         let mut numbers: Vec<Number> = self
             .case
             .parameters

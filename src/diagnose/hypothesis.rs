@@ -8,7 +8,7 @@ use super::grammar::Reach;
 use super::noise::{self, Noise};
 use super::refits::{foretells, foretells_runs};
 use super::search::{Found, MOST_EFFECTS, least_gain};
-use super::unlisted::{self, Located, propose};
+use super::unlisted::{self, Located, Proposals, propose};
 use super::verdict::Excess;
 use super::without::Step;
 use super::{Confirmed, verdict, weigh};
@@ -36,12 +36,67 @@ struct Lawful {
     located: Vec<Located>,
 }
 
+/// What one law makes of the recordings before the catalogue has tried several effects.
+pub(super) enum OneLaw {
+    /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
+    All(Box<Found>, Vec<Noise>),
+    /// It does not, or was not asked for: the proposals that there are, for later.
+    Part(Option<Proposals>),
+}
+
+/// Looks for one law in the place of the best single effect, where that leaves more than noise.
+pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
+        return OneLaw::Part(None);
+    }
+    let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return OneLaw::Part(None) };
+    let Some((best, forms)) = equally_good(&open, &proposals.fits, found.baseline.cost) else {
+        return OneLaw::Part(Some(proposals));
+    };
+    if leaves_something(&open, &best) || !is_clearly_better(&open, found, &best) {
+        return OneLaw::Part(Some(proposals));
+    }
+    let lawful = Lawful { best, forms, located: proposals.located.clone() };
+    let former = case.runs.clone();
+    let (found, renewed) = renew(case, noise, lawful.beside(found));
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
+    if leaves_something(&open, &found.best) {
+        case.runs = former;
+        return OneLaw::Part(Some(proposals));
+    }
+    say(format!("{} explains it all", found.best.model.title()));
+    OneLaw::All(Box::new(found), renewed)
+}
+
+/// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
+/// catalogue explains a law must predict whole runs left out better than that does by itself.
+fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+    let criterion = Criterion::of(open, [Some(&found.best), Some(lawful), None]);
+    let predicts = || match found.best.model.effects.is_empty() {
+        true => foretells(open, &found.baseline, lawful),
+        false => foretells_runs(open, &found.best, lawful),
+    };
+    criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
+}
+
+impl Lawful {
+    /// What was found with the law in its place.
+    fn beside(self, found: &Found) -> Found {
+        let rivals = vec![Vec::new(); self.best.model.effects.len()];
+        let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
+        let (rivals_against, forms) = (self.best.cost, self.forms);
+        Found { rivals_against, best: self.best, rivals, forms, located, ..found.clone() }
+    }
+}
+
 /// What laws make of what was found: one alone or two, or one beside the catalogue's effects, or nothing.
 pub(super) fn weigh_laws(
     case: &Case,
     noise: &[Noise],
     (found, confirmed): (&mut Found, Confirmed),
     excess: Excess,
+    begun: Option<Proposals>,
     say: &dyn Fn(String),
 ) -> Option<Found> {
     if case.is_without(Step::OpenSet) {
@@ -56,27 +111,21 @@ pub(super) fn weigh_laws(
     if !is_open && (is_null || !(is_elsewhere || is_doubtful())) {
         return None;
     }
-    let alone = search(&open, &found.baseline, &found.baseline, say);
+    let alone = search(&open, &found.baseline, &found.baseline, begun, say);
     let is_all = alone.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
-    let beside = (is_open && !is_null && !is_all).then(|| search(&open, &found.baseline, &found.best, say)).flatten();
+    let beside =
+        (is_open && !is_null && !is_all).then(|| search(&open, &found.baseline, &found.best, None, say)).flatten();
     let criterion =
         Criterion::of(&open, [Some(&found.best), alone.as_ref().map(|l| &l.best), beside.as_ref().map(|l| &l.best)]);
     let best =
         [alone, beside].into_iter().flatten().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
     let against = if is_open { &found.baseline } else { &found.best };
-    // Beside what the catalogue explains a law must predict whole runs left out better than that does by itself.
-    let predicts = match is_null {
-        true => foretells(&open, &found.baseline, &best.best),
-        false => foretells_runs(&open, &found.best, &best.best),
-    };
-    if criterion.at(&best.best) > criterion.at(&found.best) - CLEARLY || !predicts {
+    if !is_clearly_better(&open, found, &best.best) {
         say(format!("{} is no better than {}", best.best.model.title(), against.model.title()));
         return None;
     }
     say(format!("{}: chi2 {:.0} -> {:.0}", best.best.model.title(), found.best.cost, best.best.cost));
-    let rivals = vec![Vec::new(); best.best.model.effects.len()];
-    let located = best.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
-    Some(Found { rivals_against: best.best.cost, best: best.best, rivals, forms: best.forms, located, ..found.clone() })
+    Some(best.beside(found))
 }
 
 /// The same with weights and steps that the law asks for: the law and the forms beside it are fitted and chosen anew.
@@ -143,8 +192,16 @@ fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     })
 }
 
-/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone.
-fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> Option<Lawful> {
+/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
+/// first with other weights.
+fn search(
+    open: &Problem,
+    baseline: &Fit,
+    from: &Fit,
+    begun: Option<Proposals>,
+    say: &dyn Fn(String),
+) -> Option<Lawful> {
+    let mut begun = begun.map(|b| b.again(open));
     let noise = open.noise_cost();
     let mut lawful: Option<Lawful> = None;
     let mut here = from.clone();
@@ -154,7 +211,7 @@ fn search(open: &Problem, baseline: &Fit, from: &Fit, say: &dyn Fn(String)) -> O
         if is_explained || is_all || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
-        let Some(mut proposals) = propose(open, &here, Reach::Plain, say) else { break };
+        let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
         let Some(first) = proposals.fits.first() else { break };
         if lawful.is_none() && leaves_something(open, first) {
             proposals.fits = wider(open, &here, proposals.fits, say);

@@ -37,12 +37,14 @@ mod corrected;
 mod descent;
 mod error;
 mod experiment;
+mod explained;
 mod figures;
 mod files;
 mod fit;
 mod folds;
 mod full;
 mod grammar;
+mod harm;
 mod hypothesis;
 mod instants;
 mod intervals;
@@ -92,13 +94,13 @@ pub use side_by_side::side_by_side;
 pub use without::Step;
 
 use confirm::Confirmed;
+use explained::{Explained, diverges};
 use fit::Problem;
 use screening::Screened;
 use search::Found;
 
 use crate::effects::Effect;
 use crate::recording::Recording;
-use verdict::Excess;
 
 /// What a diagnosis is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,103 +198,8 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
     if !preflight.unusable.is_empty() {
         return Ok(unusable(case, preflight));
     }
-    let listed = explain(&mut case, preflight.warnings, options.seed, say)?;
-    let explained = explain_by_laws(&mut case, listed, options.seed, say)?;
-    let explained = hold_against_full_scene(&case, explained, options.seed, say);
+    let explained = explained::explain(&mut case, preflight.warnings, options.seed, say)?;
     answer(case, explained, say)
-}
-
-/// Residuals by run, channel and time.
-type Residuals = Vec<Vec<Vec<f64>>>;
-
-/// What stands after the search and its proofs.
-struct Explained {
-    found: Found,
-    confirmed: Confirmed,
-    proof: Proof,
-    noise: Vec<Noise>,
-    /// Residuals of the best, and what is more than noise in those of baseline and best.
-    after: Residuals,
-    excess: Excess,
-    warnings: Vec<String>,
-}
-
-/// What predicts the held-out runs worse than the calibrated scene, beyond chance, does not leave the program: it is located, not
-/// modelled.
-fn harmless(mut found: Found, proof: &mut Proof, warnings: &mut Vec<String>) -> Found {
-    let is_worse = proof.gap_closed < 0.0 && proof.gain_ci95[1] < 0.0;
-    if found.best.model.effects.is_empty() || !is_worse {
-        return found;
-    }
-    warnings.push(format!(
-        "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
-        found.best.model.title()
-    ));
-    found.withheld = Some(std::mem::replace(&mut found.best, found.baseline.clone()));
-    found.rivals.clear();
-    found.forms.clear();
-    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
-    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
-    found
-}
-
-fn diverges() -> DiagnoseError {
-    DiagnoseError::Simulation("it diverges".to_owned())
-}
-
-/// Calibrates, searches the catalogue, and holds what is found against the sealed runs.
-fn explain(
-    case: &mut Case,
-    warnings: Vec<String>,
-    seed: u64,
-    say: &dyn Fn(String),
-) -> Result<Explained, DiagnoseError> {
-    say("baseline".to_owned());
-    let base = baseline::baseline(case)?;
-    let variants = candidates::variants(case);
-    let (found, noise) = weigh::search_and_weigh(case, &base, &variants, say);
-    let found = broad::broaden(case, &noise, found, &variants, say);
-    let case = &*case;
-    let mut warnings = [warnings, base.warnings, case.notes()].concat();
-    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
-    let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
-    let mut found = confirm::prune(&open, found, &variants, say);
-    visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
-    let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
-    let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, &variants, &mut warnings);
-    say("sealed runs".to_owned());
-    let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let confirmed = confirm::confirm(&sealed, &found, &proof, &mut warnings).and(possible);
-    let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
-    Ok(Explained { found, confirmed, proof, noise, after, excess, warnings })
-}
-
-/// Puts a law that nobody listed in the place of what was found, where that explains clearly more.
-fn explain_by_laws(
-    case: &mut Case,
-    mut listed: Explained,
-    seed: u64,
-    say: &dyn Fn(String),
-) -> Result<Explained, DiagnoseError> {
-    let Explained { found, confirmed, excess, noise, .. } = &mut listed;
-    let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, say) else { return Ok(listed) };
-    let (found, noise) = hypothesis::renew(case, noise, found);
-    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
-    let (sealed, whole) = (problem(Sealed::Sealed), problem(Sealed::Both));
-    let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
-    Ok(Explained { found, proof, after, excess, noise, ..listed })
-}
-
-/// Holds what was found against the full scene, and takes back what does harm.
-fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
-    let Explained { found, mut proof, noise, mut warnings, .. } = explained;
-    let found = harmless(found, &mut proof, &mut warnings);
-    say("full scene".to_owned());
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &noise };
-    proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
-    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut warnings);
-    Explained { found, proof, noise, warnings, ..explained }
 }
 
 /// Said where nothing is left to be named of the open runs.
@@ -301,7 +208,8 @@ const SEALED_ALONE: &str = "the open runs are explained down to their noise: wha
 
 /// Names what was found and where, and proposes what to record next.
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
-    let Explained { found, confirmed, proof, noise, after, excess, mut warnings } = explained;
+    let Explained { found, confirmed, proof, noise, after, excess, mut warnings, of_found } = explained;
+    warnings.extend(of_found);
     let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
     // A specimen that is predicted from others has no say in their numbers.
     let fitted = if case.is_transfer() { Sealed::Open } else { Sealed::Both };
@@ -383,15 +291,6 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
 fn open_is_loud(case: &Case, noise: &[Noise], found: &Found) -> bool {
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     noise::left(&open, &found.best).is_none_or(|(excess, error)| verdict::is_loud(excess, error))
-}
-
-/// Residuals with what was found, and how much of baseline and best is more than noise.
-fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
-    let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
-    let after = whole.residuals(&found.best.model, &found.best.x)?;
-    let (baseline, error) = noise::structured_excess(&before, whole.noise);
-    let (best, _) = noise::structured_excess(&after, whole.noise);
-    Some((after, Excess { baseline, best, error }))
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {

@@ -54,56 +54,89 @@ impl Found {
     }
 }
 
-/// Searches from `start`: the baseline, or what a former search has found. `known`: effects that one knew.
-///
-/// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
-/// beginnings are tried as well.
-pub(super) fn search(
-    problem: &Problem,
+/// A search that has begun: where its way up stands, and what it has come by.
+pub(super) struct Begun {
     baseline: Fit,
-    start: Fit,
-    variants: &[Variant],
+    way: Way,
+    seen: Seen,
+    /// Effects that one knows to be worth something somewhere.
     known: Vec<Placed>,
-    say: &dyn Fn(String),
-) -> Found {
-    let mut swaps = Swaps::new(problem, variants, known);
-    let screening = screen(problem, &baseline, variants);
-    let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
-    let is_new = start.model.effects.is_empty();
-    let way = match is_new {
-        true => Way { best: start, rivals: Vec::new(), first: Vec::new(), screening },
-        false => {
-            let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
-            Way::from(&swaps, settled)
+    screened: Vec<Screened>,
+    is_new: bool,
+}
+
+impl Begun {
+    /// The best single effect beside the calibration.
+    pub fn with_one(problem: &Problem, baseline: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Self {
+        let screening = screen(problem, &baseline, variants);
+        let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
+        let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
+        let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
+        let way = climb(&mut swaps, &baseline, way, &mut seen, 1, say);
+        Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
+    }
+
+    /// From what a former search has found and known.
+    pub fn again(
+        problem: &Problem,
+        (baseline, start): (Fit, Fit),
+        variants: &[Variant],
+        known: Vec<Placed>,
+        say: &dyn Fn(String),
+    ) -> Self {
+        if start.model.effects.is_empty() {
+            return Self { known, ..Self::with_one(problem, baseline, variants, say) };
         }
-    };
-    let mut seen = Seen::default();
-    let mut found = climb(&mut swaps, &baseline, way, &mut seen, say);
-    if is_new && found.best.model.effects.len() > 1 && leaves_much(problem, &baseline, &found.best) {
-        for other in other_beginnings(&baseline, &found.first, &seen) {
-            if !leaves_much(problem, &baseline, &found.best) {
+        let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
+        let mut swaps = Swaps::new(problem, variants, known);
+        let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
+        let way = Way::at(settled.best, settled.rivals);
+        Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
+    }
+
+    /// What stands as far as it went.
+    pub fn found(&self) -> Found {
+        Found {
+            baseline: self.baseline.clone(),
+            rivals_against: self.way.best.cost,
+            best: self.way.best.clone(),
+            rivals: self.way.rivals.clone(),
+            screened: self.screened.clone(),
+            forms: Vec::new(),
+            located: Vec::new(),
+            withheld: None,
+        }
+    }
+
+    /// Goes on to the end.
+    ///
+    /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
+    /// beginnings are tried as well.
+    pub fn to_the_end(mut self, problem: &Problem, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        let baseline = self.baseline.clone();
+        if self.is_new && self.way.best.model.effects.is_empty() {
+            self.way = several_to_begin(&mut swaps, self.way, say);
+        }
+        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, MOST_EFFECTS, say);
+        let best = &self.way.best;
+        if !self.is_new || best.model.effects.len() < 2 || !leaves_much(problem, &baseline, best) {
+            return self.found();
+        }
+        for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
+            if !leaves_much(problem, &baseline, &self.way.best) {
                 break;
             }
-            if !seen.is_new(&other) {
+            if !self.seen.is_new(&other) {
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way = Way::from(&swaps, Settled { best: other, rivals: Vec::new() });
-            let way = climb(&mut swaps, &baseline, way, &mut seen, say);
-            if way.best.cost < found.best.cost - least_gain(problem.samples()) {
-                (found.best, found.rivals) = (way.best, way.rivals);
+            let way = climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, MOST_EFFECTS, say);
+            if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
+                (self.way.best, self.way.rivals) = (way.best, way.rivals);
             }
         }
-    }
-    Found {
-        baseline,
-        rivals_against: found.best.cost,
-        best: found.best,
-        rivals: found.rivals,
-        screened,
-        forms: Vec::new(),
-        located: Vec::new(),
-        withheld: None,
+        self.found()
     }
 }
 
@@ -137,22 +170,15 @@ struct Way {
     rivals: Vec<Vec<Fit>>,
     /// The refits with one effect, cheapest first, if it began with none.
     first: Vec<Fit>,
-    /// What the effects promise at `best`.
+    /// What the effects promise at `best`, where that is known.
     screening: Option<Screening>,
+    /// Whether nothing that can be added helps.
+    is_at_end: bool,
 }
 
 impl Way {
-    fn from(swaps: &Swaps, start: Settled) -> Self {
-        let mut way = Self { best: start.best, rivals: start.rivals, first: Vec::new(), screening: None };
-        way.look_around(swaps);
-        way
-    }
-
-    /// Screens where the way stands, if it may go on.
-    fn look_around(&mut self, swaps: &Swaps) {
-        if self.best.model.effects.len() < MOST_EFFECTS {
-            self.screening = screen(swaps.problem, &self.best, swaps.variants);
-        }
+    fn at(best: Fit, rivals: Vec<Vec<Fit>>) -> Self {
+        Self { best, rivals, first: Vec::new(), screening: None, is_at_end: false }
     }
 }
 
@@ -175,46 +201,83 @@ impl Seen {
     }
 }
 
-/// Adds effect by effect, and settles after each, until nothing helps or another way has been there.
-fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, say: &dyn Fn(String)) -> Way {
-    let problem = swaps.problem;
-    while way.best.model.effects.len() < MOST_EFFECTS {
-        let best = &way.best;
-        let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
-        let Some(screening) = way.screening.take() else { break };
-        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
-        let refits = afresh(problem, refits);
-        if best.model.effects.is_empty() {
-            way.first.clone_from(&refits);
-        }
-        let worthy = candidates(&refits, best, baseline.cost)
-            .into_iter()
-            .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
-        swaps.keep_in_mind(best, &refits, least);
-        let next = match first_that_foretells(problem, best, worthy, say).cloned() {
-            Some(winner) => {
-                say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
-                if winner.model.effects.len() > 1 {
-                    let stage = Stage { before: best, refits: &refits };
-                    swaps.settle(winner, least, Some(stage), say)
-                } else {
-                    let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
-                    Settled { best: winner, rivals: vec![rivals] }
-                }
-            }
-            None => {
-                let Some(next) = several_at_once(swaps, best, &refits, least) else { break };
-                say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), best.cost, next.best.cost));
-                next
-            }
-        };
-        (way.best, way.rivals) = (next.best, next.rivals);
-        if !seen.is_new(&way.best) {
-            break;
-        }
-        way.look_around(swaps);
+/// A way on which no single effect helped, begun with several at once; as it was where those do not help either.
+fn several_to_begin(swaps: &mut Swaps, mut way: Way, say: &dyn Fn(String)) -> Way {
+    let least = least_gain(swaps.problem.samples());
+    if let Some(next) = together(swaps, &way.best, &way.first, least, say) {
+        (way.best, way.rivals, way.is_at_end) = (next.best, next.rivals, false);
     }
     way
+}
+
+/// [`several_at_once`], and says so.
+fn together(
+    swaps: &mut Swaps,
+    before: &Fit,
+    refits: &[Fit],
+    least: f64,
+    say: &dyn Fn(String),
+) -> Option<Settled> {
+    let next = several_at_once(swaps, before, refits, least)?;
+    say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), before.cost, next.best.cost));
+    Some(next)
+}
+
+/// Adds effect by effect up to so many, and settles after each, until nothing helps or another way has been there.
+fn climb(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    mut way: Way,
+    seen: &mut Seen,
+    most: usize,
+    say: &dyn Fn(String),
+) -> Way {
+    let problem = swaps.problem;
+    while !way.is_at_end && way.best.model.effects.len() < most {
+        let best = &way.best;
+        let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
+        let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));
+        match next {
+            Some(next) => {
+                (way.best, way.rivals) = (next.best, next.rivals);
+                way.is_at_end = !seen.is_new(&way.best);
+            }
+            None => way.is_at_end = true,
+        }
+    }
+    way
+}
+
+/// The best with one effect more, settled, or with several; none where nothing helps. `first` gets the refits where there was none
+/// before: several to begin with are for [`several_to_begin`].
+fn step_up(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    best: &Fit,
+    screening: &Screening,
+    first: &mut Vec<Fit>,
+    say: &dyn Fn(String),
+) -> Option<Settled> {
+    let problem = swaps.problem;
+    let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
+    let refits = refit(problem, screening, &pick(&screening.screened, least, Swallowed::Any));
+    let refits = afresh(problem, refits);
+    if best.model.effects.is_empty() {
+        first.clone_from(&refits);
+    }
+    let worthy = candidates(&refits, best, baseline.cost)
+        .into_iter()
+        .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
+    swaps.keep_in_mind(best, &refits, least);
+    let Some(winner) = first_that_foretells(problem, best, worthy, say).cloned() else {
+        return if best.model.effects.is_empty() { None } else { together(swaps, best, &refits, least, say) };
+    };
+    say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
+    if winner.model.effects.len() > 1 {
+        return Some(swaps.settle(winner, least, Some(Stage { before: best, refits: &refits }), say));
+    }
+    let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
+    Some(Settled { best: winner, rivals: vec![rivals] })
 }
 
 /// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which

@@ -11,7 +11,7 @@ pub(super) struct Swaps<'a> {
     pub problem: &'a Problem<'a>,
     pub variants: &'a [Variant],
     /// Effects that have been worth something somewhere: they are tried again even where the calibration takes them in.
-    known: Vec<Placed>,
+    pub known: Vec<Placed>,
     /// Ends of former exchanges: those that come there again end with them.
     ends: Vec<Settled>,
 }

@@ -1,22 +1,20 @@
 //! Weights and steps of the search: set by the baseline, renewed around what was found.
 
-use super::baseline::Baseline;
 use super::candidates::Variant;
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::{self, Noise};
-use super::search::{self, Found};
+use super::search::{self, Begun, Found};
 
-/// Searches, and again where what was found asks for other weights or other steps.
-pub fn search_and_weigh(
+/// Searches from what has begun, and again where what was found asks for other weights or other steps.
+pub(super) fn search_and_weigh(
     case: &mut Case,
-    base: &Baseline,
+    mut noise: Vec<Noise>,
+    begun: Begun,
     variants: &[Variant],
     say: &dyn Fn(String),
 ) -> (Found, Vec<Noise>) {
-    let mut noise = base.noise.clone();
-    let mut found =
-        search::search(&open_runs(case, &noise), base.fit.clone(), base.fit.clone(), variants, Vec::new(), say);
+    let mut found = begun.to_the_end(&open_runs(case, &noise), variants, say);
     for _ in 0..2 {
         if found.best.model.effects.is_empty() {
             break;
@@ -36,7 +34,8 @@ pub fn search_and_weigh(
         if renewed.weights_hold && steps_hold && is_lowest {
             break;
         }
-        found = search::search(&problem, renewed.baseline, renewed.start, variants, found.known(), say);
+        let begun = Begun::again(&problem, (renewed.baseline, renewed.start), variants, found.known(), say);
+        found = begun.to_the_end(&problem, variants, say);
     }
     (found, noise)
 }
