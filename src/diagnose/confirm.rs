@@ -2,6 +2,8 @@
 
 use super::answer::Proof;
 use super::candidates::Variant;
+use super::error::DiagnoseError;
+use super::explained::misfit;
 use super::fit::{Fit, Problem};
 use super::full::{FullRun, agreement, play_full};
 use super::prove;
@@ -10,8 +12,6 @@ use super::search::{self, Found};
 use super::steady;
 use super::verdict;
 use super::without::Step;
-use super::error::DiagnoseError;
-use super::explained::misfit;
 use rayon::prelude::*;
 
 /// What the sealed runs say to what the open ones have found.

@@ -77,8 +77,7 @@ fn by_catalogue(
     let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
     say("sealed runs".to_owned());
     let mut explained = proven(case, found, noise.clone(), seed)?;
-    explained.confirmed =
-        confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
+    explained.confirmed = confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
     Ok(Explained { of_found: warnings, ..explained })
 }
 

@@ -217,11 +217,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);
-    for (at, placed) in complete.model.effects.iter().enumerate() {
-        if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
-            own.curve = written::curve(&case, &complete, at);
-        }
-    }
+    add_curves(&case, &complete, &mut effects);
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     let contradicted = steady::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
@@ -274,6 +270,15 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         next_inputs: experiment.inputs,
         case,
     })
+}
+
+/// Gives every effect that the complete fit has the curve of its law.
+fn add_curves(case: &Case, complete: &Fit, effects: &mut [NamedEffect]) {
+    for (at, placed) in complete.model.effects.iter().enumerate() {
+        if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
+            own.curve = written::curve(case, complete, at);
+        }
+    }
 }
 
 /// What was found, fitted to all runs: what the scene gets. Where the answer is withheld it is the calibrated scene as it stands.

@@ -211,27 +211,14 @@ fn several_to_begin(swaps: &mut Swaps, mut way: Way, say: &dyn Fn(String)) -> Wa
 }
 
 /// [`several_at_once`], and says so.
-fn together(
-    swaps: &mut Swaps,
-    before: &Fit,
-    refits: &[Fit],
-    least: f64,
-    say: &dyn Fn(String),
-) -> Option<Settled> {
+fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &dyn Fn(String)) -> Option<Settled> {
     let next = several_at_once(swaps, before, refits, least)?;
     say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), before.cost, next.best.cost));
     Some(next)
 }
 
 /// Adds effect by effect up to so many, and settles after each, until nothing helps or another way has been there.
-fn climb(
-    swaps: &mut Swaps,
-    baseline: &Fit,
-    mut way: Way,
-    seen: &mut Seen,
-    most: usize,
-    say: &dyn Fn(String),
-) -> Way {
+fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, most: usize, say: &dyn Fn(String)) -> Way {
     let problem = swaps.problem;
     while !way.is_at_end && way.best.model.effects.len() < most {
         let best = &way.best;

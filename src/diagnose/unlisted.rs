@@ -81,11 +81,6 @@ pub(super) fn propose(problem: &Problem, from: &Fit, reach: Reach, say: &dyn Fn(
     let shown = Shown { problem, from, basis: &basis, left: &left };
     let located = shown.locate(&all);
     say(format!("{} slots screened, the best {} on {}", located.len(), address(&located), variable(&located)));
-    if std::env::var_os("DBG").is_some() {
-        for (i, l) in located.iter().enumerate().filter(|(i, l)| *i < 25 || l.slot.address.contains("wall")) {
-            eprintln!("DBG {i} {} {} {:.0} of {:.0}", l.slot.address, l.slot.variable, l.gain, left.norm_squared());
-        }
-    }
     let best = several_ports(&located);
     let refits = |candidates: Vec<Candidate>| -> Vec<Fit> {
         let fits = candidates.par_iter().filter_map(|c| refit(problem, from, &known.slopes, c));
@@ -94,11 +89,6 @@ pub(super) fn propose(problem: &Problem, from: &Fit, reach: Reach, say: &dyn Fn(
         fits
     };
     let mut fits = refits(shown.shapes(&all, &best, 1));
-    if std::env::var_os("DBG").is_some() {
-        for f in &fits {
-            eprintln!("DBG fit {} {} {:.0} from {:.0}", f.model.title(), f.model.effects.last().unwrap().spec().equation, f.cost, from.cost);
-        }
-    }
     let mut wide: Vec<&Slot> = Vec::new();
     for fit in &fits {
         let own =
