@@ -84,6 +84,9 @@ if [ "${#failed[@]}" -gt 0 ]; then
     exit 1
 fi
 
+say "the run of the proof that is kept: seals and figures"
+proof/open.sh "$(mktemp -d)" "$smam"
+
 say "sweeps on Slurm and HyperQueue, killed on the way"
 for test in cluster/slurm/test.sh cluster/hyperqueue/test.sh; do
     where_it_can SMAM_REQUIRE_CLUSTER env "SMAM=$smam" "$test"

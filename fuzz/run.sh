@@ -22,9 +22,15 @@ options=(-runs="$runs" -max_len="$length" -rss_limit_mb=1024 -timeout=5 -artifac
     -dict="dictionaries/$dictionary.dict" -print_final_stats=1)
 
 RUSTC_WRAPPER=$PWD/instrument.sh cargo build --release --quiet --bin "$target"
-mkdir -p "artifacts/$target" "work/$target" "corpus/$target"
-# What is found goes into the first folder; the second is the committed corpus.
-folders=("work/$target" "corpus/$target")
+mkdir -p "artifacts/$target" "work/$target"
+# What is found goes into the first folder; the second is the committed corpus. To keep more of it: copy it there, then
+#   python3 pack.py corpus.zip work/corpus
+if [ corpus.zip -nt work/corpus ]; then
+    rm -rf work/corpus
+    python3 -m zipfile -e corpus.zip work
+    touch work/corpus
+fi
+folders=("work/$target" "work/corpus/$target")
 for option in "$@"; do
     [ ! -e "$option" ] || folders=()
 done

@@ -1,7 +1,9 @@
 //! Contract of the readers: no bytes make them panic, hang or fill the memory. Replays the inputs that fuzzing kept
-//! (`fuzz/corpus/`, see fuzz/run.sh), then some thousands made of them, the same in every run.
+//! (`fuzz/corpus.zip`, see fuzz/run.sh), then some thousands made of them, the same in every run.
 
-use std::fs;
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
@@ -72,14 +74,16 @@ fn every_target_is_replayed_and_has_its_program() {
     let mut targets = readers::TARGETS.map(|(name, _)| name.to_owned());
     targets.sort();
     assert_eq!(programs, targets);
-    assert_eq!(names(&fuzz.join("corpus")), targets);
+    let archive = archive();
+    let kept: BTreeSet<&str> = archive.file_names().filter_map(|name| name.split('/').nth(1)).collect();
+    assert_eq!(kept.into_iter().collect::<Vec<_>>(), targets);
 }
 
 /// Feeds a target its corpus and what is made of it, on another thread, so that one that hangs is noticed.
 fn hold(target: &str) {
     let (_, read) = readers::TARGETS.into_iter().find(|(name, _)| *name == target).expect("a target");
     let corpus = corpus(target);
-    assert!(corpus.len() >= 5, "{target}: {} inputs in fuzz/corpus", corpus.len());
+    assert!(corpus.len() >= 5, "{target}: {} inputs in fuzz/corpus.zip", corpus.len());
     let (begun, watched) = channel();
     let count = made(target);
     let worker = thread::spawn(move || feed(read, &corpus, count, &begun));
@@ -136,10 +140,24 @@ fn mutated(corpus: &[Vec<u8>], random: &mut ChaCha8Rng) -> Vec<u8> {
     input
 }
 
-/// The inputs of `fuzz/corpus/TARGET`, by name.
+/// What fuzzing kept: `corpus/TARGET/NAME`.
+fn archive() -> zip::ZipArchive<File> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus.zip");
+    zip::ZipArchive::new(File::open(path).expect("a file of the project")).expect("an archive")
+}
+
+/// The inputs of a target, by name.
 fn corpus(target: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
-    names(&folder).into_iter().map(|name| fs::read(folder.join(name)).expect("readable")).collect()
+    let mut archive = archive();
+    let own = format!("corpus/{target}/");
+    let mut names: Vec<String> = archive.file_names().filter(|n| n.starts_with(&own)).map(str::to_owned).collect();
+    names.sort();
+    let read = |name: &String| {
+        let mut input = Vec::new();
+        archive.by_name(name).expect("listed").read_to_end(&mut input).expect("readable");
+        input
+    };
+    names.iter().map(read).collect()
 }
 
 fn names(folder: &Path) -> Vec<String> {
