@@ -3,20 +3,24 @@
 use super::answer::Proof;
 use super::case::{Case, CaseRun, Sealed};
 use super::fit::{Fit, Problem};
+use super::grammar::Reach;
+use super::hypothesis::equally_good;
 use super::model::simulate;
 use super::noise::Noise;
 use super::prove;
 use super::search::Found;
+use super::unlisted::propose;
+use super::without::Step;
 
-/// What was found, or of the other fits that explain the open runs as well the first that does no harm; where all do, nothing: the
-/// answer is then located, not modelled. `proof` becomes that of what is left.
+/// What was found, or of the other fits that explain the open runs as well, laws that nobody listed included, the first that does no
+/// harm; where all do, nothing: the answer is then located, not modelled. `proof` becomes that of what is left.
 pub(super) fn without(
     case: &Case,
     noise: &[Noise],
     mut found: Found,
     proof: &mut Proof,
     seed: u64,
-    warnings: &mut Vec<String>,
+    (warnings, say): (&mut Vec<String>, &dyn Fn(String)),
 ) -> Found {
     if found.best.model.effects.is_empty() || !is_harmful(case, noise, &found.baseline, &found.best, proof) {
         return found;
@@ -26,13 +30,22 @@ pub(super) fn without(
         found.best.model.title()
     ));
     let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
-    for (other, own) in as_good(&found) {
-        let Some(renewed) = prove::prove(&sealed, &found.baseline, &own, seed) else { continue };
-        if !is_harmful(case, noise, &found.baseline, &own, &renewed) {
-            *proof = renewed;
-            exchange(&mut found, other, own);
-            return found;
-        }
+    let harmless = |fit: &Fit| {
+        let renewed = prove::prove(&sealed, &found.baseline, fit, seed)?;
+        (!is_harmful(case, noise, &found.baseline, fit, &renewed)).then_some(renewed)
+    };
+    let other = as_good(&found).into_iter().find_map(|(other, fit)| Some((other, harmless(&fit)?, fit)));
+    if let Some((other, renewed, fit)) = other {
+        *proof = renewed;
+        exchange(&mut found, other, fit);
+        return found;
+    }
+    let mut fits = laws(case, noise, &found, say);
+    fits.retain(|fit| harmless(fit).is_some());
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    if let Some((best, forms)) = equally_good(&open, &fits, found.baseline.cost) {
+        *proof = harmless(&best).unwrap_or_default();
+        return Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found };
     }
     found.withheld = Some(std::mem::replace(&mut found.best, found.baseline.clone()));
     found.rivals.clear();
@@ -40,6 +53,17 @@ pub(super) fn without(
     proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
     (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
     found
+}
+
+/// Laws that explain the open runs as well as what was found, where that is a single effect; cheapest first.
+fn laws(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
+    if case.is_without(Step::OpenSet) || found.best.model.effects.len() > 1 {
+        return Vec::new();
+    }
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let mut fits = propose(&open, &found.baseline, Reach::Plain, say).map_or_else(Vec::new, |p| p.fits);
+    fits.retain(|fit| fit.cost <= found.best.cost + AS_GOOD);
+    fits
 }
 
 /// Where another fit stands beside the answer.

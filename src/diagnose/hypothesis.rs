@@ -51,13 +51,13 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
         return OneLaw::Part(None);
     }
     let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return OneLaw::Part(None) };
-    let Some((best, forms)) = equally_good(&open, &proposals.fits, found.baseline.cost) else {
+    let explains = |fit: &Fit| !leaves_something(&open, fit) && is_clearly_better(&open, found, fit);
+    let alone = equally_good(&open, &proposals.fits, found.baseline.cost).filter(|(best, _)| explains(best));
+    let located = proposals.located.clone();
+    let lawful = alone.map(|(best, forms)| Lawful { best, forms, located });
+    let Some(lawful) = lawful.or_else(|| instead(&open, found, say).filter(|l| explains(&l.best))) else {
         return OneLaw::Part(Some(proposals));
     };
-    if leaves_something(&open, &best) || !is_clearly_better(&open, found, &best) {
-        return OneLaw::Part(Some(proposals));
-    }
-    let lawful = Lawful { best, forms, located: proposals.located.clone() };
     let former = case.runs.clone();
     let (found, renewed) = renew(case, noise, lawful.beside(found));
     let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
@@ -67,6 +67,18 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
     }
     say(format!("{} explains it all", found.best.model.title()));
     OneLaw::All(Box::new(found), renewed)
+}
+
+/// One law that makes the best single effect needless. Where much is missing derivatives at the calibration alone point anywhere; the
+/// effect, wrong as it is, has brought the model nearer to what was measured.
+fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful> {
+    if found.best.model.effects.is_empty() {
+        return None;
+    }
+    let proposals = propose(open, &found.best, Reach::Plain, say)?;
+    let (best, forms) = equally_good(open, &proposals.fits, found.best.cost)?;
+    let (best, forms) = without_idle(open, best, forms);
+    (best.model.effects.len() == 1).then_some(Lawful { best, forms, located: proposals.located })
 }
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
@@ -164,20 +176,41 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
         None => false,
     };
     let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
-    found.forms = near.take(MOST_FORMS).cloned().collect();
+    found.forms = other_forms(&found.best, near);
     is_better
 }
 
 /// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
-fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
+pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
     let first = fits.first()?;
     let criterion = Criterion::of(open, [Some(first), None, None]);
     let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (before - first.cost);
     let same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
     let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
     let best = *same.iter().min_by(|a, b| price(a).total_cmp(&price(b)))?;
-    let others = same.iter().filter(|f| f.model.effects != best.model.effects).take(MOST_FORMS);
-    Some((best.clone(), others.map(|f| (*f).clone()).collect()))
+    Some((best.clone(), other_forms(best, same.into_iter())))
+}
+
+/// Of fits that are as good as another, cheapest first, those that an answer names: one of every other place first, then other shapes.
+fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
+    let mut places = vec![place(best)];
+    let (mut elsewhere, mut here) = (Vec::new(), Vec::new());
+    for fit in same.filter(|f| f.model.effects != best.model.effects) {
+        let own = place(fit);
+        if places.contains(&own) {
+            here.push(fit.clone());
+        } else {
+            places.push(own);
+            elsewhere.push(fit.clone());
+        }
+    }
+    elsewhere.into_iter().chain(here).take(MOST_FORMS).collect()
+}
+
+/// Where the last effect of a fit acts, and on what it depends.
+fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
+    let law = &fit.model.effects.last()?.spec().unlisted()?.law;
+    Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
 }
 
 /// Length of the last effect's law as text: of forms that do the same the shorter stands.
@@ -221,11 +254,27 @@ fn search(
             break;
         }
         let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
+        let (best, forms) = without_idle(open, best, forms);
         here = best.clone();
         let located = lawful.map_or(proposals.located, |l| l.located);
         lawful = Some(Lawful { best, forms, located });
     }
     lawful
+}
+
+/// A fit and its forms without the effects that the law which came last has made needless.
+fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
+    let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
+    let least = least_gain(open.samples());
+    loop {
+        let others = best.model.effects.len() - 1;
+        let fewer: Vec<Option<Fit>> = (0..others).into_par_iter().map(|i| without(&best, i)).collect();
+        let idle = fewer.into_iter().enumerate().filter_map(|(i, fit)| Some((i, fit?)));
+        let idle = idle.filter(|(_, fit)| fit.cost - best.cost < least).min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        let Some((i, fit)) = idle else { return (best, forms) };
+        forms = forms.par_iter().filter_map(|form| without(form, i)).collect();
+        best = fit;
+    }
 }
 
 /// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
