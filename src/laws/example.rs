@@ -42,7 +42,7 @@ impl PortSpec {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let table = Port::Friction.spec().example_table();
     /// assert_eq!(table.port, "muscle.friction");
-    /// assert_eq!(table.law(&Surroundings::default())?.values(), [0.2, 2e-3]);
+    /// assert_eq!(table.law(&Surroundings::default())?.values(), [0.2, 1e6]);
     /// # Ok(())
     /// # }
     /// ```

@@ -182,7 +182,7 @@ pub const PORTS: [PortSpec; 24] = [
         ("muscle", "friction", C::Muscle),
         (&["N"], true, true),
         "level of the friction between tube and coil, m0 + m1 p; the friction state gives it its direction",
-        (Scales, "1 + a * exp(-abs(speed_m_s) / speed_scale_m_s)"),
+        (Scales, "1 + a * pressure_pa / scale_pa"),
     ),
     port(
         Port::Damping,
