@@ -55,9 +55,7 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost).filter(|(best, _)| explains(best));
     let located = proposals.located.clone();
     let lawful = alone.map(|(best, forms)| Lawful { best, forms, located });
-    let is_bent = !proposals.keep_their_promise(&found.baseline);
-    let beside = || if is_bent { instead(&open, found, say) } else { None };
-    let Some(lawful) = lawful.or_else(|| beside().filter(|l| explains(&l.best))) else {
+    let Some(lawful) = lawful.or_else(|| instead(&open, found, say).filter(|l| explains(&l.best))) else {
         return OneLaw::Part(Some(proposals));
     };
     let former = case.runs.clone();
@@ -71,7 +69,7 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
     OneLaw::All(Box::new(found), renewed)
 }
 
-/// One law that makes the best single effect needless. Where so much is missing that promises are not kept, derivatives at the calibration alone point anywhere; the
+/// One law that makes the best single effect needless. Where much is missing derivatives at the calibration alone point anywhere; the
 /// effect, wrong as it is, has brought the model nearer to what was measured.
 fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful> {
     if found.best.model.effects.is_empty() {

@@ -44,16 +44,7 @@ pub(super) struct Proposals {
     pub fits: Vec<Fit>,
 }
 
-/// Share of the best promise that a refit keeps where the misfit is small enough for derivatives.
-const KEPT: f64 = 0.9;
-
 impl Proposals {
-    /// Whether the best refit has got nearly what the best place promised at the fit that they began from.
-    pub fn keep_their_promise(&self, from: &Fit) -> bool {
-        let promised = self.located.first().map_or(0.0, |l| l.gain);
-        self.fits.first().is_some_and(|best| from.cost - best.cost > KEPT * promised)
-    }
-
     /// The best of them fitted again to a problem with other weights or steps.
     pub fn again(self, problem: &Problem) -> Self {
         let best = &self.fits[..self.fits.len().min(FINISHED)];
