@@ -129,8 +129,9 @@ fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option
         return Some(0.0);
     }
     let simulated = simulate(case, run, &fit.model, &fit.x)?;
-    let of_channel = |((samples, values), noise): ((&Vec<(usize, f64)>, &Vec<f64>), &Noise)| -> f64 {
+    let channels = run.unheld.iter().zip(&simulated).zip(noise);
+    let of_channel = channels.map(|((samples, values), noise)| -> f64 {
         samples.iter().map(|(i, measured)| ((measured - values[*i]) / noise.scale()).powi(2)).sum()
-    };
-    Some(run.unheld.iter().zip(&simulated).zip(noise).map(of_channel).sum())
+    });
+    Some(of_channel.sum())
 }

@@ -112,7 +112,7 @@ impl Begun {
     ///
     /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
     /// beginnings are tried as well.
-    pub fn to_the_end(mut self, problem: &Problem, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    pub fn finish(mut self, problem: &Problem, variants: &[Variant], say: &dyn Fn(String)) -> Found {
         let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();
         if self.is_new && self.way.best.model.effects.is_empty() {

@@ -14,7 +14,7 @@ pub(super) fn search_and_weigh(
     variants: &[Variant],
     say: &dyn Fn(String),
 ) -> (Found, Vec<Noise>) {
-    let mut found = begun.to_the_end(&open_runs(case, &noise), variants, say);
+    let mut found = begun.finish(&open_runs(case, &noise), variants, say);
     for _ in 0..2 {
         if found.best.model.effects.is_empty() {
             break;
@@ -35,7 +35,7 @@ pub(super) fn search_and_weigh(
             break;
         }
         let begun = Begun::again(&problem, (renewed.baseline, renewed.start), variants, found.known(), say);
-        found = begun.to_the_end(&problem, variants, say);
+        found = begun.finish(&problem, variants, say);
     }
     (found, noise)
 }
