@@ -12,8 +12,9 @@ use super::search::Found;
 use super::unlisted::propose;
 use super::without::Step;
 
-/// What was found, or of the other fits that explain the open runs as well, laws that nobody listed included, the first that does no
-/// harm; where all do, nothing: the answer is then located, not modelled. `proof` becomes that of what is left.
+/// What was found, if it does no harm. Else, where cables go slack, another fit that explains the open runs as well, laws that nobody
+/// listed included: that which is nearest to what was left out of them. The held-out runs choose nothing; they refuse, the second time
+/// for good: the answer is then located, not modelled. `proof` becomes that of what is left.
 pub(super) fn without(
     case: &Case,
     noise: &[Noise],
@@ -30,22 +31,13 @@ pub(super) fn without(
         found.best.model.title()
     ));
     let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
-    let harmless = |fit: &Fit| {
-        let renewed = prove::prove(&sealed, &found.baseline, fit, seed)?;
-        (!is_harmful(case, noise, &found.baseline, fit, &renewed)).then_some(renewed)
-    };
-    let other = as_good(&found).into_iter().find_map(|(other, fit)| Some((other, harmless(&fit)?, fit)));
-    if let Some((other, renewed, fit)) = other {
-        *proof = renewed;
-        exchange(&mut found, other, fit);
-        return found;
-    }
-    let mut fits = laws(case, noise, &found, say);
-    fits.retain(|fit| harmless(fit).is_some());
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    if let Some((best, forms)) = equally_good(&open, &fits, found.baseline.cost) {
-        *proof = harmless(&best).unwrap_or_default();
-        return Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found };
+    let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
+    if let Some(other) = other {
+        let renewed = prove::prove(&sealed, &other.baseline, &other.best, seed);
+        if let Some(renewed) = renewed.filter(|p| !is_harmful(case, noise, &other.baseline, &other.best, p)) {
+            *proof = renewed;
+            return other;
+        }
     }
     found.withheld = Some(std::mem::replace(&mut found.best, found.baseline.clone()));
     found.rivals.clear();
@@ -55,13 +47,36 @@ pub(super) fn without(
     found
 }
 
+/// Of the fits that explain the open runs as well as what was found, that which is nearest to what was left out of them; none where that
+/// is what was found.
+fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Option<Found> {
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let distance = |fit: &Fit| left_out(&open, fit).unwrap_or(f64::INFINITY);
+    let mut least = distance(&found.best);
+    let mut nearest = None;
+    for (place, fit) in as_good(found) {
+        if distance(&fit) < least {
+            least = distance(&fit);
+            nearest = Some((place, fit));
+        }
+    }
+    let mut laws = laws(&open, found, say);
+    laws.retain(|fit| distance(fit) < least - AS_GOOD);
+    if let Some((best, forms)) = equally_good(&open, &laws, found.baseline.cost) {
+        return Some(Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found.clone() });
+    }
+    let (place, fit) = nearest?;
+    let mut other = found.clone();
+    exchange(&mut other, place, fit);
+    Some(other)
+}
+
 /// Laws that explain the open runs as well as what was found, where that is a single effect; cheapest first.
-fn laws(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
-    if case.is_without(Step::OpenSet) || found.best.model.effects.len() > 1 {
+fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
+    if open.case.is_without(Step::OpenSet) || found.best.model.effects.len() > 1 {
         return Vec::new();
     }
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    let mut fits = propose(&open, &found.baseline, Reach::Plain, say).map_or_else(Vec::new, |p| p.fits);
+    let mut fits = propose(open, &found.baseline, Reach::Plain, say).map_or_else(Vec::new, |p| p.fits);
     fits.retain(|fit| fit.cost <= found.best.cost + AS_GOOD);
     fits
 }
@@ -114,13 +129,15 @@ fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &P
 /// Chi² that a fit gains on the held-out runs, and that it loses where samples of any run are left out; `None` where it cannot be
 /// simulated.
 fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Option<[f64; 2]> {
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
+    let [sealed, whole] = [Sealed::Sealed, Sealed::Both].map(|runs| Problem { case, runs: case.subset(runs), noise });
     let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x);
-    let left_out = |fit: &Fit| -> Option<f64> {
-        let each = case.runs.iter().map(|run| at_left_out(case, run, noise, fit));
-        each.collect::<Option<Vec<f64>>>().map(|all| all.iter().sum())
-    };
-    Some([cost(baseline)? - cost(fit)?, left_out(fit)? - left_out(baseline)?])
+    Some([cost(baseline)? - cost(fit)?, left_out(&whole, fit)? - left_out(&whole, baseline)?])
+}
+
+/// Sum of squares of what a fit leaves at the samples that are left out of its runs; `None` where it cannot be simulated.
+fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
+    let each = problem.runs.iter().map(|run| at_left_out(problem.case, run, problem.noise, fit));
+    each.sum()
 }
 
 /// Sum of squares of what a fit leaves at the samples of a run that are left out, in the units of [`Fit::cost`].
