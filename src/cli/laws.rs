@@ -109,7 +109,9 @@ fn in_words(spec: &PortSpec) -> String {
 fn energy(spec: &PortSpec) -> &'static str {
     match (spec.carrier, spec.dissipates) {
         (Carrier::Sensor, _) => "none: a sensor only shows",
-        (_, true) => "the port takes energy; a law that supplies some is warned about by `smam run --energy`",
+        (_, true) => {
+            "the port takes energy; `smam run --energy` warns of a law that brings in more than the element loses"
+        }
         (_, false) => "`smam run --energy` shows what the law brings in or takes",
     }
 }

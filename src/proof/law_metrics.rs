@@ -20,86 +20,68 @@ pub(super) fn law_metrics(rows: &[Row]) -> Vec<Metric> {
     }
     let visible: Vec<&Row> = all.iter().copied().filter(|r| r.excess >= VISIBLE).collect();
     let one: Vec<&Row> = visible.iter().copied().filter(|r| r.hiding == Hiding::Law && r.is_detected()).collect();
-    let law = |r: &Row, is: fn(&FoundLaw) -> bool| r.law.as_ref().is_some_and(is);
-    let is_element = |r: &Row| r.element.as_deref() == r.secrets.first().map(|s| s.element.as_str());
-    let within = |rank: Option<usize>, most: usize| rank.is_some_and(|n| n <= most);
-    let names = |key, what| (key, what);
-    let mut figures = vec![
-        share(
-            names("law_detection", "drawn laws detected at excess chi2/n >= 0.1"),
-            &visible,
-            Row::is_detected,
-            Goal::AtLeast(0.98),
-        ),
-        share(names("law_element", "element right (one law, detected)"), &one, is_element, Goal::AtLeast(0.95)),
-        share(
-            names("law_port", "port right, first or in a set of three"),
-            &one,
-            |r| r.law.as_ref().is_some_and(|l| within(l.port_rank, SET)),
-            Goal::AtLeast(0.85),
-        ),
-        share(
-            names("law_first", "port and variable right, first"),
-            &one,
-            |r| r.law.as_ref().is_some_and(|l| within(l.rank, 1)),
-            Goal::AtLeast(0.6),
-        ),
-        share(
-            names("law_set", "port and variable right, in a set of three"),
-            &one,
-            |r| r.law.as_ref().is_some_and(|l| within(l.rank, SET)),
-            Goal::AtLeast(0.8),
-        ),
-    ];
-    let drawn: Vec<&Row> = one.iter().copied().filter(|r| law(r, |l| l.curve_error.is_some())).collect();
-    figures.push(share(
-        names("law_curve", "curve within 10 % where port and variable are right"),
-        &drawn,
-        |r| law(r, |l| l.curve_error.is_some_and(|e| e <= CURVE)),
-        Goal::AtLeast(0.6),
-    ));
-    figures.push(share(
-        names("law_curve_beyond", "the same over one and a half times the range"),
-        &drawn,
-        |r| law(r, |l| l.curve_error_beyond.is_some_and(|e| e <= CURVE)),
-        Goal::AtLeast(0.6),
-    ));
-    let gaps = |of: &dyn Fn(&Row) -> Option<f64>| -> Vec<f64> {
-        visible.iter().filter(|r| r.is_detected()).filter_map(|r| of(r)).collect()
-    };
-    let (same, larger) = (gaps(&|r| r.gap_closed), gaps(&|r| r.law.as_ref()?.gap_larger));
-    figures.push(order(
-        names("law_gap_median", "gap closed on what was kept back, median"),
-        &same,
-        0.5,
-        Goal::AtLeast(0.97),
-    ));
-    figures.push(order(names("law_gap_tenth", "the same, 10th percentile"), &same, 0.1, Goal::AtLeast(0.8)));
-    figures.push(order(
-        names("law_gap_larger", "the same with 1.5 times the stroke, median"),
-        &larger,
-        0.5,
-        Goal::AtLeast(0.9),
-    ));
-    figures.push(share(
-        names("law_worse", "corrected worse than calibrated on what was kept back"),
-        &all,
-        |r| r.gap_closed.is_some_and(|g| g < -WORSE),
-        Goal::AtMost(0.0),
-    ));
-    figures.push(share(
-        names("law_certain", "certain (> 0.9) of what is not there"),
-        &all,
-        is_certainly_wrong,
-        Goal::AtMost(0.02),
-    ));
-    figures.push(share(
-        names("law_time", "answered within 30 s (bench), 90 s (others)"),
-        &all,
-        in_time,
-        Goal::AtLeast(0.95),
-    ));
+    let detected = ("law_detection", "drawn laws detected at excess chi2/n >= 0.1");
+    let mut figures = vec![share(detected, &visible, Row::is_detected, Goal::AtLeast(0.98))];
+    figures.extend(places(&one));
+    figures.extend(forms(&one));
+    figures.extend(gaps(&visible));
+    figures.extend(harms(&all));
     figures
+}
+
+/// Whether the answer says where the law acts, and on what it depends.
+fn places(one: &[&Row]) -> [Metric; 4] {
+    let is_element = |r: &Row| r.element.as_deref() == r.secrets.first().map(|s| s.element.as_str());
+    let within = |rank: fn(&FoundLaw) -> Option<usize>, most: usize| {
+        move |r: &Row| r.law.as_ref().and_then(rank).is_some_and(|n| n <= most)
+    };
+    let goal = Goal::AtLeast;
+    let port = ("law_port", "port right, first or in a set of three");
+    let set = ("law_set", "port and variable right, in a set of three");
+    [
+        share(("law_element", "element right (one law, detected)"), one, is_element, goal(0.95)),
+        share(port, one, within(|l| l.port_rank, SET), goal(0.85)),
+        share(("law_first", "port and variable right, first"), one, within(|l| l.rank, 1), goal(0.6)),
+        share(set, one, within(|l| l.rank, SET), goal(0.8)),
+    ]
+}
+
+/// How near its curve is, where port and variable are right.
+fn forms(one: &[&Row]) -> [Metric; 2] {
+    let error = |of: fn(&FoundLaw) -> Option<f64>| move |r: &Row| r.law.as_ref().and_then(of);
+    let near = |of: fn(&FoundLaw) -> Option<f64>| move |r: &Row| error(of)(r).is_some_and(|e| e <= CURVE);
+    let drawn: Vec<&Row> = one.iter().copied().filter(|r| error(|l| l.curve_error)(r).is_some()).collect();
+    let goal = Goal::AtLeast(0.6);
+    let curve = ("law_curve", "curve within 10 % where port and variable are right");
+    let beyond = ("law_curve_beyond", "the same over one and a half times the range");
+    [share(curve, &drawn, near(|l| l.curve_error), goal), share(beyond, &drawn, near(|l| l.curve_error_beyond), goal)]
+}
+
+/// What the corrected scene is worth on the recordings kept back.
+fn gaps(visible: &[&Row]) -> [Metric; 3] {
+    let of = |gap: fn(&Row) -> Option<f64>| -> Vec<f64> {
+        visible.iter().filter(|r| r.is_detected()).filter_map(|r| gap(r)).collect()
+    };
+    let (same, larger) = (of(|r| r.gap_closed), of(|r| r.law.as_ref()?.gap_larger));
+    let goal = Goal::AtLeast;
+    [
+        order(("law_gap_median", "gap closed on what was kept back, median"), &same, 0.5, goal(0.97)),
+        order(("law_gap_tenth", "the same, 10th percentile"), &same, 0.1, goal(0.8)),
+        order(("law_gap_larger", "the same with 1.5 times the stroke, median"), &larger, 0.5, goal(0.9)),
+    ]
+}
+
+/// How often it harms, misleads or keeps waiting.
+fn harms(all: &[&Row]) -> [Metric; 3] {
+    let is_worse = |r: &Row| r.gap_closed.is_some_and(|g| g < -WORSE);
+    let worse = ("law_worse", "corrected worse than calibrated on what was kept back");
+    let certain = ("law_certain", "certain (> 0.9) of what is not there");
+    let time = ("law_time", "answered within 30 s (bench), 90 s (others)");
+    [
+        share(worse, all, is_worse, Goal::AtMost(0.0)),
+        share(certain, all, is_certainly_wrong, Goal::AtMost(0.02)),
+        share(time, all, in_time, Goal::AtLeast(0.95)),
+    ]
 }
 
 /// Whether anything is named with certainty where neither it nor a form beside it is at the law's port, and no effect that was hidden.
