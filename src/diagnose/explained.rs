@@ -10,7 +10,7 @@ use super::error::DiagnoseError;
 use super::fit::Problem;
 use super::hypothesis::{self, OneLaw};
 use super::noise::{self, Noise};
-use super::search::{Begun, Found};
+use super::search::{Begun, Bound, Found};
 use super::unlisted::Proposals;
 use super::verdict::Excess;
 use super::{broad, harm, prove, visible, weigh};
@@ -48,54 +48,105 @@ pub(super) fn explain(
     let begun = Begun::with_one(&weigh::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
     let explained = match hypothesis::one_law(case, &base.noise, &begun.found(), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
-        OneLaw::Part(proposals) => {
-            let listed = by_catalogue(case, (begun, base.noise), &variants, seed, say)?;
-            by_laws(case, listed, proposals, seed, say)?
+        OneLaw::Part(with_law) => {
+            let noise = base.noise;
+            let search = Search { variants: &variants, seed, say };
+            match search.short_of_law(case, begun.clone(), noise.clone(), with_law)? {
+                Some(explained) => explained,
+                None => search.whole(case, begun, noise, None)?,
+            }
         }
     };
     let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
 
-/// Searches the catalogue on from what has begun, and holds what is found against the sealed runs.
-fn by_catalogue(
-    case: &mut Case,
-    (begun, noise): (Begun, Vec<Noise>),
-    variants: &[Variant],
+/// The search for several effects and several laws.
+struct Search<'a> {
+    variants: &'a [Variant],
     seed: u64,
-    say: &dyn Fn(String),
-) -> Result<Explained, DiagnoseError> {
-    let (found, noise) = weigh::search_and_weigh(case, noise, begun, variants, say);
-    let found = broad::broaden(case, &noise, found, variants, say);
-    let case = &*case;
-    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
-    let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
-    let mut found = confirm::prune(&open, found, variants, say);
-    visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
-    let mut warnings = Vec::new();
-    let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
-    let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
-    say("sealed runs".to_owned());
-    let mut explained = proven(case, found, noise.clone(), seed)?;
-    explained.confirmed = confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
-    Ok(Explained { of_found: warnings, ..explained })
+    say: &'a dyn Fn(String),
 }
 
-/// Puts laws that nobody listed in the place of what was found, where they explain clearly more; `begun`: those that were proposed
-/// before.
-fn by_laws(
-    case: &mut Case,
-    mut listed: Explained,
-    begun: Option<Proposals>,
-    seed: u64,
-    say: &dyn Fn(String),
-) -> Result<Explained, DiagnoseError> {
-    let Explained { found, confirmed, excess, noise, .. } = &mut listed;
-    let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, begun, say) else {
-        return Ok(listed);
-    };
-    let (found, noise) = hypothesis::renew(case, noise, found);
-    Ok(Explained { confirmed: listed.confirmed, ..proven(case, found, noise, seed)? })
+impl Search<'_> {
+    /// The search with what one law has shown: where that outdoes several effects of the catalogue, these are not sought to the end. `None`
+    /// where they were not, and no law stands in their place after all.
+    fn short_of_law(
+        &self,
+        case: &mut Case,
+        begun: Begun,
+        noise: Vec<Noise>,
+        with_law: hypothesis::Begun,
+    ) -> Result<Option<Explained>, DiagnoseError> {
+        let law = Bound(with_law.law.as_ref());
+        let (found, noise) = weigh::search_and_weigh(case, noise, begun, (self.variants, law), self.say);
+        if !law.outdoes(&weigh::open_runs(case, &noise), &found.baseline, &found.best) {
+            let listed = self.held_against_sealed(case, found, noise)?;
+            return self.with_laws(case, listed, with_law.proposals).map(Some);
+        }
+        let mut cut_short = Explained { confirmed: Confirmed::InPart, ..proven(case, found, noise, self.seed)? };
+        self.by_laws(case, &mut cut_short, with_law.proposals)
+    }
+
+    /// The search to the end; `begun`: laws that were proposed before.
+    fn whole(
+        &self,
+        case: &mut Case,
+        catalogue: Begun,
+        noise: Vec<Noise>,
+        begun: Option<Proposals>,
+    ) -> Result<Explained, DiagnoseError> {
+        let (found, noise) = weigh::search_and_weigh(case, noise, catalogue, (self.variants, Bound(None)), self.say);
+        let listed = self.held_against_sealed(case, found, noise)?;
+        self.with_laws(case, listed, begun)
+    }
+
+    /// What the catalogue explains, without what does not stand, held against the sealed runs.
+    fn held_against_sealed(
+        &self,
+        case: &mut Case,
+        found: Found,
+        noise: Vec<Noise>,
+    ) -> Result<Explained, DiagnoseError> {
+        let (variants, say) = (self.variants, self.say);
+        let found = broad::broaden(case, &noise, found, variants, say);
+        let case = &*case;
+        let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
+        let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
+        let mut found = confirm::prune(&open, found, variants, say);
+        visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
+        let mut warnings = Vec::new();
+        let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
+        let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
+        say("sealed runs".to_owned());
+        let mut explained = proven(case, found, noise.clone(), self.seed)?;
+        explained.confirmed = confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
+        Ok(Explained { of_found: warnings, ..explained })
+    }
+
+    fn with_laws(
+        &self,
+        case: &mut Case,
+        mut listed: Explained,
+        begun: Option<Proposals>,
+    ) -> Result<Explained, DiagnoseError> {
+        Ok(self.by_laws(case, &mut listed, begun)?.unwrap_or(listed))
+    }
+
+    /// Laws that nobody listed in the place of what was found, where they explain clearly more.
+    fn by_laws(
+        &self,
+        case: &mut Case,
+        listed: &mut Explained,
+        begun: Option<Proposals>,
+    ) -> Result<Option<Explained>, DiagnoseError> {
+        let Explained { found, confirmed, excess, noise, .. } = listed;
+        let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, begun, self.say) else {
+            return Ok(None);
+        };
+        let (found, noise) = hypothesis::renew(case, noise, found);
+        Ok(Some(Explained { confirmed: listed.confirmed, ..proven(case, found, noise, self.seed)? }))
+    }
 }
 
 /// What was found with what it is worth on the sealed runs.

@@ -140,6 +140,11 @@ impl Slot {
         self.shapes
     }
 
+    /// The same slot, whose law may have the shapes that are tried where the simple ones leave something.
+    pub fn bent(&self) -> Self {
+        Self { shapes: &MORE_SHAPES, ..self.clone() }
+    }
+
     /// Those of which its curve is made up when slots are screened.
     pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
         let is_constant = self.is_constant();
@@ -368,6 +373,41 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let values = placed.spec().typical();
     Some(Variant { placed, values })
 }
+
+/// A slot's law as a curve: the sum of the shapes of its basis, each with a size of its own, at the slot's scale.
+pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
+    let (acts, unit, typical) = action(slot.port)?;
+    let ending = ending(&slot.variable);
+    let scale = format!("scale{ending}");
+    let x = slot.reading.text(&slot.variable, &scale);
+    let terms: Vec<String> = slot.basis().zip(SIZES).map(|(s, a)| format!("{a} * {}", spelled(s.text, &x))).collect();
+    let number = |value: f64, unit: Option<&str>| ParameterTable {
+        value,
+        unit: unit.map(str::to_owned),
+        ..ParameterTable::default()
+    };
+    let mut parameter: BTreeMap<String, ParameterTable> =
+        SIZES.iter().take(terms.len()).map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
+    parameter.insert(scale, number(slot.scale, ending.is_empty().then_some("1")));
+    let sum = terms.join(" + ");
+    let (adds, scales) = match acts {
+        Acts::Adds => (Some(sum), None),
+        Acts::Scales => (None, Some(format!("1 + {sum}"))),
+    };
+    let port = slot.address.clone();
+    let table = LawTable { name: slot.name(), port, adds, scales, parameter, ..LawTable::default() };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let own = Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true };
+    let fixed = Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false };
+    let is_size = |name: &str| SIZES.contains(&name);
+    let numbers: Vec<Fitted> = law.parameters.iter().map(|p| if is_size(&p.name) { own } else { fixed }).collect();
+    let placed = written(case, &table, &law, &numbers, law.parameter(SIZES[0])?);
+    let values = placed.spec().typical();
+    Some(Variant { placed, values })
+}
+
+/// Sizes of a curve's shapes.
+const SIZES: [&str; 5] = ["a", "b", "c", "d", "e"];
 
 /// A number that may be fifty times as great or as small.
 fn around(typical: f64, is_fitted: bool) -> Fitted {

@@ -3,12 +3,14 @@
 use rayon::prelude::*;
 
 use super::case::{Case, Sealed};
+use super::elsewhere::elsewhere;
 use super::fit::{Fit, Problem};
 use super::grammar::Reach;
 use super::noise::{self, Noise};
 use super::refits::{foretells, foretells_runs};
 use super::search::{Found, MOST_EFFECTS, least_gain};
-use super::unlisted::{self, Located, Proposals, propose};
+use super::shown::Located;
+use super::unlisted::{Proposals, propose};
 use super::verdict::Excess;
 use super::without::Step;
 use super::{Confirmed, verdict, weigh};
@@ -21,15 +23,17 @@ const EXPLAINED: f64 = 0.02;
 const CLEARLY: f64 = 20.0;
 /// Standard errors from which what is left is more than noise.
 const SEEN: f64 = 3.0;
-/// Laws are called equally good within so much chi², in units of the dispersion, and within this share of what they explain.
-const SAME_CHI2: f64 = 10.0;
-const SAME_SHARE: f64 = 5e-4;
+/// Laws are called equally good within so many units of chi²: odds of one to twenty.
+const SAME: f64 = 6.0;
+/// Rough fits are fitted to the end within so many times that.
+const NEARLY: f64 = 20.0;
 /// What a letter of a law costs among forms that are equally good, in units of the criterion.
 const PER_LETTER: f64 = 0.02;
 /// Forms that an answer names beside its own, at most.
 const MOST_FORMS: usize = 4;
 
 /// A model with a law, the others that are as good, and where the misfit sits.
+#[derive(Clone)]
 struct Lawful {
     best: Fit,
     forms: Vec<Fit>,
@@ -40,30 +44,44 @@ struct Lawful {
 pub(super) enum OneLaw {
     /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
     All(Box<Found>, Vec<Noise>),
-    /// It does not, or was not asked for: the proposals that there are, for later.
-    Part(Option<Proposals>),
+    /// It does not, or was not asked for.
+    Part(Begun),
+}
+
+/// What has been tried with one law, for later.
+#[derive(Default)]
+pub(super) struct Begun {
+    pub proposals: Option<Proposals>,
+    /// The best law that is clearly better than any single effect.
+    pub law: Option<Fit>,
 }
 
 /// Looks for one law in the place of the best single effect, where that leaves more than noise.
 pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
+    let nothing = OneLaw::Part(Begun::default());
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
-        return OneLaw::Part(None);
+        return nothing;
     }
-    let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return OneLaw::Part(None) };
-    let explains = |fit: &Fit| !leaves_something(&open, fit) && is_clearly_better(&open, found, fit);
-    let alone = equally_good(&open, &proposals.fits, found.baseline.cost).filter(|(best, _)| explains(best));
-    let located = proposals.located.clone();
-    let lawful = alone.map(|(best, forms)| Lawful { best, forms, located });
-    let Some(lawful) = lawful.or_else(|| instead(&open, found, say).filter(|l| explains(&l.best))) else {
-        return OneLaw::Part(Some(proposals));
+    let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return nothing };
+    let is_better = |lawful: &Lawful| is_clearly_better(&open, found, &lawful.best);
+    let is_all = |lawful: &&Lawful| !leaves_something(&open, &lawful.best);
+    let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
+        .map(|(best, forms)| Lawful { best, forms, located: proposals.located.clone() })
+        .filter(is_better);
+    let instead = match alone.as_ref().filter(is_all) {
+        Some(_) => None,
+        None => instead(&open, found, say).filter(is_better),
     };
+    let best = alone.into_iter().chain(instead).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
+    let part = |law| OneLaw::Part(Begun { proposals: Some(proposals), law });
+    let Some(lawful) = best.as_ref().filter(is_all) else { return part(best.map(|l| l.best)) };
     let former = case.runs.clone();
-    let (found, renewed) = renew(case, noise, lawful.beside(found));
+    let (found, renewed) = renew(case, noise, lawful.clone().beside(found));
     let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
     if leaves_something(&open, &found.best) {
         case.runs = former;
-        return OneLaw::Part(Some(proposals));
+        return part(best.map(|l| l.best));
     }
     say(format!("{} explains it all", found.best.model.title()));
     OneLaw::All(Box::new(found), renewed)
@@ -149,13 +167,22 @@ pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Foun
     };
     let open = weigh::open_runs(case, &renewed.noise);
     let again: Vec<Option<Fit>> = found.forms.par_iter().map(|f| open.fit(&f.model, &f.x)).collect();
-    let mut fits: Vec<Fit> = again.into_iter().flatten().chain([renewed.start]).collect();
+    let mut fits: Vec<Fit> = again.into_iter().flatten().collect();
+    fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
         (found.rivals_against, found.best, found.forms) = (best.cost, best, forms);
     }
     found.baseline = renewed.baseline;
     (found, renewed.noise)
+}
+
+/// A fit with a law, and fits with one at another place that does the same, fitted to the end where they come near. `before` is the chi² without it.
+fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
+    let tie = tie(open, &fit, before);
+    let rough = elsewhere(open, &fit);
+    let near = rough.par_iter().filter(|f| f.cost < fit.cost + NEARLY * tie);
+    near.filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
 }
 
 /// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
@@ -167,9 +194,9 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
         return false;
     }
     let criterion = Criterion::of(open, [Some(&found.best), None, None]);
-    let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (found.baseline.cost - found.best.cost);
+    let tie = tie(open, &found.best, found.baseline.cost);
     let own = &effect.spec().port;
-    let others = unlisted::alternatives(open, &found.baseline, &found.best, &variables);
+    let others = elsewhere(open, &found.best);
     let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
     let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().and_then(|e| e.spec().unlisted()) {
         Some(written) => written.law.address.port.spec().name() != *own,
@@ -180,31 +207,50 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
     is_better
 }
 
+/// Chi² within which other models are as good as one; `before` is the chi² without its last effect.
+fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
+    SAME * verdict::unit(before - fit.cost, (fit.cost - open.noise_cost()).max(0.0))
+}
+
 /// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
 pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
     let first = fits.first()?;
     let criterion = Criterion::of(open, [Some(first), None, None]);
-    let tie = SAME_CHI2 * criterion.dispersion + SAME_SHARE * (before - first.cost);
+    let tie = tie(open, first, before);
     let same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
     let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
     let best = *same.iter().min_by(|a, b| price(a).total_cmp(&price(b)))?;
     Some((best.clone(), other_forms(best, same.into_iter())))
 }
 
-/// Of fits that are as good as another, cheapest first, those that an answer names: one of every other place first, then other shapes.
+/// Of fits that are as good as another, cheapest first, those that an answer names: one on every other element first, then one at every
+/// other place, then other shapes. What the sensors cannot tell apart comes before how it may be written.
 fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
-    let mut places = vec![place(best)];
-    let (mut elsewhere, mut here) = (Vec::new(), Vec::new());
-    for fit in same.filter(|f| f.model.effects != best.model.effects) {
-        let own = place(fit);
-        if places.contains(&own) {
-            here.push(fit.clone());
-        } else {
-            places.push(own);
-            elsewhere.push(fit.clone());
+    let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();
+    let mut named = vec![best];
+    for is_new in [is_on_another_element, is_at_another_place, |_: &Fit, _: &Fit| true] {
+        for fit in &same {
+            let is_named = named.iter().any(|own| own.model.effects == fit.model.effects);
+            if !is_named && named.iter().all(|own| is_new(own, fit)) {
+                named.push(fit);
+            }
         }
     }
-    elsewhere.into_iter().chain(here).take(MOST_FORMS).collect()
+    named.into_iter().skip(1).take(MOST_FORMS).cloned().collect()
+}
+
+fn is_on_another_element(own: &Fit, other: &Fit) -> bool {
+    element(own) != element(other)
+}
+
+fn is_at_another_place(own: &Fit, other: &Fit) -> bool {
+    place(own) != place(other)
+}
+
+/// The element that the last effect of a fit acts on.
+fn element(fit: &Fit) -> Option<String> {
+    let last = fit.model.effects.last()?;
+    Some(last.spec().unlisted().map_or_else(|| last.element.to_string(), |own| own.law.address.element()))
 }
 
 /// Where the last effect of a fit acts, and on what it depends.

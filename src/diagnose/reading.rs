@@ -39,7 +39,8 @@ fn rate(of: Quantity) -> Option<Quantity> {
     }
 }
 
-/// Whether anything of it can be remembered that it does not tell itself.
+/// Whether anything of it can be remembered that it does not tell itself. A rate behind by a lag is how far its quantity is ahead of that;
+/// the flow's is none of the variables.
 fn has_past(of: Quantity) -> bool {
     !matches!(of, Quantity::Time | Quantity::Speed | Quantity::AngularSpeed | Quantity::PlungerSpeed | Quantity::Flow)
 }
@@ -50,8 +51,10 @@ pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
     // Each product once.
     let later = all.iter().skip_while(|(q, _)| *q != own).skip(1);
     let mut found: Vec<Reading> = later.map(|(q, scale)| Reading::Times(*q, *scale)).collect();
-    if has_past(own) {
+    if has_past(own) || own == Quantity::Flow {
         found.extend(LAGS_S.map(Reading::Behind));
+    }
+    if has_past(own) {
         found.extend(LAGS_S.map(Reading::Ahead));
         found.push(Reading::Greatest);
         found.extend(WIDTHS.map(|w| Reading::Play(w * scale)));

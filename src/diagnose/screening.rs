@@ -77,6 +77,7 @@ pub(super) fn start_values(s: &Screened) -> Vec<f64> {
 }
 
 /// A fit with its slopes, and what the signatures of all variants promise there, best first.
+#[derive(Clone)]
 pub(super) struct Screening {
     pub from: Fit,
     pub slopes: DMatrix<f64>,

@@ -54,7 +54,22 @@ impl Found {
     }
 }
 
+/// A law that nobody listed against which the search for several effects is held: where it leaves little, they must leave less.
+#[derive(Clone, Copy)]
+pub(super) struct Bound<'a>(pub Option<&'a Fit>);
+
+impl Bound<'_> {
+    /// Whether the law leaves less than several effects do, and not much.
+    pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
+        self.0.is_some_and(|law| {
+            let is_lower = law.cost < several.cost - least_gain(problem.samples());
+            several.model.effects.len() > 1 && is_lower && !leaves_much(problem, baseline, law)
+        })
+    }
+}
+
 /// A search that has begun: where its way up stands, and what it has come by.
+#[derive(Clone)]
 pub(super) struct Begun {
     baseline: Fit,
     way: Way,
@@ -72,7 +87,7 @@ impl Begun {
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
         let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
         let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
-        let way = climb(&mut swaps, &baseline, way, &mut seen, 1, say);
+        let way = climb(&mut swaps, &baseline, way, &mut seen, (1, Bound(None)), say);
         Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
     }
 
@@ -111,16 +126,17 @@ impl Begun {
     /// Goes on to the end.
     ///
     /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
-    /// beginnings are tried as well.
-    pub fn finish(mut self, problem: &Problem, variants: &[Variant], say: &dyn Fn(String)) -> Found {
+    /// beginnings are tried as well. Where a law outdoes two effects the way ends there.
+    pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
         let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();
         if self.is_new && self.way.best.model.effects.is_empty() {
             self.way = several_to_begin(&mut swaps, self.way, say);
         }
-        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, MOST_EFFECTS, say);
+        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (MOST_EFFECTS, law), say);
         let best = &self.way.best;
-        if !self.is_new || best.model.effects.len() < 2 || !leaves_much(problem, &baseline, best) {
+        let is_done = law.outdoes(problem, &baseline, best) || !leaves_much(problem, &baseline, best);
+        if !self.is_new || best.model.effects.len() < 2 || is_done {
             return self.found();
         }
         for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
@@ -131,7 +147,7 @@ impl Begun {
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way = climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, MOST_EFFECTS, say);
+            let way = climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
             if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
                 (self.way.best, self.way.rivals) = (way.best, way.rivals);
             }
@@ -165,6 +181,7 @@ fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
 }
 
 /// One greedy way up.
+#[derive(Clone)]
 struct Way {
     best: Fit,
     rivals: Vec<Vec<Fit>>,
@@ -183,7 +200,7 @@ impl Way {
 }
 
 /// Where the ways of one search have been: another that comes there goes on as they did.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Seen(Vec<Fit>);
 
 impl Seen {
@@ -217,10 +234,17 @@ fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &d
     Some(next)
 }
 
-/// Adds effect by effect up to so many, and settles after each, until nothing helps or another way has been there.
-fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, most: usize, say: &dyn Fn(String)) -> Way {
+/// Adds effect by effect up to so many, and settles after each, until nothing helps, a law outdoes them or another way has been there.
+fn climb(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    mut way: Way,
+    seen: &mut Seen,
+    (most, law): (usize, Bound),
+    say: &dyn Fn(String),
+) -> Way {
     let problem = swaps.problem;
-    while !way.is_at_end && way.best.model.effects.len() < most {
+    while !way.is_at_end && way.best.model.effects.len() < most && !law.outdoes(problem, baseline, &way.best) {
         let best = &way.best;
         let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
         let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));

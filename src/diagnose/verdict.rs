@@ -89,7 +89,7 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
             };
             written::describe(&mut named, rival, source, at);
             if is_best && index + 1 == found.best.model.effects.len() {
-                named.forms = written::forms(&found.forms, found.best.cost, unit(found, left));
+                named.forms = written::forms(&found.forms, found.best.cost, unit_of(found, left));
             }
             effects.push(named);
         }
@@ -115,7 +115,7 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
             rivals.extend(standing.iter().filter(|(p, _, _)| !p.says_the_same(placed)).map(|(_, _, fit)| *fit));
         }
     }
-    Open { rivals, unit: unit(found, left) }
+    Open { rivals, unit: unit_of(found, left) }
 }
 
 /// Every other model that was fitted in place of the best, with its chi²: one row for each set of effects, its cheapest, cheapest
@@ -163,7 +163,7 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
     // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
     let is_hypothesis = placed.entry.hypothetical;
     let rivals = found.rivals.get(index).filter(|_| !is_hypothesis).map_or(&[][..], Vec::as_slice);
-    let unit = unit(found, left);
+    let unit = unit_of(found, left);
     let mut all: Vec<(Placed, f64, &Fit)> = vec![(placed.clone(), 1.0, best)];
     for rival in rivals {
         let Some(own) = rival.model.effects.last() else { continue };
@@ -183,11 +183,15 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
 const UNIT_OF_LEFT: f64 = 1.0 / 3.0;
 const UNIT_OF_EXPLAINED: f64 = 0.005 / 3.0;
 
-/// Laws are idealised: as far as the best itself leaves something, a difference counts in proportion to that, and at most to
-/// what is explained, not to the number of samples.
-fn unit(found: &Found, left: f64) -> f64 {
-    let explained = (found.baseline.cost - found.best.cost) / found.best.model.effects.len() as f64;
+/// Chi² that counts as one, of a model that explains and leaves so much. Laws are idealised: as far as the model itself leaves something, a
+/// difference counts in proportion to that, and at most to what is explained, not to the number of samples.
+pub fn unit(explained: f64, left: f64) -> f64 {
     (UNIT_OF_EXPLAINED * explained).min(UNIT_OF_LEFT * left).max(1.0)
+}
+
+/// The same for each effect of what was found.
+fn unit_of(found: &Found, left: f64) -> f64 {
+    unit((found.baseline.cost - found.best.cost) / found.best.model.effects.len() as f64, left)
 }
 
 /// Numbers of one effect of a fit, with intervals for those that were fitted. An interval ends where its law does: a width of

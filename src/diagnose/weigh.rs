@@ -4,19 +4,20 @@ use super::candidates::Variant;
 use super::case::{Case, Sealed};
 use super::fit::{Fit, Problem};
 use super::noise::{self, Noise};
-use super::search::{self, Begun, Found};
+use super::search::{self, Begun, Bound, Found};
 
-/// Searches from what has begun, and again where what was found asks for other weights or other steps.
+/// Searches from what has begun, and again where what was found asks for other weights or other steps and no law outdoes it.
 pub(super) fn search_and_weigh(
     case: &mut Case,
     mut noise: Vec<Noise>,
     begun: Begun,
-    variants: &[Variant],
+    (variants, law): (&[Variant], Bound),
     say: &dyn Fn(String),
 ) -> (Found, Vec<Noise>) {
-    let mut found = begun.finish(&open_runs(case, &noise), variants, say);
+    let mut found = begun.finish(&open_runs(case, &noise), variants, law, say);
     for _ in 0..2 {
-        if found.best.model.effects.is_empty() {
+        let is_outdone = law.outdoes(&open_runs(case, &noise), &found.baseline, &found.best);
+        if found.best.model.effects.is_empty() || is_outdone {
             break;
         }
         let former = case.runs.clone();
@@ -35,7 +36,7 @@ pub(super) fn search_and_weigh(
             break;
         }
         let begun = Begun::again(&problem, (renewed.baseline, renewed.start), variants, found.known(), say);
-        found = begun.finish(&problem, variants, say);
+        found = begun.finish(&problem, variants, Bound(None), say);
     }
     (found, noise)
 }
