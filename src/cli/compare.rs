@@ -131,7 +131,16 @@ fn remark(report: &FitReport) -> String {
 fn say_fit(report: &FitReport) {
     for p in &report.parameters {
         let bound = if p.on_bound { "   (on a bound of its range)" } else { "" };
-        say!("fitted {} = {:.6e}{bound}", calibration_key(&p.key), p.value);
+        let interval = match p.ci95 {
+            Some([low, high]) => format!("   95 %: {low:.4e} to {high:.4e}"),
+            None => "   the runs do not show it".to_owned(),
+        };
+        say!("fitted {} = {:.6e}{interval}{bound}", calibration_key(&p.key), p.value);
+    }
+    if report.from_elsewhere {
+        eprintln!(
+            "note: from the scene's own values the fit stopped in a higher valley; this one began elsewhere in the ranges"
+        );
     }
 }
 
@@ -203,6 +212,7 @@ fn to_json(
     let per_run: serde_json::Map<_, _> =
         runs.iter().zip(fits).map(|(r, f)| (r.run.file.clone(), by_channel(f))).collect();
     let fitted: serde_json::Map<_, _> = report.parameters.iter().map(|p| (p.key.clone(), json!(p.value))).collect();
+    let intervals: serde_json::Map<_, _> = report.parameters.iter().map(|p| (p.key.clone(), json!(p.ci95))).collect();
     let holdout: Vec<&str> = runs.iter().filter(|r| is_holdout(r)).map(|r| r.run.file.as_str()).collect();
     json!({
         "format": 1,
@@ -211,6 +221,7 @@ fn to_json(
         "runs": per_run,
         "holdout": holdout,
         "fitted": fitted,
+        "fitted_ci95": intervals,
     })
 }
 

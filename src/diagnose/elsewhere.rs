@@ -34,15 +34,23 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
     shown.refits(&all, &places, SHAPES)
 }
 
-/// The slots that a law of a kind may have: what reads its variable as it does, and where it reads it plainly, mere numbers as well.
+/// The slots over the variables of a fit's last effect, read as it reads them, and mere numbers. Over another variable it is another law: that
+/// two go together in these runs is for the search to find.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
-    let plain = slots(problem.case, fit, Reach::Plain);
-    let remembers = fit.model.effects.last().and_then(|e| e.spec().unlisted()).is_some_and(|w| !w.law.states.is_empty());
-    if !remembers || plain.iter().any(|slot| is_law_of(fit, slot)) {
+    let Some(last) = fit.model.effects.last() else { return Vec::new() };
+    let variables: Vec<String> = match last.spec().unlisted() {
+        Some(own) => own.law.variables().iter().map(|v| v.name()).collect(),
+        None => last.spec().variables.clone(),
+    };
+    let is_over = |slot: &Slot| slot.is_constant() || variables.contains(&slot.variable);
+    let mut plain = slots(problem.case, fit, Reach::Plain);
+    plain.retain(is_over);
+    let remembers = last.spec().unlisted().is_some_and(|own| !own.law.states.is_empty());
+    if !remembers && variables.len() < 2 {
         return plain;
     }
     let mut wide = slots(problem.case, fit, Reach::Wide);
     let own: Vec<Reading> = wide.iter().filter(|slot| is_law_of(fit, slot)).map(|slot| slot.reading.clone()).collect();
-    wide.retain(|slot| own.iter().any(|reading| reading.is_like(&slot.reading)));
-    wide
+    wide.retain(|slot| is_over(slot) && own.iter().any(|reading| reading.is_like(&slot.reading)));
+    if wide.is_empty() { plain } else { wide }
 }

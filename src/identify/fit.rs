@@ -1,12 +1,12 @@
 //! Fitting the parameters that belong to the recorded rig.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::recording::{RecordingSet, Role, noise_sd};
 use crate::scene::{CalibrateSpec, Override, Scene, set_the_same};
 
-use super::levenberg_marquardt::{Bounds, LmOptions, minimise};
+use super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise};
 use super::replay::{IdentifyError, RecordedRun, check_channels, replay};
 
 /// How finely the runs are replayed while parameters are searched.
@@ -38,6 +38,8 @@ const FINE: Grain = Grain {
 pub struct FittedParameter {
     pub key: String,
     pub value: f64,
+    /// 95 % interval from the slopes at the end, as far as residuals are independent; none where the runs do not show the number.
+    pub ci95: Option<[f64; 2]>,
     /// The fit ended on a bound of its range.
     pub on_bound: bool,
 }
@@ -47,6 +49,8 @@ pub struct FittedParameter {
 pub struct FitReport {
     pub parameters: Vec<FittedParameter>,
     pub evaluations: usize,
+    /// The search from the scene's own values stopped higher than one from elsewhere in the ranges, which is the answer.
+    pub from_elsewhere: bool,
 }
 
 impl FitReport {
@@ -83,22 +87,90 @@ pub fn fit_rig_parameters(
         let all: Vec<Override> = overrides.iter().cloned().chain(changed).chain([step]).collect();
         residuals(set, scene, &all, runs, &weights, grain.samples_per_run)
     };
-    let search = |start: &[f64], grain: Grain| minimise(&|x| residuals(x, grain), start, &bounds, grain.options);
-    let coarse = search(&start, COARSE);
-    // Steps that long may be too long for a scene: then the search starts where it would have without them.
-    let near = coarse.as_ref().map_or(&start, |found| &found.parameters);
-    let result = search(near, FINE).ok_or_else(|| IdentifyError::Mismatch {
+    let search = |start: &[f64]| {
+        let coarse = minimise(&|x| residuals(x, COARSE), start, &bounds, COARSE.options);
+        // Steps that long may be too long for a scene: then the search starts where it would have without them.
+        let near = coarse.as_ref().map_or(start, |found| &found.parameters);
+        let mut fine = minimise(&|x| residuals(x, FINE), near, &bounds, FINE.options)?;
+        fine.evaluations += coarse.map_or(0, |found| found.evaluations);
+        Some(fine)
+    };
+    let first = search(&start).ok_or_else(|| IdentifyError::Mismatch {
         file: base.path.display().to_string(),
         message: "the scene cannot be simulated with its starting values".to_owned(),
         remedy: "run it alone with `smam run` to see why".to_owned(),
     })?;
-    let parameters = free.iter().zip(&result.parameters).map(|(c, &value)| FittedParameter {
+    let samples = residuals(&first.parameters, FINE).map_or(1, |r| r.len());
+    let (result, from_elsewhere) = lowest(first, samples, &bounds, &search);
+    let intervals = intervals(&|x| residuals(x, FINE), &result.parameters, &bounds);
+    let parameters = free.iter().zip(&result.parameters).zip(intervals).map(|((c, &value), ci95)| FittedParameter {
         key: c.key.clone(),
         value,
+        ci95,
         on_bound: (value - c.min).min(c.max - value) < 1e-6 * (c.max - c.min),
     });
-    let evaluations = result.evaluations + coarse.map_or(0, |found| found.evaluations);
-    Ok(FitReport { parameters: parameters.collect(), evaluations })
+    Ok(FitReport { parameters: parameters.collect(), evaluations: result.evaluations, from_elsewhere })
+}
+
+/// Mean square, in units of the noise, from which a fit is tried from elsewhere as well: where sticking and slipping change places with a
+/// number, its cost has valleys.
+const MISFIT: f64 = 1.5;
+/// Where in the ranges those begin, and the share by which their cost must be lower.
+const ELSEWHERE: [f64; 2] = [0.25, 0.75];
+const LOWER: f64 = 0.99;
+
+/// The lowest of a search and, where it leaves more than noise, of those from elsewhere; whether it is one of these.
+fn lowest(
+    mut first: LmResult,
+    samples: usize,
+    bounds: &[Bounds],
+    search: &dyn Fn(&[f64]) -> Option<LmResult>,
+) -> (LmResult, bool) {
+    let own = first.cost;
+    if own < MISFIT * samples as f64 {
+        return (first, false);
+    }
+    for share in ELSEWHERE {
+        let start: Vec<f64> = bounds.iter().map(|b| b.min + share * (b.max - b.min)).collect();
+        let Some(other) = search(&start) else { continue };
+        let evaluations = first.evaluations + other.evaluations;
+        if other.cost < LOWER * first.cost {
+            first = other;
+        }
+        first.evaluations = evaluations;
+    }
+    let is_other = first.cost < own;
+    (first, is_other)
+}
+
+/// Step of the differences behind intervals, as a share of the range: wide enough to see past where sticking begins.
+const WIDE: f64 = 1e-3;
+
+/// 95 % intervals at a fit; residuals in units of the noise, in those of what is left where that is more.
+fn intervals(
+    residuals: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+    x: &[f64],
+    bounds: &[Bounds],
+) -> Vec<Option<[f64; 2]>> {
+    let covariance = || {
+        let here = residuals(x)?;
+        let mut slopes = DMatrix::zeros(here.len(), x.len());
+        for (i, b) in bounds.iter().enumerate() {
+            let [mut low, mut high] = [x.to_vec(), x.to_vec()];
+            low[i] = (x[i] - WIDE * (b.max - b.min)).max(b.min);
+            high[i] = (x[i] + WIDE * (b.max - b.min)).min(b.max);
+            slopes.set_column(i, &((residuals(&high)? - residuals(&low)?) * ((b.max - b.min) / (high[i] - low[i]))));
+        }
+        let unit = (here.norm_squared() / here.len().max(1) as f64).max(1.0);
+        Some(slopes.tr_mul(&slopes).try_inverse()? * unit)
+    };
+    let Some(covariance) = covariance() else { return vec![None; x.len()] };
+    let half = |i: usize| 1.96 * covariance[(i, i)].max(0.0).sqrt() * (bounds[i].max - bounds[i].min);
+    let interval = |i: usize| {
+        let (half, b) = (half(i), bounds[i]);
+        (half < b.max - b.min).then(|| [(x[i] - half).max(b.min), (x[i] + half).min(b.max)])
+    };
+    (0..x.len()).map(interval).collect()
 }
 
 /// The value in the scene, else the middle of the range.

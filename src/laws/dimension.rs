@@ -62,6 +62,27 @@ const UNITS: [(&str, Dimension); 10] = [
     ("Hz", Dimension { kg: 0.0, m: 0.0, s: -1.0 }),
 ];
 
+/// Endings of units that are not taken, and what to write instead. Longer ones come first.
+const PREFIXED: [(&str, &str); 17] = [
+    ("mm3_s", "m3_s"),
+    ("n_mm", "n_m"),
+    ("mm_s", "m_s"),
+    ("mm3", "m3"),
+    ("mm2", "m2"),
+    ("mm", "m"),
+    ("um", "m"),
+    ("cm", "m"),
+    ("kpa", "pa"),
+    ("mpa", "pa"),
+    ("bar", "pa"),
+    ("psi", "pa"),
+    ("mn", "n"),
+    ("kn", "n"),
+    ("deg_s", "rad_s"),
+    ("deg", "rad"),
+    ("ms", "s"),
+];
+
 /// How names end, and the unit that is meant. Longer endings come first; of units of the same dimension the first one is
 /// how the dimension is written.
 const ENDINGS: [(&str, &str); 41] = [
@@ -128,6 +149,16 @@ impl Dimension {
         let (ending, unit) = ENDINGS.iter().find(|(ending, _)| ends_in(ending))?;
         let is_torque = *ending == "n_m" && (name.contains("torque") || name.contains("moment"));
         Self::parse(if is_torque { "N m" } else { unit }).ok()
+    }
+
+    /// The ending of a name that is a unit with a prefix, or another that SI does not have, and the name as it should be; none where it has
+    /// none.
+    pub fn with_prefix(name: &str) -> Option<(&'static str, String)> {
+        let ending = |(wrong, right): &(&'static str, &str)| {
+            let rest = name.strip_suffix(wrong)?.strip_suffix('_').filter(|rest| !rest.is_empty())?;
+            Some((*wrong, format!("{rest}_{right}")))
+        };
+        PREFIXED.iter().find_map(ending)
     }
 
     /// Reads the text of a unit: SI units without prefixes, powers as digits, `/` for what is divided by.

@@ -302,6 +302,36 @@ impl PortSpec {
     }
 }
 
+/// What others call a term of an element.
+const USUAL: [(&str, &str); 12] = [
+    ("viscosity", "damping"),
+    ("drag", "damping"),
+    ("force", "pull"),
+    ("preload", "pull"),
+    ("stiffness", "wall"),
+    ("elasticity", "wall"),
+    ("spring", "coil"),
+    ("length", "rest_length"),
+    ("leak", "outflow"),
+    ("slack", "stretch"),
+    ("friction", "transmission"),
+    ("moment", "torque"),
+];
+
+/// The nearest port to a text that is none, in words: of its own element where it has one.
+fn near(text: &str) -> String {
+    let (element, term) = text.split_once('.').unwrap_or((text, ""));
+    let kind = element.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
+    let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
+    let is_own = |name: &&str| name.split('.').next() == Some(kind);
+    let known: Vec<&str> = names.iter().map(String::as_str).collect();
+    let own: Vec<&str> = known.iter().copied().filter(is_own).collect();
+    let usual = USUAL.iter().filter(|(word, _)| *word == term).map(|(_, own)| format!("{kind}.{own}"));
+    let meant = usual.into_iter().find(|name| own.contains(&name.as_str()));
+    let meant = meant.unwrap_or_else(|| format!("{kind}{}{term}", if term.is_empty() { "" } else { "." }));
+    did_you_mean(&meant, if own.is_empty() { &known } else { &own })
+}
+
 /// A port of one rig: `muscle_2.friction`, `joint(pulley).torque`, `sensor.angle_deg`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Address {
@@ -331,12 +361,7 @@ impl Address {
     /// What is none, with the nearest that is one, and what to write instead.
     pub fn parse(text: &str) -> Result<Self, (String, String)> {
         let text = text.trim();
-        let unknown = || {
-            let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
-            let known: Vec<&str> = names.iter().map(String::as_str).collect();
-            let near = did_you_mean(text, &known);
-            (format!("port = \"{text}\" is no port{near}"), "`smam laws` lists the ports".to_owned())
-        };
+        let unknown = || (format!("port = \"{text}\" is no port{}", near(text)), "`smam laws` lists the ports".to_owned());
         let (element, term) = text.split_once('.').unwrap_or((text, ""));
         if element == "sensor" && !term.is_empty() {
             return Ok(Self { port: Port::Sensor, number: None, of: Some(term.to_owned()) });

@@ -20,6 +20,18 @@ pub struct LawError {
     pub remedy: String,
 }
 
+/// What others call a variable.
+const USUAL: [(&str, &str); 8] = [
+    ("velocity_m_s", "speed_m_s"),
+    ("displacement_m", "elongation_m"),
+    ("extension_m", "elongation_m"),
+    ("length_m", "elongation_m"),
+    ("position_m", "plunger_m"),
+    ("force_n", "tension_n"),
+    ("angular_velocity_rad_s", "angular_speed_rad_s"),
+    ("t_s", "time_s"),
+];
+
 fn refuse(message: impl Into<String>, remedy: impl Into<String>) -> LawError {
     LawError { message: message.into(), remedy: remedy.into() }
 }
@@ -232,7 +244,11 @@ impl<'a> Reader<'a> {
         let elsewhere = QUANTITIES.iter().any(|q| q.name() == name);
         let message = match elsewhere {
             true => format!("{} has no {name} of its own", self.spec.name()),
-            false => format!("there is no variable or parameter \"{name}\"{}", did_you_mean(name, &known)),
+            false => {
+                let usual = USUAL.iter().find(|(word, own)| *word == name && known.contains(own));
+                let meant = usual.map_or(name, |(_, own)| own);
+                format!("there is no variable or parameter \"{name}\"{}", did_you_mean(meant, &known))
+            }
         };
         let port = self.spec.name();
         let remedy = format!(
@@ -272,7 +288,12 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         let words: Vec<String> = wanted.iter().map(Dimension::to_string).collect();
+        let missing: Vec<String> = match unit {
+            Unit::Known(own) => wanted.iter().map(|wanted| (*wanted / *own).to_string()).collect(),
+            _ => words.clone(),
+        };
         let wanted = words.join(" or ");
+        let missing = missing.iter().map(|unit| format!("\"{unit}\"")).collect::<Vec<_>>().join(" or ");
         Err(refuse(
             format!(
                 "{}: the units do not come out: {} takes {wanted}, the expression is in {}",
@@ -281,8 +302,8 @@ impl<'a> Reader<'a> {
                 said(*unit)
             ),
             format!(
-                "multiply by a parameter whose unit is missing, so that {wanted} comes out; a number with a point may carry a \
-                 unit (50.0), a whole one does not (50)"
+                "multiply by a parameter with unit = {missing}; a number with a point may carry a unit (50.0), a whole one \
+                 does not (50)"
             ),
         ))
     }
@@ -392,7 +413,13 @@ fn parameter(name: &str, table: &ParameterTable) -> Result<Parameter, LawError> 
     let at = |message: String, remedy: &str| refuse(format!("parameter.{name}: {message}"), remedy);
     let dimension = match &table.unit {
         Some(unit) => Dimension::parse(unit).map_err(|e| at(format!("unit: {e}"), "use SI units"))?,
-        None => Dimension::of_name(name).unwrap_or(Dimension::NONE),
+        None => match Dimension::with_prefix(name) {
+            Some((ending, own)) => {
+                let message = format!("a number's name ends in its SI unit, and _{ending} is none");
+                return Err(at(message, &format!("name it {own}, with its value in that unit, or say unit = \"1\"")));
+            }
+            None => Dimension::of_name(name).unwrap_or(Dimension::NONE),
+        },
     };
     let (min, max) = (table.min.unwrap_or(f64::NEG_INFINITY), table.max.unwrap_or(f64::INFINITY));
     if !table.value.is_finite() {

@@ -7,6 +7,7 @@ use toml::{Table, Value};
 use super::SceneError;
 use super::differs::DIFFERS;
 use crate::laws::LawTable;
+use crate::nearest::did_you_mean;
 
 /// Short names of the calibrated parameters and the scene keys they stand for.
 const CALIBRATION_NAMES: [(&str, &str); 5] = [
@@ -143,9 +144,13 @@ impl Override {
     fn put(&self, root: &mut Value) -> Result<(), SceneError> {
         let key = calibration_key(&self.key);
         let path: Vec<&str> = key.split('.').collect();
-        let missing = |depth: usize| SceneError::Override {
+        let missing = |depth: usize, known: &[String]| SceneError::Override {
             key: self.key.clone(),
-            message: format!("there is no `{}` in the scene", path[..=depth].join(".")),
+            message: format!(
+                "there is no `{}` in the scene{}",
+                path[..=depth].join("."),
+                did_you_mean(path[depth], &known.iter().map(String::as_str).collect::<Vec<_>>())
+            ),
             remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
         };
         let last = path.len() - 1;
@@ -156,14 +161,15 @@ impl Override {
             if let (true, Some(table)) = (depth >= own, here.as_table_mut()) {
                 table.entry(*segment).or_insert_with(|| Value::Table(Table::new()));
             }
-            here = child(here, segment).ok_or_else(|| missing(depth))?;
+            let known = names(here);
+            here = child(here, segment).ok_or_else(|| missing(depth, &known))?;
         }
         if let Some(slot) = child(here, path[last]) {
             *slot = coerced(&self.value, slot);
             return Ok(());
         }
         // Keys with a default need not stand in the file; a wrong name is refused when the scene is read.
-        let table = here.as_table_mut().ok_or_else(|| missing(last))?;
+        let table = here.as_table_mut().ok_or_else(|| missing(last, &[]))?;
         table.insert(path[last].to_owned(), self.value.clone());
         Ok(())
     }
@@ -196,6 +202,15 @@ pub(super) fn coerced(value: &Value, old: &Value) -> Value {
 /// What an entry of a list is called: its name, or the channel that it is about.
 pub(super) fn entry_name(entry: &Value) -> Option<&str> {
     entry.get("name").or_else(|| entry.get("channel"))?.as_str()
+}
+
+/// What there is under a value: keys of a table, names of a list's entries.
+fn names(value: &Value) -> Vec<String> {
+    match value {
+        Value::Table(table) => table.keys().cloned().collect(),
+        Value::Array(list) => list.iter().filter_map(entry_name).map(str::to_owned).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// What stands under a segment of a key; of a list the entry of this name or index.
