@@ -3,8 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Args;
-use smam::laws::{Address, Carrier, LawTable, PORTS, Port, PortSpec};
-use smam::nearest::did_you_mean;
+use smam::laws::{Address, Carrier, LawTable, PORTS, Port, PortSpec, nearest_port};
 use smam::scene::{Scene, SceneError};
 use smam::system::observe::{Frame, Observer, SceneGraph};
 use smam::system::{Schedule, Simulation, run};
@@ -50,9 +49,7 @@ fn find(name: &str) -> Result<&'static PortSpec, CliError> {
     if let Ok(address) = Address::parse(name) {
         return Ok(address.port.spec());
     }
-    let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
-    let known: Vec<&str> = names.iter().map(String::as_str).collect();
-    let near = did_you_mean(name, &known);
+    let near = nearest_port(name);
     Err(CliError::Usage(format!("{name}: no such port{near}\n  remedy: `smam laws` lists the ports")))
 }
 

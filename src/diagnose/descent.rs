@@ -66,13 +66,34 @@ impl Problem<'_> {
     /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
     /// tell which models are worth [`Problem::fit`].
     pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
-        let numbers = self.numbers(model);
-        let x = within(start, &numbers);
+        Some(self.end(self.go_on(self.begin(model, start, slopes)?, ITERATIONS)))
+    }
+
+    /// Begins [`Problem::fit_roughly`].
+    pub fn begin(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Underway> {
+        let x = within(start, &self.numbers(model));
         let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
-        let residual = |x: &[f64]| self.weighted_residual(model, x);
-        let mut descent = Descent::new(self, model, &numbers, x, rows, &residual);
+        Some(Underway { model: model.clone(), x, rows, damping: LEAST_DAMPING })
+    }
+
+    /// Goes on for so many steps at most.
+    pub fn go_on(&self, underway: Underway, iterations: usize) -> Underway {
+        let Underway { model, x, rows, damping } = underway;
+        let numbers = self.numbers(&model);
+        let residual = |x: &[f64]| self.weighted_residual(&model, x);
+        let mut descent = Descent::new(self, &model, &numbers, x, rows, &residual);
+        (descent.damping, descent.iterations) = (damping, iterations);
         descent.run();
-        Some(descent.finish())
+        let Descent { x, rows, damping, .. } = descent;
+        Underway { x, rows, damping, model }
+    }
+
+    /// The fit as it stands.
+    pub fn end(&self, underway: Underway) -> Fit {
+        let Underway { model, x, rows, .. } = underway;
+        let numbers = self.numbers(&model);
+        let residual = |x: &[f64]| self.weighted_residual(&model, x);
+        Descent::new(self, &model, &numbers, x, rows, &residual).finish()
     }
 
     /// Goes on from `start` with something else than the fast model playing: `played` gives the residuals in units of the noise, the fast
@@ -102,6 +123,21 @@ impl Problem<'_> {
 
 fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
     x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
+}
+
+/// A rough fit that can be left and taken up again.
+pub(super) struct Underway {
+    model: Model,
+    x: Vec<f64>,
+    rows: Rows,
+    damping: f64,
+}
+
+impl Underway {
+    /// Sum of squares that it has come down to.
+    pub fn cost(&self) -> f64 {
+        self.rows.residual.norm_squared()
+    }
 }
 
 /// Residuals at some numbers, in units of the noise; none where the model diverges.

@@ -120,7 +120,8 @@ impl Search<'_> {
         let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
         say("sealed runs".to_owned());
         let mut explained = proven(case, found, noise.clone(), self.seed)?;
-        explained.confirmed = confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
+        explained.confirmed =
+            confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
         Ok(Explained { of_found: warnings, ..explained })
     }
 

@@ -25,6 +25,8 @@ const CLEARLY: f64 = 20.0;
 const SEEN: f64 = 3.0;
 /// Laws are called equally good within so many units of chi²: odds of one to twenty.
 const SAME: f64 = 6.0;
+/// Two laws of one place whose chi² differ by no more are one.
+const SAME_LAW: f64 = 0.01;
 /// Rough fits are fitted to the end within so many times that.
 const NEARLY: f64 = 20.0;
 /// What a letter of a law costs among forms that are equally good, in units of the criterion.
@@ -228,7 +230,7 @@ pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<
 fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
     let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();
     let mut named = vec![best];
-    for is_new in [is_on_another_element, is_at_another_place, |_: &Fit, _: &Fit| true] {
+    for is_new in [is_on_another_element, is_at_another_place, is_another_law] {
         for fit in &same {
             let is_named = named.iter().any(|own| own.model.effects == fit.model.effects);
             if !is_named && named.iter().all(|own| is_new(own, fit)) {
@@ -245,6 +247,11 @@ fn is_on_another_element(own: &Fit, other: &Fit) -> bool {
 
 fn is_at_another_place(own: &Fit, other: &Fit) -> bool {
     place(own) != place(other)
+}
+
+/// Whether it is not the same law in other words: `abs(time_s)` is `time_s`.
+fn is_another_law(own: &Fit, other: &Fit) -> bool {
+    is_at_another_place(own, other) || (own.cost - other.cost).abs() > SAME_LAW
 }
 
 /// The element that the last effect of a fit acts on.

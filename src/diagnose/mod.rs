@@ -35,8 +35,8 @@ mod caveats;
 mod confirm;
 mod corrected;
 mod descent;
-mod error;
 mod elsewhere;
+mod error;
 mod experiment;
 mod explained;
 mod figures;
@@ -237,9 +237,11 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     warnings.extend(specimen::words(&case, &specimens));
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
-    let experiment = match verdict {
-        Verdict::Ambiguous => settle::settle(&whole, &found.best, &verdict::open(&found, left))?,
-        _ => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
+    let open = verdict::open(&found, left);
+    let is_open = verdict == Verdict::Ambiguous || !open.rivals.is_empty();
+    let experiment = match is_open {
+        true => settle::settle(&whole, &found.best, &open)?,
+        false => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
     };
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let mut diagnosis = Diagnosis {

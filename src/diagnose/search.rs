@@ -147,7 +147,8 @@ impl Begun {
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way = climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
+            let way =
+                climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
             if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
                 (self.way.best, self.way.rivals) = (way.best, way.rivals);
             }

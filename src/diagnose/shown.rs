@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::candidates::Variant;
 use super::case::CaseRun;
+use super::descent::Underway;
 use super::fit::{Fit, Problem};
 use super::grammar::{Shape, Slot, curve, variant};
 use super::model::{Model, Sides};
@@ -14,6 +15,10 @@ use super::screening::orthogonal;
 
 /// Scales of a shape that are tried, in those of the slot.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+/// Steps that every refit takes, how many of the refits go on, and for how many steps more.
+const FIRST_STEPS: usize = 4;
+const GOING_ON: usize = 8;
+const MORE_STEPS: usize = 20;
 /// Share of a slot's typical size that is injected.
 const INJECTED: f64 = 2e-2;
 
@@ -95,15 +100,17 @@ impl<'a> Shown<'a> {
 
     /// The same with a curve at each of these slots.
     pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
-        let plain: Vec<&Slot> = best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
+        let plain: Vec<&Slot> =
+            best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
         let basis = |slot| Slot::basis(slot).map(move |shape| Wanted { slot, shape, scale: slot.scale });
         let wanted: Vec<Wanted> = plain.iter().copied().flat_map(basis).collect();
         let mut signatures = self.signatures(all, &wanted).into_iter();
         let candidates: Vec<Candidate> = plain
             .iter()
             .filter_map(|slot| {
-                let own: Option<Vec<DVector<f64>>> = signatures.by_ref().take(slot.basis().count()).collect();
-                let sizes = sizes(&own?, &self.left);
+                let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(slot.basis().count()).collect();
+                let own: Vec<DVector<f64>> = own.into_iter().collect::<Option<_>>()?;
+                let sizes = sizes(&own, &self.left);
                 let mut own = curve(self.problem.case, slot)?;
                 own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.typical);
                 Some(self.with(&own))
@@ -112,15 +119,22 @@ impl<'a> Shown<'a> {
         self.refitted(&candidates)
     }
 
+    /// Rough fits, of which those that are best after a few steps go on.
     fn refitted(&self, candidates: &[Candidate]) -> Vec<Fit> {
-        let refit = |candidate: &Candidate| {
+        let problem = self.problem;
+        let begin = |candidate: &Candidate| {
             let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
-            let own = self.problem.rows(model, start, known..start.len(), Sides::One)?.slopes;
+            let own = problem.rows(model, start, known..start.len(), Sides::One)?.slopes;
             let mut slopes = self.slopes.clone().resize_horizontally(start.len(), 0.0);
             slopes.columns_mut(known, own.ncols()).copy_from(&own);
-            self.problem.fit_roughly(model, start, slopes)
+            Some(problem.go_on(problem.begin(model, start, slopes)?, FIRST_STEPS))
         };
-        let mut fits: Vec<Fit> = candidates.par_iter().filter_map(refit).collect();
+        let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
+        underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let finish = |(place, fit): (usize, Underway)| {
+            problem.end(if place < GOING_ON { problem.go_on(fit, MORE_STEPS) } else { fit })
+        };
+        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         fits
     }

@@ -37,7 +37,7 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
             d.detection.excess_chi2_per_sample.max(0.0)
         ),
         Verdict::MissingPhysics => format!("The scene lacks {}. {closed}", effects.join(" and ")),
-        Verdict::Ambiguous => format!("The scene lacks one of these: {}. {closed}", effects.join(", ")),
+        Verdict::Ambiguous => format!("The scene lacks one of these: {}{}. {closed}", effects.join(", "), or_laws(d)),
         Verdict::UnknownPhysics => format!(
             "Something is missing that is not in the catalogue{}. {}",
             d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
@@ -45,6 +45,12 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
         ),
         Verdict::UnusableData => d.summary.clone(),
     }
+}
+
+/// Laws at other ports that explain as much as the effects that are named, in words.
+fn or_laws(d: &Diagnosis) -> String {
+    let count: usize = d.effects.iter().map(|e| e.forms.iter().filter(|form| form.port != e.port).count()).sum();
+    if count == 0 { String::new() } else { ", or a law elsewhere that explains as much (see forms)".to_owned() }
 }
 
 /// What comes nearest, and what hypothesis takes it further.

@@ -97,6 +97,25 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     effects
 }
 
+/// What a law that nobody listed counts at another port, beside an effect that is known.
+const UNLISTED: f64 = 0.02;
+
+/// Forms of the last effect at other ports, the best of each, with their weights beside 1 of the effect.
+fn elsewhere(found: &Found, left: f64) -> Vec<(f64, &Fit)> {
+    let Some(own) = found.best.model.effects.last() else { return Vec::new() };
+    let (unit, prior) = (unit_of(found, left), if own.entry.hypothetical { 1.0 } else { UNLISTED });
+    let mut ports = vec![written::port(own)];
+    let mut forms = Vec::new();
+    for fit in &found.forms {
+        let Some(port) = fit.model.effects.last().map(written::port).filter(|port| !ports.contains(port)) else {
+            continue;
+        };
+        ports.push(port);
+        forms.push((prior * (-(fit.cost - found.best.cost) / (2.0 * unit)).exp(), fit));
+    }
+    forms
+}
+
 /// What keeps an answer from being one answer.
 #[derive(Clone, Debug)]
 pub struct Open<'a> {
@@ -111,8 +130,16 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
     let mut rivals = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
         let standing = standing(found, index, placed, left);
-        if standing.iter().any(|(p, probability, _)| p.says_the_same(placed) && *probability < SURE) {
-            rivals.extend(standing.iter().filter(|(p, _, _)| !p.says_the_same(placed)).map(|(_, _, fit)| *fit));
+        let own =
+            standing.iter().find(|(p, _, _)| p.says_the_same(placed)).map_or(1.0, |(_, probability, _)| *probability);
+        if own >= SURE {
+            continue;
+        }
+        rivals.extend(standing.iter().filter(|(p, _, _)| !p.says_the_same(placed)).map(|(_, _, fit)| *fit));
+        if index + 1 == found.best.model.effects.len() {
+            let forms = elsewhere(found, left);
+            rivals
+                .extend(forms.into_iter().filter(|(weight, _)| weight * own >= LEAST_PROBABILITY).map(|(_, fit)| fit));
         }
     }
     Open { rivals, unit: unit_of(found, left) }
@@ -172,7 +199,10 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
         }
         all.push((own.clone(), (-(rival.cost - found.rivals_against).max(0.0) / (2.0 * unit)).exp(), rival));
     }
-    let sum: f64 = all.iter().map(|(_, w, _)| w).sum();
+    // The same at another port is another answer, if not another line.
+    let is_last = index + 1 == best.model.effects.len();
+    let others: f64 = if is_last { elsewhere(found, left).iter().map(|(w, _)| w).sum() } else { 0.0 };
+    let sum: f64 = all.iter().map(|(_, w, _)| w).sum::<f64>() + others;
     all.iter_mut().for_each(|(_, w, _)| *w /= sum);
     all.retain(|(p, w, _)| *w >= LEAST_PROBABILITY || p == placed);
     all

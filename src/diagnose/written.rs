@@ -19,8 +19,8 @@ fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
 
 /// Says of an effect where it acts and on what it depends; of a written law also its text with the numbers of the fit.
 pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
+    effect.port = port(placed);
     if let Some(own) = written(placed) {
-        effect.port = own.law.address.to_string();
         effect.element = own.law.address.element();
         effect.acts = own.law.acts.word().to_owned();
         effect.variables = own.law.variables().iter().map(|v| v.name()).collect();
@@ -28,16 +28,23 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
         effect.known_as = known_as(own, &values(fit, at));
         return;
     }
-    let place = placed.spec();
-    effect.port = match (&placed.channel, place.port.split_once('.')) {
-        (Some(channel), _) => format!("{}.{channel}", place.port),
+    effect.acts = placed.spec().acts.word().to_owned();
+    effect.variables.clone_from(&placed.spec().variables);
+}
+
+/// The port that an effect acts at, as answers have it.
+pub fn port(placed: &Placed) -> String {
+    if let Some(own) = written(placed) {
+        return own.law.address.to_string();
+    }
+    let port = &placed.spec().port;
+    match (&placed.channel, port.split_once('.')) {
+        (Some(channel), _) => format!("{port}.{channel}"),
         (None, Some((element, term))) if placed.element.is_numbered && placed.element.kind.name() == element => {
             format!("{}.{term}", placed.element)
         }
-        _ => place.port.clone(),
-    };
-    effect.acts = place.acts.word().to_owned();
-    effect.variables.clone_from(&place.variables);
+        _ => port.clone(),
+    }
 }
 
 /// All numbers of an effect of a fit.

@@ -30,7 +30,7 @@ mod units;
 
 pub use dimension::Dimension;
 pub use law::{Law, Memory, Parameter, Programs, SLOPES, State, Symbol};
-pub use port::{Address, Carrier, PORTS, Port, PortSpec};
+pub use port::{Address, Carrier, PORTS, Port, PortSpec, nearest_port};
 pub use program::Program;
 pub use quantity::{QUANTITIES, Quantity, QuantitySpec, Variable};
 pub use read::{LawError, Surroundings};

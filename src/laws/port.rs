@@ -318,8 +318,8 @@ const USUAL: [(&str, &str); 12] = [
     ("moment", "torque"),
 ];
 
-/// The nearest port to a text that is none, in words: of its own element where it has one.
-fn near(text: &str) -> String {
+/// The nearest port to a text that is none, in words (`, did you mean "muscle.damping"?`): of its own element where it has one.
+pub fn nearest_port(text: &str) -> String {
     let (element, term) = text.split_once('.').unwrap_or((text, ""));
     let kind = element.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
     let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
@@ -361,7 +361,9 @@ impl Address {
     /// What is none, with the nearest that is one, and what to write instead.
     pub fn parse(text: &str) -> Result<Self, (String, String)> {
         let text = text.trim();
-        let unknown = || (format!("port = \"{text}\" is no port{}", near(text)), "`smam laws` lists the ports".to_owned());
+        let unknown = || {
+            (format!("port = \"{text}\" is no port{}", nearest_port(text)), "`smam laws` lists the ports".to_owned())
+        };
         let (element, term) = text.split_once('.').unwrap_or((text, ""));
         if element == "sensor" && !term.is_empty() {
             return Ok(Self { port: Port::Sensor, number: None, of: Some(term.to_owned()) });
