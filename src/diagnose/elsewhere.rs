@@ -4,7 +4,7 @@
 //! every port; a slot whose curves imitate all that the found law does, the numbers of the calibration free, is another place for it.
 
 use super::fit::{Fit, Problem};
-use super::grammar::{Reach, Slot, slots};
+use super::grammar::{Reach, Shape, Slot, slots, variant};
 use super::reading::Reading;
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
@@ -18,9 +18,14 @@ const SHAPES: usize = 3;
 
 /// Fits with a law at another place instead of the last effect of a fit, cheapest first: of those places that may do the same.
 pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
-    let Some(shown) = Shown::last_effect(problem, fit) else { return Vec::new() };
+    let Some(mut shown) = Shown::last_effect(problem, fit) else { return Vec::new() };
     let all = alike(problem, fit);
-    let located = shown.locate(&all);
+    let own = all.iter().find(|slot| is_law_of(fit, slot));
+    let more = own.and_then(|slot| shape(problem, fit, slot));
+    if let Some(own) = own {
+        shown.keep(&all, own, more);
+    }
+    let located = shown.locate(&all, more);
     let does_the_same = |l: &&Located| l.gain > AS_MUCH * shown.whole() && !is_law_of(fit, &l.slot);
     let mut places: Vec<&Slot> = Vec::new();
     for own in located.iter().filter(does_the_same) {
@@ -32,6 +37,21 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
     places.extend(&bent);
     shown.refits(&all, &places, SHAPES)
+}
+
+/// The shape of a fit's last law, which is one of this slot, and its scale.
+fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f64)> {
+    let last = fit.model.effects.len().checked_sub(1)?;
+    let law = &fit.model.effects[last].spec().unlisted()?.law;
+    let is_its = |shape: &&Shape| {
+        let own = variant(problem.case, slot, shape, 1.0);
+        own.and_then(|v| v.placed.spec().unlisted()).is_some_and(|own| own.law.expression == law.expression)
+    };
+    let shape = slot.shapes().iter().find(is_its)?;
+    let values = &fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values;
+    let parameters = &fit.model.effects[last].spec().parameters;
+    let scale = parameters.iter().position(|p| p.key.starts_with("scale"))?;
+    Some((shape, values[scale]))
 }
 
 /// The slots over the variables of a fit's last effect, read as it reads them, and mere numbers. Over another variable it is another law: that

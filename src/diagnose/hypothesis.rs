@@ -211,7 +211,8 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
 
 /// Chi² within which other models are as good as one; `before` is the chi² without its last effect.
 fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
-    SAME * verdict::unit(before - fit.cost, (fit.cost - open.noise_cost()).max(0.0))
+    let left = noise::left(open, fit).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
+    SAME * verdict::unit(before - fit.cost, left)
 }
 
 /// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
@@ -219,10 +220,10 @@ pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<
     let first = fits.first()?;
     let criterion = Criterion::of(open, [Some(first), None, None]);
     let tie = tie(open, first, before);
-    let same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
+    let mut same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
     let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
-    let best = *same.iter().min_by(|a, b| price(a).total_cmp(&price(b)))?;
-    Some((best.clone(), other_forms(best, same.into_iter())))
+    same.sort_by(|a, b| price(a).total_cmp(&price(b)));
+    Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
 }
 
 /// Of fits that are as good as another, cheapest first, those that an answer names: one on every other element first, then one at every

@@ -44,6 +44,15 @@ impl PartialEq for Wanted<'_> {
     }
 }
 
+/// A shape beside those of a slot's basis, with its scale.
+pub(super) type More = Option<(&'static Shape, f64)>;
+
+/// Signatures of which a slot's curve is made up.
+fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
+    let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
+    slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
+}
+
 /// A law with numbers to start from.
 struct Candidate {
     model: Model,
@@ -88,6 +97,15 @@ impl<'a> Shown<'a> {
         Some(Self { problem, along: fit, from: without, slopes, basis, left })
     }
 
+    /// Keeps of what has to be explained the part that curves over a slot's variable can. Differences hold more than signals along one run
+    /// have: what comes of other bounces where cables go slack, and what a law does between two samples.
+    pub fn keep(&mut self, all: &[Slot], own: &Slot, more: More) {
+        let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &of_curve(own, more)).into_iter().collect();
+        let Some(signatures) = signatures else { return };
+        let sizes = sizes(&signatures, &self.left);
+        self.left = signatures.iter().zip(sizes).fold(DVector::zeros(self.left.len()), |sum, (s, size)| sum + s * size);
+    }
+
     /// Sum of squares of what has to be explained.
     pub fn whole(&self) -> f64 {
         self.left.norm_squared()
@@ -102,8 +120,7 @@ impl<'a> Shown<'a> {
     pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
         let plain: Vec<&Slot> =
             best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
-        let basis = |slot| Slot::basis(slot).map(move |shape| Wanted { slot, shape, scale: slot.scale });
-        let wanted: Vec<Wanted> = plain.iter().copied().flat_map(basis).collect();
+        let wanted: Vec<Wanted> = plain.iter().flat_map(|slot| of_curve(slot, None)).collect();
         let mut signatures = self.signatures(all, &wanted).into_iter();
         let candidates: Vec<Candidate> = plain
             .iter()
@@ -139,17 +156,14 @@ impl<'a> Shown<'a> {
         fits
     }
 
-    /// How much of it a curve over each slot's variable could explain; the best first.
-    pub fn locate(&self, all: &[Slot]) -> Vec<Located> {
-        let every: Vec<Wanted> = all
-            .iter()
-            .flat_map(|slot| slot.basis().map(move |shape| Wanted { slot, shape, scale: slot.scale }))
-            .collect();
-        let signatures = self.signatures(all, &every);
+    /// How much of it a curve over each slot's variable could explain, of one shape more where that is given with its scale; the best first.
+    pub fn locate(&self, all: &[Slot], more: More) -> Vec<Located> {
+        let wanted: Vec<Vec<Wanted>> = all.iter().map(|slot| of_curve(slot, more)).collect();
+        let signatures = self.signatures(all, &wanted.concat());
         let mut signatures = signatures.iter();
-        let gains = all.iter().map(|slot| {
-            let own = signatures.by_ref().take(slot.basis().count());
-            let own: Vec<&DVector<f64>> = own.flatten().collect();
+        let gains = all.iter().zip(&wanted).map(|(slot, own)| {
+            let own: Vec<&Option<DVector<f64>>> = signatures.by_ref().take(own.len()).collect();
+            let own: Vec<&DVector<f64>> = own.into_iter().flatten().collect();
             Located { slot: slot.clone(), gain: explained(&own, &self.left) }
         });
         let mut located: Vec<Located> = gains.collect();

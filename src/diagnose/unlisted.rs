@@ -46,7 +46,7 @@ pub(super) fn propose(problem: &Problem, from: &Fit, reach: Reach, say: &dyn Fn(
         return None;
     }
     let shown = Shown::misfit(problem, from)?;
-    let located = shown.locate(&all);
+    let located = shown.locate(&all, None);
     say(format!("{} slots screened, the best {} on {}", located.len(), address(&located), variable(&located)));
     let best = several_ports(&located);
     let mut fits = shown.refits(&all, &best, 1);
