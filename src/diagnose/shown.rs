@@ -113,10 +113,10 @@ impl<'a> Shown<'a> {
 
     /// Joint refits with a law at each of these slots in its most promising shapes, at most so many of each; cheapest first.
     pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
-        self.refitted(&self.shapes(all, best, most))
+        self.refitted(&self.shapes(all, best, most), GOING_ON)
     }
 
-    /// The same with a curve at each of these slots.
+    /// The same with a curve at each of these slots; none goes on, for a curve is no answer.
     pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
         let plain: Vec<&Slot> =
             best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
@@ -133,11 +133,11 @@ impl<'a> Shown<'a> {
                 Some(self.with(&own))
             })
             .collect();
-        self.refitted(&candidates)
+        self.refitted(&candidates, 0)
     }
 
-    /// Rough fits, of which those that are best after a few steps go on.
-    fn refitted(&self, candidates: &[Candidate]) -> Vec<Fit> {
+    /// Rough fits, of which so many that are best after a few steps go on.
+    fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
         let problem = self.problem;
         let begin = |candidate: &Candidate| {
             let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
@@ -149,7 +149,7 @@ impl<'a> Shown<'a> {
         let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
         underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         let finish = |(place, fit): (usize, Underway)| {
-            problem.end(if place < GOING_ON { problem.go_on(fit, MORE_STEPS) } else { fit })
+            problem.end(if place < going_on { problem.go_on(fit, MORE_STEPS) } else { fit })
         };
         let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));

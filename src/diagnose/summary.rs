@@ -47,10 +47,14 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
     }
 }
 
-/// Laws at other ports that explain as much as the effects that are named, in words.
-fn or_laws(d: &Diagnosis) -> String {
-    let count: usize = d.effects.iter().map(|e| e.forms.iter().filter(|form| form.port != e.port).count()).sum();
-    if count == 0 { String::new() } else { ", or a law elsewhere that explains as much (see forms)".to_owned() }
+/// Probability from which laws at other ports are worth a word.
+const WORTH_A_WORD: f64 = 0.05;
+
+/// Laws at other ports, where the effects that are named leave them a probability, in words.
+fn or_laws(d: &Diagnosis) -> &'static str {
+    let named: f64 = d.effects.iter().map(|e| e.probability).sum();
+    let has_forms = d.effects.iter().any(|e| e.forms.iter().any(|form| form.port != e.port));
+    if has_forms && 1.0 - named > WORTH_A_WORD { ", or a law elsewhere (see forms)" } else { "" }
 }
 
 /// What comes nearest, and what hypothesis takes it further.

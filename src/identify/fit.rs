@@ -274,11 +274,28 @@ mod tests {
             let free = Override::parse(FREE).expect("written rightly");
             let found =
                 fit_rig_parameters(&set, "muscle_bench", &[law, free], std::slice::from_ref(&run)).expect("fits");
+            let [low, high] = found.parameters[0].ci95.expect("the runs show it");
+            assert!(low < 0.12 && 0.12 < high && high - low < 0.02, "{low} {high}");
+            assert!(!found.from_elsewhere);
             found.parameters[0].value
         };
         let found: Vec<f64> = [0.0, 0.06, 0.3, 1.0].map(from).to_vec();
         let spread = found.iter().fold(0.0_f64, |m, v| m.max((v - found[0]).abs()));
         assert!(spread < 1e-6, "{found:?}");
         assert!((found[0] - 0.12).abs() < 0.005, "{found:?}");
+    }
+    /// A cost with a valley beside the true one: a search that ends in it begins again elsewhere.
+    #[test]
+    fn a_fit_leaves_a_valley() {
+        let bounds = [Bounds { min: 0.0, max: 1.0 }];
+        let residuals =
+            |x: &[f64]| Some(DVector::from_element(100, 10.0 * (x[0] - 0.8).abs().min(0.3 + (x[0] - 0.1).abs())));
+        let search = |start: &[f64]| minimise(&residuals, start, &bounds, LmOptions::default());
+        let first = search(&[0.15]).expect("it can be evaluated");
+        assert!((first.parameters[0] - 0.1).abs() < 0.05, "{first:?}");
+        let (found, is_other) = lowest(first, 100, &bounds, &search);
+        assert!(is_other && (found.parameters[0] - 0.8).abs() < 1e-3, "{found:?}");
+        let (again, is_other) = lowest(found.clone(), 100, &bounds, &search);
+        assert!(!is_other && again == found);
     }
 }

@@ -212,11 +212,26 @@ impl fmt::Display for Dimension {
             return f.write_str(name);
         }
         let parts = [("kg", self.kg), ("m", self.m), ("s", self.s)];
-        let words = parts.iter().filter(|(_, n)| n.abs() > SAME).map(|(name, n)| match *n {
-            1.0 => (*name).to_owned(),
-            n => format!("{name}^{n}"),
-        });
-        f.write_str(&words.collect::<Vec<_>>().join(" "))
+        let side = |sign: f64| -> Vec<String> {
+            parts.iter().filter(|(_, n)| sign * n > SAME).map(|(name, n)| raised(name, sign * n)).collect()
+        };
+        let (above, below) = (side(1.0), side(-1.0));
+        f.write_str(&if above.is_empty() { "1".to_owned() } else { above.join(" ") })?;
+        match &below[..] {
+            [] => Ok(()),
+            [one] => write!(f, "/{one}"),
+            several => write!(f, "/({})", several.join(" ")),
+        }
+    }
+}
+
+/// A unit to a power: `m`, `m2`, `m^0.5`.
+fn raised(name: &str, power: f64) -> String {
+    let whole = power.round();
+    match (power - whole).abs() < SAME {
+        true if whole == 1.0 => name.to_owned(),
+        true => format!("{name}{whole}"),
+        false => format!("{name}^{power}"),
     }
 }
 
@@ -226,6 +241,15 @@ mod tests {
 
     fn unit(text: &str) -> Dimension {
         Dimension::parse(text).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        for text in ["s/m", "1/(m s)", "kg m/s", "kg2/m3", "m5", "1/s2", "N", "Pa s2/m6"] {
+            let written = unit(text).to_string();
+            assert_eq!(unit(&written), unit(text), "{text}: {written}");
+        }
+        assert_eq!((unit("s/m").to_string(), unit("1/m s").to_string()), ("s/m".to_owned(), "1/(m s)".to_owned()));
     }
 
     #[test]
