@@ -5,8 +5,8 @@ use crate::recording::parse_column;
 use crate::scene::Scene;
 
 use super::case::Case;
-use super::grammar;
 use super::model::Placed;
+use super::shaped;
 
 /// An effect with numbers to start from; the size is the first of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub fn variants(case: &Case) -> Vec<Variant> {
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));
         }
     }
-    all.extend(case.scene.candidates.iter().map(|candidate| grammar::candidate(case, candidate)));
+    all.extend(case.scene.candidates.iter().map(|candidate| shaped::candidate(case, candidate)));
     all
 }
 

@@ -4,8 +4,10 @@
 //! every port; a slot whose curves imitate all that the found law does, the numbers of the calibration free, is another place for it.
 
 use super::fit::{Fit, Problem};
-use super::grammar::{Reach, Shape, Slot, slots, variant};
+use super::grammar::{Reach, Slot, slots};
 use super::reading::Reading;
+use super::shaped::variant;
+use super::shapes::Shape;
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
 

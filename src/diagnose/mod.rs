@@ -24,6 +24,7 @@
 //! # }
 //! ```
 
+mod acting;
 mod answer;
 mod apart;
 mod baseline;
@@ -66,8 +67,11 @@ mod screening;
 mod seal;
 mod search;
 mod settle;
+mod shaped;
+mod shapes;
 mod shown;
 mod side_by_side;
+mod span;
 mod specimen;
 mod steady;
 mod summary;

@@ -7,11 +7,14 @@ use super::candidates::Variant;
 use super::case::CaseRun;
 use super::descent::Underway;
 use super::fit::{Fit, Problem};
-use super::grammar::{Shape, Slot, curve, variant};
+use super::grammar::Slot;
 use super::model::{Model, Sides};
 use super::normal::Number;
 use super::reading::Reading;
 use super::screening::orthogonal;
+use super::shaped::{curve, variant};
+use super::shapes::Shape;
+use super::span::{explained, sizes};
 
 /// Scales of a shape that are tried, in those of the slot.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
@@ -311,51 +314,4 @@ fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> 
 
 fn number(scale: f64) -> Number {
     Number { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: INJECTED, prior: 0.0, prior_weight: 0.0 }
-}
-
-/// Share of its largest direction below which a curve's signature says nothing.
-const FAINT: f64 = 1e-6;
-
-/// Fall of the sum of squares that signatures explain together.
-fn explained(signatures: &[&DVector<f64>], left: &DVector<f64>) -> f64 {
-    directions(signatures, left).iter().map(|d| d.along * d.along / d.length).sum()
-}
-
-/// Sizes of signatures that together come nearest to what is left.
-fn sizes(signatures: &[DVector<f64>], left: &DVector<f64>) -> Vec<f64> {
-    let signatures: Vec<&DVector<f64>> = signatures.iter().collect();
-    let mut sizes = vec![0.0; signatures.len()];
-    for d in directions(&signatures, left) {
-        sizes.iter_mut().zip(&d.sizes).for_each(|(size, own)| *size += d.along / d.length * own);
-    }
-    sizes
-}
-
-/// One of several directions at right angles that signatures span.
-struct Direction {
-    /// Of what is left along it, with its square of length.
-    along: f64,
-    length: f64,
-    /// Sizes of the signatures in it.
-    sizes: Vec<f64>,
-}
-
-/// The directions that signatures span and that say something.
-fn directions(signatures: &[&DVector<f64>], left: &DVector<f64>) -> Vec<Direction> {
-    let n = signatures.len();
-    if n == 0 {
-        return Vec::new();
-    }
-    let lengths: Vec<f64> = signatures.iter().map(|s| s.norm().max(f64::MIN_POSITIVE)).collect();
-    let gram = DMatrix::from_fn(n, n, |i, j| signatures[i].dot(signatures[j]) / (lengths[i] * lengths[j]));
-    let onto = DVector::from_fn(n, |i, _| signatures[i].dot(left) / lengths[i]);
-    let eigen = gram.symmetric_eigen();
-    let floor = FAINT * eigen.eigenvalues.max();
-    let loud = (0..n).filter(|&k| eigen.eigenvalues[k] > floor);
-    loud.map(|k| {
-        let vector = eigen.eigenvectors.column(k);
-        let sizes = vector.iter().zip(&lengths).map(|(v, length)| v / length).collect();
-        Direction { along: vector.dot(&onto), length: eigen.eigenvalues[k], sizes }
-    })
-    .collect()
 }

@@ -1,0 +1,50 @@
+//! What signatures explain together.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Share of its largest direction below which a curve's signature says nothing.
+const FAINT: f64 = 1e-6;
+
+/// Fall of the sum of squares that signatures explain together.
+pub fn explained(signatures: &[&DVector<f64>], left: &DVector<f64>) -> f64 {
+    directions(signatures, left).iter().map(|d| d.along * d.along / d.length).sum()
+}
+
+/// Sizes of signatures that together come nearest to what is left.
+pub fn sizes(signatures: &[DVector<f64>], left: &DVector<f64>) -> Vec<f64> {
+    let signatures: Vec<&DVector<f64>> = signatures.iter().collect();
+    let mut sizes = vec![0.0; signatures.len()];
+    for d in directions(&signatures, left) {
+        sizes.iter_mut().zip(&d.sizes).for_each(|(size, own)| *size += d.along / d.length * own);
+    }
+    sizes
+}
+
+/// One of several directions at right angles that signatures span.
+struct Direction {
+    /// Of what is left along it, with its square of length.
+    along: f64,
+    length: f64,
+    /// Sizes of the signatures in it.
+    sizes: Vec<f64>,
+}
+
+/// The directions that signatures span and that say something.
+fn directions(signatures: &[&DVector<f64>], left: &DVector<f64>) -> Vec<Direction> {
+    let n = signatures.len();
+    if n == 0 {
+        return Vec::new();
+    }
+    let lengths: Vec<f64> = signatures.iter().map(|s| s.norm().max(f64::MIN_POSITIVE)).collect();
+    let gram = DMatrix::from_fn(n, n, |i, j| signatures[i].dot(signatures[j]) / (lengths[i] * lengths[j]));
+    let onto = DVector::from_fn(n, |i, _| signatures[i].dot(left) / lengths[i]);
+    let eigen = gram.symmetric_eigen();
+    let floor = FAINT * eigen.eigenvalues.max();
+    let loud = (0..n).filter(|&k| eigen.eigenvalues[k] > floor);
+    loud.map(|k| {
+        let vector = eigen.eigenvectors.column(k);
+        let sizes = vector.iter().zip(&lengths).map(|(v, length)| v / length).collect();
+        Direction { along: vector.dot(&onto), length: eigen.eigenvalues[k], sizes }
+    })
+    .collect()
+}
