@@ -8,7 +8,7 @@ use super::case::Case;
 use super::grammar::Slot;
 use super::shapes::{P, P_RANGE, Shape};
 use crate::effects::{Fitted, Range};
-use crate::laws::{Acts, LawTable, ParameterTable, QUANTITIES, Surroundings};
+use crate::laws::{LawTable, ParameterTable, QUANTITIES, Surroundings};
 use crate::scene::Candidate;
 
 /// The law of a slot in a shape, its scale so many times the slot's; none where the port cannot have it.
