@@ -48,14 +48,7 @@ pub(super) fn explain(
     let begun = Begun::with_one(&weigh::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
     let explained = match hypothesis::one_law(case, &base.noise, &begun.found(), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
-        OneLaw::Part(with_law) => {
-            let noise = base.noise;
-            let search = Search { variants: &variants, seed, say };
-            match search.short_of_law(case, begun.clone(), noise.clone(), with_law)? {
-                Some(explained) => explained,
-                None => search.whole(case, begun, noise, None)?,
-            }
-        }
+        OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, tried)?,
     };
     let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
@@ -69,36 +62,41 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The search with what one law has shown: where that outdoes several effects of the catalogue, these are not sought to the end. `None`
-    /// where they were not, and no law stands in their place after all.
-    fn short_of_law(
+    /// Several effects, several laws, laws beside effects. Where one law outdoes two effects, no more of these are sought; if then no law
+    /// stands in their place after all, they are.
+    fn several(
         &self,
         case: &mut Case,
         begun: Begun,
         noise: Vec<Noise>,
-        with_law: hypothesis::Begun,
-    ) -> Result<Option<Explained>, DiagnoseError> {
-        let law = Bound(with_law.law.as_ref());
-        let (found, noise) = weigh::search_and_weigh(case, noise, begun, (self.variants, law), self.say);
-        if !law.outdoes(&weigh::open_runs(case, &noise), &found.baseline, &found.best) {
-            let listed = self.held_against_sealed(case, found, noise)?;
-            return self.with_laws(case, listed, with_law.proposals).map(Some);
+        tried: hypothesis::Tried,
+    ) -> Result<Explained, DiagnoseError> {
+        let law = Bound(tried.law.as_ref());
+        let open = weigh::open_runs(case, &noise);
+        let found = begun.clone().finish(&open, self.variants, law, self.say);
+        if !law.outdoes(&open, &found.baseline, &found.best) {
+            return self.to_the_end(case, noise, found, tried.proposals);
         }
-        let mut cut_short = Explained { confirmed: Confirmed::InPart, ..proven(case, found, noise, self.seed)? };
-        self.by_laws(case, &mut cut_short, with_law.proposals)
+        let mut cut_short =
+            Explained { confirmed: Confirmed::InPart, ..proven(case, found, noise.clone(), self.seed)? };
+        if let Some(lawful) = self.by_laws(case, &mut cut_short, tried.proposals)? {
+            return Ok(lawful);
+        }
+        let found = begun.finish(&weigh::open_runs(case, &noise), self.variants, Bound(None), self.say);
+        self.to_the_end(case, noise, found, None)
     }
 
-    /// The search to the end; `begun`: laws that were proposed before.
-    fn whole(
+    /// What was found in the catalogue, weighed, held against the sealed runs and against laws; `begun`: those that were proposed before.
+    fn to_the_end(
         &self,
         case: &mut Case,
-        catalogue: Begun,
         noise: Vec<Noise>,
+        found: Found,
         begun: Option<Proposals>,
     ) -> Result<Explained, DiagnoseError> {
-        let (found, noise) = weigh::search_and_weigh(case, noise, catalogue, (self.variants, Bound(None)), self.say);
-        let listed = self.held_against_sealed(case, found, noise)?;
-        self.with_laws(case, listed, begun)
+        let (found, noise) = weigh::weigh(case, noise, found, self.variants, self.say);
+        let mut listed = self.held_against_sealed(case, found, noise)?;
+        Ok(self.by_laws(case, &mut listed, begun)?.unwrap_or(listed))
     }
 
     /// What the catalogue explains, without what does not stand, held against the sealed runs.
@@ -123,15 +121,6 @@ impl Search<'_> {
         explained.confirmed =
             confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
         Ok(Explained { of_found: warnings, ..explained })
-    }
-
-    fn with_laws(
-        &self,
-        case: &mut Case,
-        mut listed: Explained,
-        begun: Option<Proposals>,
-    ) -> Result<Explained, DiagnoseError> {
-        Ok(self.by_laws(case, &mut listed, begun)?.unwrap_or(listed))
     }
 
     /// Laws that nobody listed in the place of what was found, where they explain clearly more.

@@ -8,7 +8,7 @@ use super::fit::{Fit, Problem};
 use super::grammar::Reach;
 use super::noise::{self, Noise};
 use super::refits::{foretells, foretells_runs};
-use super::search::{Found, MOST_EFFECTS, least_gain};
+use super::search::{Found, MOST_EFFECTS, least_gain, leaves_much};
 use super::shown::Located;
 use super::unlisted::{Proposals, propose};
 use super::verdict::Excess;
@@ -35,7 +35,6 @@ const PER_LETTER: f64 = 0.02;
 const MOST_FORMS: usize = 4;
 
 /// A model with a law, the others that are as good, and where the misfit sits.
-#[derive(Clone)]
 struct Lawful {
     best: Fit,
     forms: Vec<Fit>,
@@ -47,12 +46,12 @@ pub(super) enum OneLaw {
     /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
     All(Box<Found>, Vec<Noise>),
     /// It does not, or was not asked for.
-    Part(Begun),
+    Part(Tried),
 }
 
 /// What has been tried with one law, for later.
 #[derive(Default)]
-pub(super) struct Begun {
+pub(super) struct Tried {
     pub proposals: Option<Proposals>,
     /// The best law that is clearly better than any single effect.
     pub law: Option<Fit>,
@@ -60,30 +59,35 @@ pub(super) struct Begun {
 
 /// Looks for one law in the place of the best single effect, where that leaves more than noise.
 pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
-    let nothing = OneLaw::Part(Begun::default());
+    let nothing = OneLaw::Part(Tried::default());
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
         return nothing;
     }
     let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return nothing };
-    let is_better = |lawful: &Lawful| is_clearly_better(&open, found, &lawful.best);
-    let is_all = |lawful: &&Lawful| !leaves_something(&open, &lawful.best);
+    let is_all = |lawful: &Lawful| !leaves_something(&open, &lawful.best);
+    // One that leaves much neither ends a search nor bounds it.
+    let is_better = |lawful: &Lawful| {
+        (is_all(lawful) || !leaves_much(&open, &found.baseline, &lawful.best))
+            && is_clearly_better(&open, found, &lawful.best)
+    };
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
         .map(|(best, forms)| Lawful { best, forms, located: proposals.located.clone() })
         .filter(is_better);
-    let instead = match alone.as_ref().filter(is_all) {
-        Some(_) => None,
-        None => instead(&open, found, say).filter(is_better),
+    let instead = match alone.as_ref().is_some_and(is_all) {
+        true => None,
+        false => instead(&open, found, say).filter(is_better),
     };
     let best = alone.into_iter().chain(instead).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
-    let part = |law| OneLaw::Part(Begun { proposals: Some(proposals), law });
-    let Some(lawful) = best.as_ref().filter(is_all) else { return part(best.map(|l| l.best)) };
+    let law = best.as_ref().map(|lawful| lawful.best.clone());
+    let part = OneLaw::Part(Tried { law, proposals: Some(proposals) });
+    let Some(lawful) = best.filter(is_all) else { return part };
     let former = case.runs.clone();
-    let (found, renewed) = renew(case, noise, lawful.clone().beside(found));
+    let (found, renewed) = renew(case, noise, lawful.beside(found));
     let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
     if leaves_something(&open, &found.best) {
         case.runs = former;
-        return part(best.map(|l| l.best));
+        return part;
     }
     say(format!("{} explains it all", found.best.model.title()));
     OneLaw::All(Box::new(found), renewed)
@@ -179,12 +183,13 @@ pub(super) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Foun
     (found, renewed.noise)
 }
 
-/// A fit with a law, and fits with one at another place that does the same, fitted to the end where they come near. `before` is the chi² without it.
+/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. `before` is the chi²
+/// without it.
 fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
-    let tie = tie(open, &fit, before);
+    let near = fit.cost + NEARLY * tie(open, &fit, before);
     let rough = elsewhere(open, &fit);
-    let near = rough.par_iter().filter(|f| f.cost < fit.cost + NEARLY * tie);
-    near.filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
+    let named = other_forms(&fit, rough.iter().take_while(|f| f.cost < near));
+    named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
 }
 
 /// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
@@ -226,7 +231,7 @@ pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<
     Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
 }
 
-/// Of fits that are as good as another, cheapest first, those that an answer names: one on every other element first, then one at every
+/// Of fits that are as good as another, best first, those that an answer names: one on every other element first, then one at every
 /// other place, then other shapes. What the sensors cannot tell apart comes before how it may be written.
 fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
     let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();

@@ -100,13 +100,14 @@ pub use side_by_side::side_by_side;
 pub use without::Step;
 
 use confirm::Confirmed;
+use experiment::Experiment;
 use explained::{Explained, diverges};
 use fit::Problem;
 use screening::Screened;
 use search::Found;
 
 use crate::effects::Effect;
-use crate::recording::Recording;
+use crate::recording::{Recording, RecordingError};
 
 /// What a diagnosis is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,12 +242,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     warnings.extend(specimen::words(&case, &specimens));
     let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
     say("next experiment".to_owned());
-    let open = verdict::open(&found, left);
-    let is_open = verdict == Verdict::Ambiguous || !open.rivals.is_empty();
-    let experiment = match is_open {
-        true => settle::settle(&whole, &found.best, &open)?,
-        false => experiment::confirm(&whole, &found.best, found.rivals.iter().flatten())?,
-    };
+    let experiment = next_experiment(&whole, &found, left)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let mut diagnosis = Diagnosis {
         format: 1,
@@ -278,6 +274,15 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         next_inputs: experiment.inputs,
         case,
     })
+}
+
+/// What would set apart what stays open, or else the answer from what comes next to it; `left` is the chi² that the best leaves beyond noise.
+fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experiment, RecordingError> {
+    let open = verdict::open(found, left);
+    if open.rivals.is_empty() {
+        return experiment::confirm(whole, &found.best, found.rivals.iter().flatten());
+    }
+    settle::settle(whole, &found.best, &open)
 }
 
 /// Gives every effect that the complete fit has the curve of its law.

@@ -176,7 +176,8 @@ fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
     others
 }
 
-fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
+/// Whether a fit leaves much of what the baseline leaves.
+pub(super) fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
     let noise = problem.noise_cost();
     best.cost - noise > MUCH * (baseline.cost - noise) && best.cost - noise > least_gain(problem.samples())
 }

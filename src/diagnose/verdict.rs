@@ -100,6 +100,9 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
 /// What a law that nobody listed counts at another port, beside an effect that is known.
 const UNLISTED: f64 = 0.02;
 
+/// Logarithm of odds beyond which nothing is surer: what is lower by any chi² has a finite weight.
+const CERTAIN: f64 = 50.0;
+
 /// Forms of the last effect at other ports, the best of each, with their weights beside 1 of the effect.
 fn elsewhere(found: &Found, left: f64) -> Vec<(f64, &Fit)> {
     let Some(own) = found.best.model.effects.last() else { return Vec::new() };
@@ -111,7 +114,8 @@ fn elsewhere(found: &Found, left: f64) -> Vec<(f64, &Fit)> {
             continue;
         };
         ports.push(port);
-        forms.push((prior * (-(fit.cost - found.best.cost) / (2.0 * unit)).exp(), fit));
+        let odds = ((found.best.cost - fit.cost) / (2.0 * unit)).min(CERTAIN).exp();
+        forms.push((prior * odds, fit));
     }
     forms
 }

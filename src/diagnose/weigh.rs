@@ -6,18 +6,16 @@ use super::fit::{Fit, Problem};
 use super::noise::{self, Noise};
 use super::search::{self, Begun, Bound, Found};
 
-/// Searches from what has begun, and again where what was found asks for other weights or other steps and no law outdoes it.
-pub(super) fn search_and_weigh(
+/// Searches again from what was found, where that asks for other weights or other steps.
+pub(super) fn weigh(
     case: &mut Case,
     mut noise: Vec<Noise>,
-    begun: Begun,
-    (variants, law): (&[Variant], Bound),
+    mut found: Found,
+    variants: &[Variant],
     say: &dyn Fn(String),
 ) -> (Found, Vec<Noise>) {
-    let mut found = begun.finish(&open_runs(case, &noise), variants, law, say);
     for _ in 0..2 {
-        let is_outdone = law.outdoes(&open_runs(case, &noise), &found.baseline, &found.best);
-        if found.best.model.effects.is_empty() || is_outdone {
+        if found.best.model.effects.is_empty() {
             break;
         }
         let former = case.runs.clone();

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::port::{Address, Carrier};
+use super::address::Address;
+use super::port::Carrier;
 use super::program::Program;
 use super::quantity::{Quantity, Variable};
 use super::tree::Node;

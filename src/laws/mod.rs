@@ -16,6 +16,7 @@
 //! # }
 //! ```
 
+mod address;
 mod dimension;
 mod example;
 mod law;
@@ -28,9 +29,10 @@ mod table;
 mod tree;
 mod units;
 
+pub use address::{Address, nearest_port};
 pub use dimension::Dimension;
 pub use law::{Law, Memory, Parameter, Programs, SLOPES, State, Symbol};
-pub use port::{Address, Carrier, PORTS, Port, PortSpec, nearest_port};
+pub use port::{Carrier, PORTS, Port, PortSpec};
 pub use program::Program;
 pub use quantity::{QUANTITIES, Quantity, QuantitySpec, Variable};
 pub use read::{LawError, Surroundings};

@@ -1,10 +1,7 @@
 //! The places of the chain at which a law can act.
 
-use std::fmt;
-
 use super::quantity::Quantity as Q;
 use super::{Acts, Dimension, Quantity};
-use crate::nearest::did_you_mean;
 
 /// A named term or coefficient of an element's equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -302,125 +299,6 @@ impl PortSpec {
     }
 }
 
-/// What others call a term of an element.
-const USUAL: [(&str, &str); 12] = [
-    ("viscosity", "damping"),
-    ("drag", "damping"),
-    ("force", "pull"),
-    ("preload", "pull"),
-    ("stiffness", "wall"),
-    ("elasticity", "wall"),
-    ("spring", "coil"),
-    ("length", "rest_length"),
-    ("leak", "outflow"),
-    ("slack", "stretch"),
-    ("friction", "transmission"),
-    ("moment", "torque"),
-];
-
-/// The nearest port to a text that is none, in words (`, did you mean "muscle.damping"?`): of its own element where it has one.
-pub fn nearest_port(text: &str) -> String {
-    let (element, term) = text.split_once('.').unwrap_or((text, ""));
-    let kind = element.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
-    let names: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
-    let is_own = |name: &&str| name.split('.').next() == Some(kind);
-    let known: Vec<&str> = names.iter().map(String::as_str).collect();
-    let own: Vec<&str> = known.iter().copied().filter(is_own).collect();
-    let usual = USUAL.iter().filter(|(word, _)| *word == term).map(|(_, own)| format!("{kind}.{own}"));
-    let meant = usual.into_iter().find(|name| own.contains(&name.as_str()));
-    let meant = meant.unwrap_or_else(|| format!("{kind}{}{term}", if term.is_empty() { "" } else { "." }));
-    did_you_mean(&meant, if own.is_empty() { &known } else { &own })
-}
-
-/// A port of one rig: `muscle_2.friction`, `joint(pulley).torque`, `sensor.angle_deg`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Address {
-    pub port: Port,
-    /// Counts from 0; none means all there are.
-    pub number: Option<usize>,
-    /// Name of the joint or of the channel.
-    pub of: Option<String>,
-}
-
-impl Address {
-    /// Reads the address of a port.
-    ///
-    /// ```
-    /// use smam::laws::{Address, Port};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let second = Address::parse("muscle_2.friction").map_err(|(message, _)| message)?;
-    /// assert_eq!((second.port, second.number), (Port::Friction, Some(1)));
-    /// assert_eq!(second.to_string(), "muscle_2.friction");
-    /// assert!(Address::parse("muscle.frction").is_err_and(|(message, _)| message.contains("muscle.friction")));
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    /// What is none, with the nearest that is one, and what to write instead.
-    pub fn parse(text: &str) -> Result<Self, (String, String)> {
-        let text = text.trim();
-        let unknown = || {
-            (format!("port = \"{text}\" is no port{}", nearest_port(text)), "`smam laws` lists the ports".to_owned())
-        };
-        let (element, term) = text.split_once('.').unwrap_or((text, ""));
-        if element == "sensor" && !term.is_empty() {
-            return Ok(Self { port: Port::Sensor, number: None, of: Some(term.to_owned()) });
-        }
-        let named = element.strip_suffix(')').and_then(|e| e.split_once('('));
-        let (element, of) = named.map_or((element, None), |(e, name)| (e, Some(name.trim().to_owned())));
-        let find =
-            |element: &str| PORTS.iter().find(|p| p.element == element && p.term == term && p.port != Port::Sensor);
-        if let Some(spec) = find(element) {
-            if of.is_some() && spec.carrier != Carrier::Joint {
-                let remedy = format!("number the elements of a rig that has several: {element}_1");
-                return Err((format!("port = \"{text}\": only joints go by name"), remedy));
-            }
-            return Ok(Self { port: spec.port, number: None, of });
-        }
-        let numbered = element.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
-        let found = numbered.and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
-        match found {
-            Some((spec, number)) if of.is_none() && spec.carrier != Carrier::Joint => {
-                Ok(Self { port: spec.port, number: Some(number), of: None })
-            }
-            _ => Err(unknown()),
-        }
-    }
-
-    /// Which of `count` elements it means; none where there is none.
-    pub fn indices(&self, count: usize) -> std::ops::Range<usize> {
-        self.number.map_or(0..count, |n| n.min(count)..(n + 1).min(count))
-    }
-
-    /// Name of the element that it belongs to in answers: `line_1`, `mechanism`, `sensor`.
-    pub fn element(&self) -> String {
-        let name = match self.port.spec().element {
-            "plunger" => "syringe",
-            "joint" => "mechanism",
-            other => other,
-        };
-        self.number.map_or_else(|| name.to_owned(), |n| format!("{name}_{}", n + 1))
-    }
-}
-
-impl fmt::Display for Address {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let spec = self.port.spec();
-        f.write_str(spec.element)?;
-        if let Some(number) = self.number {
-            write!(f, "_{}", number + 1)?;
-        }
-        match (&self.of, self.port) {
-            (Some(channel), Port::Sensor) => return write!(f, ".{channel}"),
-            (Some(joint), _) => write!(f, "({joint})")?,
-            (None, _) => {}
-        }
-        if spec.term.is_empty() { Ok(()) } else { write!(f, ".{}", spec.term) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -430,25 +308,6 @@ mod tests {
         for (i, spec) in PORTS.iter().enumerate() {
             assert_eq!(spec.port as usize, i, "{}", spec.name());
             assert!(spec.adds.iter().all(|unit| Dimension::parse(unit).is_ok()), "{}", spec.name());
-        }
-    }
-
-    #[test]
-    fn addresses_go_there_and_back() {
-        for text in [
-            "plunger",
-            "plunger_2",
-            "line.outflow",
-            "line_1.pressure_drop",
-            "muscle_2.rest_length",
-            "joint.torque",
-            "joint(notch_3).stiffness",
-            "sensor.angle_deg",
-        ] {
-            assert_eq!(Address::parse(text).unwrap_or_else(|e| panic!("{e:?}")).to_string(), text);
-        }
-        for wrong in ["", "muscle", "muscle_0.friction", "muscle.speed", "joint_1.torque", "muscle(a).pull", "sensor"] {
-            assert!(Address::parse(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::address::Address;
 use super::law::{Law, Memory, Parameter, Programs, State, StateTrees, Symbol};
-use super::port::{Address, Port, PortSpec};
+use super::port::{Port, PortSpec};
 use super::quantity::{QUANTITIES, Quantity, Variable};
 use super::syntax::{SyntaxError, parse};
 use super::table::{LawTable, ParameterTable, StateTable};
