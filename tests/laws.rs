@@ -68,7 +68,9 @@ mod practice_laws {
             ("presliding_length_m", "lh"),
         ];
         let number = |key: &str| truth["calibration"][key].as_f64().expect("a number");
-        let overrides: Vec<Override> = keys.iter().map(|(key, own)| Override::number(*key, number(own))).collect();
+        let mut overrides: Vec<Override> = keys.iter().map(|(key, own)| Override::number(*key, number(own))).collect();
+        // The fluid of that program never boils.
+        overrides.push(Override::number("hydraulics.fluid.tensile_strength_pa", 1e9));
         Scene::load(truth["rig"].as_str().expect("a rig"), &overrides).unwrap_or_else(|e| panic!("{e}"))
     }
 

@@ -95,6 +95,9 @@ pub struct Drawn {
 
 /// Stroke of that programme over that of the others.
 const LARGER: f64 = 1.5;
+/// How many seeds are tried for a plant that can be followed, and how far apart they are.
+const MOST_SEEDS: u64 = 8;
+const NEXT_SEED: u64 = 1_000_003;
 
 /// Draws a case and makes its recordings.
 ///
@@ -114,9 +117,23 @@ const LARGER: f64 = 1.5;
 /// # }
 /// ```
 ///
+/// A plant that the solver cannot follow (a law so steep that the rig flutters) is no rig that could have been recorded: the next seed's is
+/// drawn in its place, and stands in the truth.
+///
 /// # Errors
-/// A plant that the solver cannot follow.
+/// A plant that the solver cannot follow, several seeds in a row.
 pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, ConcealError> {
+    let mut drawn = draw_once(name, rig, hiding, seed);
+    for further in 1..MOST_SEEDS {
+        if !matches!(drawn, Err(ConcealError::Solver(_))) {
+            break;
+        }
+        drawn = draw_once(name, rig, hiding, seed.wrapping_add(further * NEXT_SEED));
+    }
+    drawn
+}
+
+fn draw_once(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, ConcealError> {
     let (begun, mut random) = Begun::draw(rig, seed);
     let mut secrets = draw_secrets(rig, hiding, begun.decoys.contains(&Decoy::NoPressure), &mut random);
     if !secrets.is_empty() {

@@ -138,3 +138,13 @@ fn a_ramp_lags_by_the_time_constant() {
         assert!((end - ramp[399] - size).abs() < 1e-9, "{size} {is_altered}: {}", end - ramp[399]);
     }
 }
+
+/// A law so steep that the plant cannot be followed: the next seed's is drawn, and the truth says which that was.
+#[test]
+fn a_rig_that_cannot_be_followed_is_drawn_again() {
+    const FLUTTERS: u64 = 18_446_723_812_521_768_211;
+    let drawn = draw("a", Rig::BendingCatheter, Hiding::Law, FLUTTERS).expect("another");
+    assert_ne!(drawn.truth.seed, FLUTTERS);
+    let again = draw("a", Rig::BendingCatheter, Hiding::Law, drawn.truth.seed).expect("the same");
+    assert_eq!(again.truth, drawn.truth);
+}

@@ -22,6 +22,10 @@ pub struct Diagnosis {
     pub detection: Detection,
     pub location: Location,
     pub effects: Vec<NamedEffect>,
+    /// What explains the open runs and is not put into scene.toml: held-out runs are predicted worse with it than without, or the full
+    /// scene diverges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub withheld: Vec<NamedEffect>,
     /// Values of the calibrated parameters with the effects in place, SI.
     pub calibration: BTreeMap<String, Estimate>,
     /// Where runs of several specimens are diagnosed together: the calibrated numbers of each.

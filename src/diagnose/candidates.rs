@@ -18,7 +18,7 @@ pub struct Variant {
 /// Every effect that can sit on the case's scene, each in the variants it is first tried in.
 pub fn variants(case: &Case) -> Vec<Variant> {
     let mut all = Vec::new();
-    for entry in catalogue().filter(|entry| !entry.hypothetical) {
+    for entry in catalogue().filter(|e| !e.hypothetical && (case.has_clock || !e.trying.needs_clock)) {
         for placed in places(case, entry) {
             let tried = starts(case, &placed).into_iter().filter(|v| fits_scene(case, &placed, v));
             all.extend(tried.map(|values| Variant { placed: placed.clone(), values }));

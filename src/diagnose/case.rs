@@ -115,6 +115,8 @@ pub struct Case {
     pub parameters: Vec<CaseParameter>,
     pub runs: Vec<CaseRun>,
     pub notes: Vec<String>,
+    /// Whether the times of all runs are times, and no count of rows.
+    pub has_clock: bool,
     /// A step of the diagnosis that is left out.
     pub(super) without: Option<Step>,
 }

@@ -54,6 +54,7 @@ impl Case {
             folders: folders.iter().map(|f| f.display().to_string()).collect(),
             runs: Vec::new(),
             notes: Vec::new(),
+            has_clock: sets.iter().flat_map(|set| &set.runs).all(|run| !run.layout.counts_rows()),
             without: None,
             scene_name,
         };

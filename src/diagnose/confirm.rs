@@ -126,11 +126,21 @@ pub(super) fn take_back_contradicted(
 
 /// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof; where it
 /// cannot be played, that is said, and the fast model's stand.
-pub fn check_on_full_scene(sealed: &Problem, found: &Found, proof: &mut Proof, seed: u64, warnings: &mut Vec<String>) {
-    if let Err(e) = compare_with_full_scene(sealed, found, proof, seed, warnings) {
+///
+/// Whether the full scene can be played at all.
+pub fn check_on_full_scene(
+    sealed: &Problem,
+    found: &Found,
+    proof: &mut Proof,
+    seed: u64,
+    warnings: &mut Vec<String>,
+) -> bool {
+    let compared = compare_with_full_scene(sealed, found, proof, seed, warnings);
+    if let Err(e) = &compared {
         proof.full_scene.agrees = false;
         warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
     }
+    compared.is_ok()
 }
 
 fn compare_with_full_scene(

@@ -152,11 +152,13 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
 /// Takes back what does harm, and holds the rest against the full scene.
 fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
     let Explained { found, mut proof, noise, mut of_found, .. } = explained;
-    let found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
+    let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
     say("full scene".to_owned());
     let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &noise };
     proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
-    confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut of_found);
+    if !confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut of_found) {
+        harm::without_unplayable(case, &noise, &mut found, &mut proof, &mut of_found);
+    }
     Explained { found, proof, noise, of_found, ..explained }
 }
 

@@ -73,6 +73,12 @@ impl Slot {
         self.shapes().iter().filter(move |s| s.is_basis || is_constant).take(most)
     }
 
+    /// Whether its law goes by rate or by time, which a count of rows does not tell.
+    fn needs_clock(&self) -> bool {
+        let of_rate = QUANTITIES.iter().any(|q| q.quantity.is_rate() && q.name() == self.variable);
+        of_rate || self.port.is_of_rate() || self.reading.needs_clock()
+    }
+
     /// Name of its law.
     pub fn name(&self) -> String {
         format!("{}{}", self.address.replace('.', "_"), self.reading.word())
@@ -101,6 +107,7 @@ pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
             slots.extend(more);
         }
     }
+    slots.retain(|slot| case.has_clock || !slot.needs_clock());
     slots
 }
 
@@ -202,5 +209,32 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
         0 => Vec::new(),
         1 => vec![name(None)],
         n => (1..=n).map(|i| name(Some(i))).chain(together.then(|| name(None))).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::Problem;
+    use super::super::model::Model;
+    use super::super::{Noise, Sealed, candidates, made};
+    use super::*;
+
+    /// Rows that are only counted tell an order, and no pace.
+    #[test]
+    fn without_a_clock_nothing_goes_by_rate() {
+        let mut case = made::recorded("antagonistic_pulley", &[], &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);
+        let lags =
+            |case: &Case| candidates::variants(case).iter().filter(|v| v.placed.spec().trying.needs_clock).count();
+        let of_rate = |case: &Case| {
+            let noise = [Noise::white(0.01)];
+            let problem = Problem { case, runs: case.subset(Sealed::Open), noise: &noise };
+            let fit = problem.fit(&Model::baseline(), &problem.start(&Model::baseline(), None)).expect("a fit");
+            let all = slots(case, &fit, Reach::Wide);
+            (all.len(), all.iter().filter(|slot| slot.needs_clock()).count())
+        };
+        assert!(lags(&case) > 0 && of_rate(&case).1 > 0);
+        case.has_clock = false;
+        assert_eq!((lags(&case), of_rate(&case).1), (0, 0));
+        assert!(of_rate(&case).0 > 0);
     }
 }

@@ -3,6 +3,7 @@
 use super::answer::Proof;
 use super::case::{Case, CaseRun, Sealed};
 use super::fit::{Fit, Problem};
+use super::full::play_full;
 use super::grammar::Reach;
 use super::hypothesis::equally_good;
 use super::model::simulate;
@@ -39,12 +40,34 @@ pub(super) fn without(
             return other;
         }
     }
-    found.withheld = Some(std::mem::replace(&mut found.best, found.baseline.clone()));
+    withhold(&mut found, proof);
+    found
+}
+
+/// Takes what was found out of the answer: it is located, not modelled.
+fn withhold(found: &mut Found, proof: &mut Proof) {
+    let known = found.clone();
+    found.best = found.baseline.clone();
     found.rivals.clear();
     found.forms.clear();
+    found.withheld = Some(Box::new(known));
     proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
     (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
-    found
+}
+
+/// The same where the full scene cannot be played with what was found, and can without it: nobody could run that scene.toml.
+pub(super) fn without_unplayable(
+    case: &Case,
+    noise: &[Noise],
+    found: &mut Found,
+    proof: &mut Proof,
+    warnings: &mut Vec<String>,
+) {
+    if found.best.model.effects.is_empty() || play_full(case, &found.baseline, noise).is_err() {
+        return;
+    }
+    warnings.push(format!("with {} the full scene diverges: it is not put into scene.toml", found.best.model.title()));
+    withhold(found, proof);
 }
 
 /// Of the fits that explain the open runs as well as what was found, that which is nearest to what was left out of them; none where that

@@ -240,7 +240,9 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     warnings.extend(figures::on_bounds(&case, &complete));
     let specimens = specimen::numbers(&case, &complete);
     warnings.extend(specimen::words(&case, &specimens));
-    let location = locate::location(&case, &found, &effects, &whole, &before, verdict);
+    let withheld = found.withheld.as_ref().map_or_else(Vec::new, |known| verdict::named(known, &known.best, left));
+    let said = if found.withheld.is_some() { &withheld } else { &effects };
+    let location = locate::location(&case, &found, said, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = next_experiment(&whole, &found, left)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
@@ -254,6 +256,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         detection: figures::detection(&case, &noise, &found, excess),
         location,
         effects,
+        withheld,
         calibration: figures::calibration(&case, &complete),
         specimens,
         fit: proof,
@@ -302,7 +305,9 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
     let fitted = whole.fit_to_the_end(&found.best.model, &found.best.x);
     let mut complete = fitted.unwrap_or_else(|| found.best.clone());
     intervals::widen(whole, &mut complete);
-    on_full::settle(whole, complete)
+    // Numbers of all runs with which the full scene diverges are no use: then those of the open runs, with which it does not.
+    let settled = on_full::settle(whole, complete.clone()).or_else(|| on_full::settle(whole, found.best.clone()));
+    settled.unwrap_or(complete)
 }
 
 /// Whether the open runs hold more than noise that the best does not explain.
@@ -322,6 +327,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         detection: Detection::default(),
         location: Location::default(),
         effects: Vec::new(),
+        withheld: Vec::new(),
         calibration: BTreeMap::new(),
         specimens: BTreeMap::new(),
         fit: Proof::default(),

@@ -13,20 +13,20 @@ use super::full::play_on_full;
 /// model's. A step is taken only where the full scene itself comes nearer to the recordings. Intervals grow by what their numbers
 /// moved, and by what the derivatives ask for at the end and the scene refuses: they are another model's.
 ///
-/// The fit stays as it is where the full scene cannot be played.
-pub(super) fn settle(whole: &Problem, fit: Fit) -> Fit {
+/// `None` where the full scene cannot be played with the fit.
+pub(super) fn settle(whole: &Problem, fit: Fit) -> Option<Fit> {
     let residual = |x: &[f64]| -> Option<DVector<f64>> {
         let there = Fit { x: x.to_vec(), ..fit.clone() };
         let left = |run: &Cow<'_, CaseRun>| Some(whole.subtract(run, &play_on_full(whole.case, &there, run).ok()?));
         Some(whole.in_noise(&whole.runs.par_iter().map(left).collect::<Option<Vec<_>>>()?))
     };
-    let Some((settled, refused)) = whole.fit_played(&fit.model, &fit.x, &residual) else { return fit };
+    let (settled, refused) = whole.fit_played(&fit.model, &fit.x, &residual)?;
     let mut covariance = fit.covariance;
     for (i, refused) in refused.into_iter().enumerate() {
         let moved = settled.x[i] - fit.x[i];
         covariance[(i, i)] += (moved / 1.96).powi(2) + (refused / 1.96).powi(2);
     }
-    Fit { x: settled.x, on_bound: settled.on_bound, covariance, ..fit }
+    Some(Fit { x: settled.x, on_bound: settled.on_bound, covariance, ..fit })
 }
 
 #[cfg(test)]
@@ -48,13 +48,13 @@ mod tests {
         let mut wrong = whole.fit_to_the_end(&baseline, &whole.start(&baseline, None)).expect("played");
         wrong.x = whole.start(&baseline, None);
         wrong.x[friction] = 0.1122;
-        let settled = settle(&whole, wrong.clone());
+        let settled = settle(&whole, wrong.clone()).expect("played");
         let off = (settled.x[friction] - 0.11).abs();
         assert!(off < 2e-4, "{} of 0.11", settled.x[friction]);
         let moved = settled.x[friction] - wrong.x[friction];
         let grown = settled.covariance[(friction, friction)] - wrong.covariance[(friction, friction)];
         assert!(grown >= 0.999 * (moved / 1.96).powi(2), "{grown} for {moved}");
-        let once_more = settle(&whole, settled.clone());
+        let once_more = settle(&whole, settled.clone()).expect("played");
         assert!((once_more.x[friction] - settled.x[friction]).abs() < 2e-5, "{}", once_more.x[friction]);
     }
 }

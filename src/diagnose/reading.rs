@@ -99,6 +99,16 @@ impl Reading {
         }
     }
 
+    /// Whether it depends on how fast the variable went.
+    pub fn needs_clock(&self) -> bool {
+        match self {
+            Self::Behind(_) | Self::Ahead(_) => true,
+            Self::Times(q, _) => q.is_rate(),
+            // Of the rate only the sign counts.
+            Self::Plain | Self::Greatest | Self::Rising(_) | Self::Play(_) | Self::Slip(..) => false,
+        }
+    }
+
     /// What the shape is over in a run: from the variable, the other one, and their times.
     pub fn series(&self, own: &[f64], other: &[f64], times_s: &[f64]) -> Vec<f64> {
         match self {

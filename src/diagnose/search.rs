@@ -42,8 +42,8 @@ pub struct Found {
     pub forms: Vec<Fit>,
     /// Elements of the slots that were screened for laws, with the fall of chi² that each promised.
     pub located: Vec<(String, f64)>,
-    /// A model that predicts held-out runs worse than the calibration: known, and not put into the scene.
-    pub withheld: Option<Fit>,
+    /// What predicts held-out runs worse than the calibration, or cannot be played: known, and not put into the scene.
+    pub withheld: Option<Box<Found>>,
 }
 
 impl Found {

@@ -64,6 +64,9 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
     {
         return format!("A number of the scene is another on the rig: {number} explains it. {closed}");
     }
+    if !d.withheld.is_empty() {
+        return withheld(&d.withheld);
+    }
     let (laws, listed): (Vec<&NamedEffect>, Vec<&NamedEffect>) = d.effects.iter().partition(|e| e.hypothetical);
     let known = listed.iter().map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ");
     let law = laws.iter().map(|e| law(e)).collect::<Vec<_>>().join(", and ");
@@ -83,6 +86,17 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
             )
         }
     }
+}
+
+/// What explains the open runs and is not put into the scene.
+fn withheld(effects: &[NamedEffect]) -> String {
+    let one = |e: &NamedEffect| if e.hypothetical { law(e) } else { format!("{} in {}", e.name, e.element) };
+    let all: Vec<String> = effects.iter().map(one).collect();
+    format!(
+        "It is located, not modelled: {} explains the runs that it was fitted to, and does not stand in others (see warnings), so \
+         scene.toml is the calibrated scene.",
+        all.join(" with ")
+    )
 }
 
 /// A law with where it acts and its numbers: `muscle.friction times (1 + ...)`.

@@ -93,6 +93,8 @@ pub struct Trying {
     pub unless_calibrated: Option<String>,
     /// It is tried on joints that are flexures only.
     pub needs_flexures: bool,
+    /// It goes by rate or by time: recordings whose rows have no clock cannot show it.
+    pub needs_clock: bool,
 }
 
 /// An effect: of the catalogue, or a law that was written down.

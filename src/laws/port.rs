@@ -272,6 +272,20 @@ impl Port {
     pub fn spec(self) -> &'static PortSpec {
         &PORTS[self as usize]
     }
+
+    /// Whether what acts there shows by a rate only: a flow, a drop of pressure, a damping.
+    pub fn is_of_rate(self) -> bool {
+        matches!(
+            self,
+            Self::SyringeFlow
+                | Self::PressureDrop
+                | Self::Resistance
+                | Self::Inertance
+                | Self::Outflow
+                | Self::Damping
+                | Self::JointDamping
+        )
+    }
 }
 
 impl PortSpec {

@@ -14,8 +14,11 @@ enum Code {
     TimesNumber,
     /// The number less the operand.
     NumberLess,
-    /// The number over the operand.
+    /// The number over the operand, and the operand over the number.
     NumberOver,
+    OverNumber,
+    /// The operand times the number, and the offset.
+    Affine,
     PowerWhole(i32),
     PowerNumber,
     Where,
@@ -27,6 +30,7 @@ struct Instruction {
     code: Code,
     operands: [u16; 4],
     number: f64,
+    offset: f64,
 }
 
 /// Expressions compiled together: what they have in common is computed once.
@@ -104,10 +108,24 @@ impl Program {
 
     fn compile_two(&mut self, operator: Operator, a: &Node, b: &Node) -> u16 {
         use Operator as O;
-        let one = |program: &mut Self, code, x: &Node, number| {
+        let one = |program: &mut Self, code, x: &Node, number: f64| {
+            let (x, number) = match (code, x) {
+                // The sign goes with the number.
+                (Code::TimesNumber | Code::OverNumber, Node::Of(Function::Negate, x)) => (&**x, -number),
+                _ => (x, number),
+            };
             let x = program.compile(x);
             program.push(code, [x, 0, 0, 0], number)
         };
+        if let (O::Add, Some((x, factor, offset))) = (operator, affine(a, b)) {
+            let x = self.compile(x);
+            return self.push_instruction(Instruction {
+                code: Code::Affine,
+                operands: [x, 0, 0, 0],
+                number: factor,
+                offset,
+            });
+        }
         match (operator, a.constant(), b.constant()) {
             (_, Some(x), Some(y)) => self.push(Code::Constant, [0; 4], operator.at(x, y)),
             (O::Add, Some(x), _) => one(self, Code::AddNumber, b, x),
@@ -117,6 +135,7 @@ impl Program {
             (O::Multiply, Some(x), _) => one(self, Code::TimesNumber, b, x),
             (O::Multiply, _, Some(y)) => one(self, Code::TimesNumber, a, y),
             (O::Divide, Some(x), _) => one(self, Code::NumberOver, b, x),
+            (O::Divide, _, Some(y)) => one(self, Code::OverNumber, a, y),
             (O::Power, _, Some(y)) if y.fract() == 0.0 && y.abs() <= 64.0 => {
                 one(self, Code::PowerWhole(y as i32), a, 0.0)
             }
@@ -130,13 +149,31 @@ impl Program {
 
     /// The register of an instruction's result; one that is there already is taken again.
     fn push(&mut self, code: Code, operands: [u16; 4], number: f64) -> u16 {
-        let instruction = Instruction { code, operands, number };
+        self.push_instruction(Instruction { code, operands, number, offset: 0.0 })
+    }
+
+    fn push_instruction(&mut self, instruction: Instruction) -> u16 {
         let known = self.instructions.iter().position(|other| *other == instruction);
         let at = known.unwrap_or_else(|| {
             self.instructions.push(instruction);
             self.instructions.len() - 1
         });
         (self.symbols.len() + at) as u16
+    }
+}
+
+/// The parts of `factor * x + offset`, whichever way round it is written.
+fn affine<'a>(a: &'a Node, b: &'a Node) -> Option<(&'a Node, f64, f64)> {
+    let (product, offset) = match (a.constant(), b.constant()) {
+        (None, Some(offset)) => (a, offset),
+        (Some(offset), None) => (b, offset),
+        _ => return None,
+    };
+    let Node::Two(Operator::Multiply, x, y) = product else { return None };
+    match (x.constant(), y.constant()) {
+        (Some(factor), None) => Some((y, factor, offset)),
+        (None, Some(factor)) => Some((x, factor, offset)),
+        _ => None,
     }
 }
 
@@ -162,6 +199,8 @@ impl Instruction {
             Code::TimesNumber => at(0) * self.number,
             Code::NumberLess => -at(0) + self.number,
             Code::NumberOver => at(0).recip() * self.number,
+            Code::OverNumber => at(0) / self.number,
+            Code::Affine => at(0) * self.number + self.offset,
             Code::PowerWhole(2) => at(0) * at(0),
             Code::PowerWhole(3) => at(0) * at(0) * at(0),
             Code::PowerWhole(n) => at(0).powi(n),
@@ -281,5 +320,13 @@ mod tests {
     fn what_is_common_is_computed_once() {
         let program = Program::new(&[read("x*y + (x*y)^2 + exp(x*y)")]);
         assert_eq!(program.instructions.len(), 5);
+    }
+
+    #[test]
+    fn signs_and_constants_are_folded() {
+        // abs, over, exp, and one for the rest.
+        let program = Program::new(&[read("1 + 0.4*exp(-abs(x)/2e-3)")]);
+        assert_eq!(program.instructions.len(), 4);
+        assert_eq!(program.value(&[-3e-3, 0.0, 0.0]).to_bits(), (1.0 + 0.4 * (-(3e-3_f64) / 2e-3).exp()).to_bits());
     }
 }

@@ -88,6 +88,11 @@ impl Quantity {
         &QUANTITIES[self as usize]
     }
 
+    /// Whether it is time, or goes by it.
+    pub fn is_rate(self) -> bool {
+        matches!(self, Self::Speed | Self::Flow | Self::PlungerSpeed | Self::AngularSpeed | Self::Time)
+    }
+
     /// Its unit; that of a reading is its channel's.
     pub fn dimension(self) -> Dimension {
         Dimension::of_name(&self.spec().name()).unwrap_or(Dimension::NONE)

@@ -102,6 +102,7 @@ mod tests {
             detection: crate::diagnose::Detection::default(),
             location: crate::diagnose::Location::default(),
             effects: Vec::new(),
+            withheld: Vec::new(),
             calibration: std::collections::BTreeMap::new(),
             specimens: std::collections::BTreeMap::new(),
             fit: crate::diagnose::Proof::default(),

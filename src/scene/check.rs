@@ -183,6 +183,7 @@ fn check_hydraulics(h: &HydraulicsSpec, place: &Place) -> Result<(), SceneError>
     place.positive("fluid.density_kg_m3", h.fluid.density_kg_m3)?;
     place.not_negative("fluid.viscosity_pa_s", h.fluid.viscosity_pa_s)?;
     place.not_negative("fluid.vapour_pressure_pa", h.fluid.vapour_pressure_pa)?;
+    place.not_negative("fluid.tensile_strength_pa", h.fluid.tensile_strength_pa)?;
     place.positive("fluid.atmospheric_pressure_pa", h.fluid.atmospheric_pressure_pa)?;
     if !(1..=1000).contains(&h.line.segments) {
         return Err(place.error(

@@ -65,7 +65,7 @@ pub fn yield_margin_ratio(ran: Ran, muscle: &str) -> Result<f64, SweepError> {
 /// Least pressure, at the syringe or in the muscle, above that at which the fluid boils, Pa.
 pub fn cavitation_margin_pa(ran: Ran, muscle: &str) -> Result<f64, SweepError> {
     let Some(hydraulics) = &ran.scene.file.hydraulics else { return Ok(f64::NAN) };
-    let boils_pa = hydraulics.fluid.vapour_pressure_pa - hydraulics.fluid.atmospheric_pressure_pa;
+    let boils_pa = hydraulics.fluid.cavitation_gauge_pressure_pa();
     let at_syringe = least(series(ran, Quantity::SyringePressure, muscle)?);
     Ok(at_syringe.min(least(series(ran, Quantity::MusclePressure, muscle)?)) - boils_pa)
 }

@@ -9,7 +9,7 @@ use crate::hydraulics::{Chain, Port};
 use crate::muscle::{Friction, Stop};
 use crate::scalar::Scalar;
 
-use super::elastic::Elastic;
+use super::elastic::{Elastic, ElasticPoint};
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
 use super::laws::{Acts, PlantLaws};
 use super::posed::{Lean, Posed};
@@ -227,6 +227,20 @@ impl<D: Scalar> MusclePlant<D> {
         slow: &[D],
         greatest_j: D,
     ) -> MuscleForces<D> {
+        self.forces_and_elastic(elongation_m, speed_m_s, pressure_pa, z, slow, greatest_j).0
+    }
+
+    /// The same, with the elastic law that they rest on.
+    #[inline(always)]
+    fn forces_and_elastic(
+        &self,
+        elongation_m: D,
+        speed_m_s: D,
+        pressure_pa: D,
+        z: D,
+        slow: &[D],
+        greatest_j: D,
+    ) -> (MuscleForces<D>, ElasticPoint<D>) {
         let zero = D::constant(0.0);
         let (law, (extra_n, extra_k)) = if self.extras.acts {
             let seen = elongation_m - self.extras.set_m(slow);
@@ -238,7 +252,7 @@ impl<D: Scalar> MusclePlant<D> {
         let friction_n = self.friction.as_ref().map_or(zero, |f| f.force_n(z, pressure_pa));
         let stop = self.stop.as_ref().map(|s| s.push(elongation_m, speed_m_s));
         let (stop_n, stop_k) = stop.map_or((zero, zero), |s| (s.push_n, -s.dpush_de));
-        MuscleForces {
+        let forces = MuscleForces {
             elongation_m,
             speed_m_s,
             pressure_pa,
@@ -249,10 +263,11 @@ impl<D: Scalar> MusclePlant<D> {
             stiffness_n_m: law.stiffness_n_m + stop_k + extra_k,
             area_m2: law.area_m2,
             port: self.port(&law, speed_m_s, pressure_pa),
-        }
+        };
+        (forces, law)
     }
 
-    fn port(&self, law: &super::ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
+    fn port(&self, law: &ElasticPoint<D>, speed_m_s: D, pressure_pa: D) -> Port<D> {
         let (mut outflow_m3_s, mut compliance_m3_pa) = (law.area_m2 * speed_m_s, law.compliance_m3_pa);
         let x = &self.extras;
         if x.acts {
@@ -337,8 +352,20 @@ impl<D: Scalar> Plant<D> {
 
     /// Forces of one muscle at an instant.
     pub(super) fn forces<const N: usize>(&self, muscle: usize, now: &Instant<D, N>) -> MuscleForces<D> {
-        let acts = self.laws.as_ref().map(|laws| laws.afresh(self, now));
-        self.forces_seen(muscle, now, acts.as_ref())
+        self.forces_in(muscle, now, &mut None)
+    }
+
+    /// The same with room for what laws do, kept from one instant to the next.
+    pub(super) fn forces_in<const N: usize>(
+        &self,
+        muscle: usize,
+        now: &Instant<D, N>,
+        room: &mut Option<Acts<D>>,
+    ) -> MuscleForces<D> {
+        let Some(laws) = &self.laws else { return self.stock_forces(muscle, now) };
+        let acts = room.get_or_insert_with(|| laws.room(self));
+        laws.act(self, now, acts);
+        self.forces_seen(muscle, now, Some(acts))
     }
 
     /// The same where what laws do at the instant is known.
@@ -349,10 +376,13 @@ impl<D: Scalar> Plant<D> {
         now: &Instant<D, N>,
         acts: Option<&Acts<D>>,
     ) -> MuscleForces<D> {
-        let stock = self.stock_forces(muscle, now);
-        let Some(acts) = acts else { return stock };
+        let Some(acts) = acts else { return self.stock_forces(muscle, now) };
         let (m, z) = (&self.muscles[muscle], now.at.z(muscle));
-        m.forces_under(stock, &acts.muscles[muscle], z, m.slow(&now.at), now.state.greatest_j[muscle])
+        let pressure = self.pressure(muscle, now);
+        let (elongation, speed) = (m.elongation_m::<N>(now.at.y()), dot::<_, N>(&m.jacobian, now.at.w()));
+        let (slow, greatest) = (m.slow(&now.at), now.state.greatest_j[muscle]);
+        let stock = m.forces_and_elastic(elongation, speed, pressure, z, slow, greatest);
+        m.forces_under(stock, &acts.muscles[muscle], z, slow, greatest)
     }
 
     /// Forces of one muscle without laws.

@@ -62,7 +62,6 @@ pub(super) fn rates<D: Scalar, const N: usize>(
 }
 
 /// Kept apart: what a stock scene goes through knows no laws.
-#[cold]
 #[inline(never)]
 fn rates_under_laws<D: Scalar, const N: usize>(
     plant: &Plant<D>,
@@ -137,8 +136,12 @@ fn push_laws<D: Scalar, const N: usize>(
     out: &mut PartsMut<D, N>,
 ) {
     if let (Some(laws), Some(acts)) = (&plant.laws, &mut seen.acts) {
-        laws.push_joints(plant, now, acts, out);
-        laws.state_rates(plant, now, acts, out.law_states());
+        if laws.joint_sites().next().is_some() {
+            laws.push_joints(plant, now, acts, out);
+        }
+        if laws.remembers() {
+            laws.state_rates(plant, now, acts, out.law_states());
+        }
     }
 }
 

@@ -158,7 +158,9 @@ impl<D: Scalar> Stepper<D> {
         }
         remember_greatest(plant, state);
         if let (Some(laws), Some(acts)) = (&plant.laws, &mut self.seen.acts) {
-            laws.follow(plant, state, inputs, h);
+            if laws.remembers() {
+                laws.follow(plant, state, inputs, h);
+            }
             if laws.moves_pistons() {
                 // The row of the beginning has been exchanged for that of the end.
                 laws.note_pistons(plant, &self.ahead, (state, inputs, h), (acts, &self.piston_lead_m));
@@ -218,7 +220,8 @@ fn solve<D: Scalar, const N: usize>(
     if !tangents.dashpots.is_empty() {
         push_dashpots(plant, tangents, g, r.slow(), k_w);
     }
-    if let Some(laws) = &tangents.laws {
+    let laws = tangents.laws.as_ref().filter(|laws| !laws.states.is_empty());
+    if let Some(laws) = laws {
         laws.push_states(plant, g, r.law_states(), k_w);
     }
     tangents.ldl.solve::<N>(k_w);
@@ -239,7 +242,7 @@ fn solve<D: Scalar, const N: usize>(
         let (coordinates, states) = k.y_and_slow();
         stages_of_dashpots(plant, tangents, r.slow(), coordinates, states);
     }
-    if let Some(laws) = &tangents.laws {
+    if let Some(laws) = tangents.laws.as_ref().filter(|laws| !laws.states.is_empty()) {
         let (moving, states) = k.moving_and_law_states();
         laws.stages(plant, g, r.law_states(), moving, states);
     }

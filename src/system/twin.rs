@@ -189,9 +189,10 @@ impl Twin {
         }
         let mut sensors = Sensors::new(&self.outputs, setting);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
+        let mut room = None;
         self.watch(run, setting, |k, plant, state, spans| {
             for (output, series) in self.outputs.iter().zip(&mut series) {
-                series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans)));
+                series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans, &mut room)));
             }
         })?;
         output::are_shown(&self.outputs, &series).then_some(series)

@@ -117,6 +117,11 @@ impl FileOptions {
         self.time_column.as_deref().unwrap_or(TIME_COLUMN)
     }
 
+    /// Whether rows are only counted (`time = "index"`).
+    pub fn counts_rows(&self) -> bool {
+        matches!(self.time, TimeSource::Index(_))
+    }
+
     /// Whether the time of a row is in the file.
     pub(super) fn has_clock(&self) -> bool {
         self.time == TimeSource::Column

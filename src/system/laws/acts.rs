@@ -36,6 +36,15 @@ impl<D: Scalar> Act<D> {
         }
     }
 
+    /// What laws of a sense do.
+    #[inline]
+    pub fn of(&self, sense: Sense) -> D {
+        match sense {
+            Sense::Adds => self.add,
+            Sense::Scales => self.scale,
+        }
+    }
+
     /// Derivative of `term * scale + add`; `slope` is that of the act, `term_slope` that of the term.
     #[inline]
     pub fn slope_on(&self, term: D, term_slope: D, slope: &Self) -> D {
@@ -70,6 +79,12 @@ impl<D: Scalar, const P: usize, const FIRST: usize> Ports<D, P, FIRST> {
     /// Notes that laws stand at a port.
     pub fn note(&mut self, port: Port) {
         self.1 |= 1 << (port as usize - FIRST);
+    }
+
+    /// Whether no law stands at any port.
+    #[inline]
+    pub fn is_free(&self) -> bool {
+        self.1 == 0
     }
 
     /// Whether laws stand at one of these ports.

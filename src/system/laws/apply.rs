@@ -23,6 +23,20 @@ pub(super) struct Terms<D> {
 }
 
 impl<D: Scalar> Terms<D> {
+    /// Without the elastic ones, which no law acts on.
+    pub fn without_elastic(muscle: &MusclePlant<D>, speed_m_s: D, pressure_pa: D) -> Self {
+        let zero = D::constant(0.0);
+        Self {
+            wall_n: zero,
+            coil_n: zero,
+            friction_level_n: muscle.friction.as_ref().map_or(zero, |f: &Friction<D>| f.level_n(pressure_pa)),
+            damping_n: muscle.damping_n_s_m * speed_m_s,
+            area_m2: zero,
+            wall_n_m: zero,
+            coil_n_m: zero,
+        }
+    }
+
     pub fn new(muscle: &MusclePlant<D>, law: &ElasticPoint<D>, seen_m: D, speed_m_s: D, pressure_pa: D) -> Self {
         let zero = D::constant(0.0);
         let (coil_n, coil_n_m) = match &muscle.elastic {
@@ -32,11 +46,10 @@ impl<D: Scalar> Terms<D> {
         Self {
             wall_n: law.pull_n + pressure_pa * law.area_m2 - coil_n,
             coil_n,
-            friction_level_n: muscle.friction.as_ref().map_or(zero, |f: &Friction<D>| f.level_n(pressure_pa)),
-            damping_n: muscle.damping_n_s_m * speed_m_s,
             area_m2: law.area_m2,
             wall_n_m: law.stiffness_n_m - coil_n_m,
             coil_n_m,
+            ..Self::without_elastic(muscle, speed_m_s, pressure_pa)
         }
     }
 }
@@ -51,10 +64,11 @@ impl<D: Scalar> MusclePlant<D> {
         }
     }
 
-    /// The stock forces with what laws do to each of their terms.
+    /// The stock forces, of the elastic law beside them, with what laws do to each of their terms.
+    #[inline(always)]
     pub(in crate::system) fn forces_under(
         &self,
-        stock: MuscleForces<D>,
+        (stock, elastic): (MuscleForces<D>, ElasticPoint<D>),
         acts: &MuscleActs<D>,
         z: D,
         slow: &[D],
@@ -62,7 +76,7 @@ impl<D: Scalar> MusclePlant<D> {
     ) -> MuscleForces<D> {
         let mut forces = stock;
         if acts.stand_at(ELASTIC) {
-            self.elastic_under(&mut forces, acts, slow, greatest_j);
+            self.elastic_under((&mut forces, elastic), acts, slow, greatest_j);
         }
         if acts.stand_at(DRY) {
             let level = self.friction.as_ref().map_or(D::constant(0.0), |f| f.level_n(stock.pressure_pa));
@@ -91,9 +105,15 @@ impl<D: Scalar> MusclePlant<D> {
     }
 
     /// Wall, coil and pressure under their laws. What relaxation, preload and the like add has no port of its own and stays.
-    fn elastic_under(&self, forces: &mut MuscleForces<D>, acts: &MuscleActs<D>, slow: &[D], greatest_j: D) {
+    #[inline(never)]
+    fn elastic_under(
+        &self,
+        (forces, before): (&mut MuscleForces<D>, ElasticPoint<D>),
+        acts: &MuscleActs<D>,
+        slow: &[D],
+        greatest_j: D,
+    ) {
         let (e, v, p) = (forces.elongation_m, forces.speed_m_s, forces.pressure_pa);
-        let before = self.seen(e, p, slow, greatest_j);
         let longer = acts.at(Port::RestLength).add;
         let law = if acts.stand_at(&[Port::RestLength]) { self.seen(e - longer, p, slow, greatest_j) } else { before };
         let terms = Terms::new(self, &law, e - longer - self.extras.set_m(slow), v, p);
@@ -108,7 +128,7 @@ impl<D: Scalar> MusclePlant<D> {
 }
 
 /// Ports whose laws change the elastic pull, and those whose laws change what takes energy.
-const ELASTIC: &[Port] = &[Port::Wall, Port::Coil, Port::Area, Port::RestLength];
+pub(super) const ELASTIC: &[Port] = &[Port::Wall, Port::Coil, Port::Area, Port::RestLength];
 const DRY: &[Port] = &[Port::Friction, Port::Damping];
 
 /// A cable under its laws.

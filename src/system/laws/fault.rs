@@ -22,13 +22,13 @@ impl<D: Scalar> PlantLaws<D> {
             return false;
         }
         // Evaluated only where there is a coefficient to look at: this is asked at every sample.
-        if !self.instances.iter().any(|i| must_stay_positive(self.port(i))) {
+        if !self.instances.iter().any(|i| must_stay_positive(i.port)) {
             return true;
         }
         let acts = self.afresh(plant, &Instant::<D>::of(state, inputs, 0.0));
         let is_positive =
             |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
-        self.instances.iter().all(|i| is_positive(self.port(i), i.at))
+        self.instances.iter().all(|i| is_positive(i.port, i.at))
     }
 
     /// What a port's coefficient has become, where it must stay above zero.
@@ -77,7 +77,7 @@ impl PlantLaws<f64> {
         for instance in &self.instances {
             let law = &self.laws[instance.law];
             let value = self.evaluate(&law.programs.value, instance, plant, &now, &mut acts, 0);
-            let (at, port) = (instance.at, self.port(instance));
+            let (at, port) = (instance.at, instance.port);
             let states = &now.at.law_states()[instance.state_at..][..law.states.len()];
             let is_turned = self.coefficient(plant, &acts, port, at).is_some_and(|c| c <= 0.0);
             if !value.is_finite() && self.is_given_nonsense(instance, plant, &now, &acts) {

@@ -67,7 +67,7 @@ impl<D: Scalar> PlantLaws<D> {
         wanted: impl Fn(Port) -> bool,
     ) -> Vec<D> {
         let mut moved = now.at.law_states().to_vec();
-        for instance in self.instances.iter().filter(|i| wanted(self.port(i))) {
+        for instance in self.instances.iter().filter(|i| wanted(i.port)) {
             let law = &self.laws[instance.law];
             for (s, own) in law.states.iter().enumerate().filter(|(_, s)| s.memory != Memory::Rate) {
                 let before = moved[instance.state_at + s];

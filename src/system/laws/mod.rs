@@ -39,6 +39,9 @@ struct Instance {
     /// Index of the law, and its port.
     law: usize,
     port: Port,
+    carrier: Carrier,
+    /// Whether no other law acts there.
+    is_alone: bool,
     /// Muscle, cable or direction.
     at: usize,
     /// Where each symbol of the law is read.
@@ -97,7 +100,11 @@ impl<D: Scalar> PlantLaws<D> {
                 self.joint_sites.push(at);
             }
             let sources = self.rig.sources(law, at)?;
-            self.instances.push(Instance { law: index, port: law.address.port, at, sources, state_at: self.states });
+            let (port, carrier) = (law.address.port, law.address.port.spec().carrier);
+            let mut others = self.instances.iter_mut().filter(|i| i.port == port && i.at == at);
+            let mut is_alone = true;
+            others.by_ref().for_each(|other| (other.is_alone, is_alone) = (false, false));
+            self.instances.push(Instance { law: index, port, carrier, is_alone, at, sources, state_at: self.states });
             self.states += law.states.len();
         }
         if law.address.port == Port::Lever && self.travel_at.is_none() {
@@ -150,8 +157,8 @@ impl<D: Scalar> PlantLaws<D> {
     pub fn room(&self, plant: &Plant<D>) -> Acts<D> {
         let mut acts = Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len());
         for instance in &self.instances {
-            let (port, at) = (self.port(instance), instance.at);
-            match port.spec().carrier {
+            let (port, at) = (instance.port, instance.at);
+            match instance.carrier {
                 Carrier::Muscle => acts.muscles[at].note(port),
                 Carrier::Cable => acts.cables[at].note(port),
                 Carrier::Joint => acts.joints[at].note(port),
@@ -166,9 +173,10 @@ impl<D: Scalar> PlantLaws<D> {
         &self.rig.directions[site].direction
     }
 
+    /// Whether some law remembers anything.
     #[inline]
-    fn port(&self, instance: &Instance) -> Port {
-        instance.port
+    pub(super) fn remembers(&self) -> bool {
+        self.states > 0
     }
 
     /// Whether some law acts on a cable.
@@ -188,7 +196,7 @@ impl<D: Scalar> PlantLaws<D> {
             self.clear(instance, acts);
         }
         let wanted = || self.instances.iter().filter(|i| i.law < count);
-        let is_cable = |i: &&Instance| self.port(i).spec().carrier == Carrier::Cable;
+        let is_cable = |i: &&Instance| i.carrier == Carrier::Cable;
         if !plant.cables.is_empty() {
             for (cable, tension) in plant.cables.iter().zip(&mut acts.tension_n) {
                 *tension = cable.pull(now).2;
@@ -201,33 +209,48 @@ impl<D: Scalar> PlantLaws<D> {
         wanted().filter(|i| !is_cable(i)).for_each(|i| self.act_at(i, plant, now, acts));
     }
 
+    #[inline]
     fn clear(&self, instance: &Instance, acts: &mut Acts<D>) {
-        let (port, at) = (self.port(instance), instance.at);
-        let act = match port.spec().carrier {
-            Carrier::Muscle => acts.muscles[at].at_mut(port),
-            Carrier::Cable => acts.cables[at].at_mut(port),
-            Carrier::Joint => acts.joints[at].at_mut(port),
-            Carrier::Sensor => return,
-        };
+        let Some(act) = Self::act_of_mut(instance, acts) else { return };
         *act = Act::neutral();
-        if port == Port::Plunger {
-            acts.piston_m_s[at] = D::constant(0.0);
+        if instance.port == Port::Plunger {
+            acts.piston_m_s[instance.at] = D::constant(0.0);
         }
     }
 
+    /// What acts where an instance's law does; nothing in the plant where it changes a reading.
+    #[inline(always)]
+    fn act_of_mut<'a>(instance: &Instance, acts: &'a mut Acts<D>) -> Option<&'a mut Act<D>> {
+        let (port, at) = (instance.port, instance.at);
+        match instance.carrier {
+            Carrier::Muscle => Some(acts.muscles[at].at_mut(port)),
+            Carrier::Cable => Some(acts.cables[at].at_mut(port)),
+            Carrier::Joint => Some(acts.joints[at].at_mut(port)),
+            Carrier::Sensor => None,
+        }
+    }
+
+    #[inline(always)]
+    fn act_of<'a>(instance: &Instance, acts: &'a Acts<D>) -> Option<&'a Act<D>> {
+        let (port, at) = (instance.port, instance.at);
+        match instance.carrier {
+            Carrier::Muscle => Some(acts.muscles[at].at(port)),
+            Carrier::Cable => Some(acts.cables[at].at(port)),
+            Carrier::Joint => Some(acts.joints[at].at(port)),
+            Carrier::Sensor => None,
+        }
+    }
+
+    #[inline]
     fn act_at<const N: usize>(&self, instance: &Instance, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
-        let (port, at, law) = (self.port(instance), instance.at, &self.laws[instance.law]);
-        if port == Port::Plunger {
+        if instance.port == Port::Plunger {
             return self.move_piston(instance, plant, now, acts);
         }
+        let law = &self.laws[instance.law];
         let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
-        let act = match port.spec().carrier {
-            Carrier::Muscle => acts.muscles[at].at_mut(port),
-            Carrier::Cable => acts.cables[at].at_mut(port),
-            Carrier::Joint => acts.joints[at].at_mut(port),
-            Carrier::Sensor => return,
-        };
-        act.join(law.acts, value);
+        if let Some(act) = Self::act_of_mut(instance, acts) {
+            act.join(law.acts, value);
+        }
     }
 
     /// Runs a program of a law and reads one of its results.

@@ -26,7 +26,7 @@ struct Moves<D> {
 
 impl<D: Scalar> PlantLaws<D> {
     fn on_pistons(&self) -> impl Iterator<Item = &Instance> {
-        self.instances.iter().filter(|i| self.port(i) == Port::Plunger)
+        self.instances.iter().filter(|i| i.port == Port::Plunger)
     }
 
     /// Whether some law moves a piston.

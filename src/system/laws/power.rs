@@ -40,16 +40,15 @@ impl PlantLaws<f64> {
         now: &Instant<f64>,
         (acts, rates): (&Acts<f64>, &[f64]),
     ) -> f64 {
-        if self.instances.iter().all(|x| x.at != i || self.port(x).spec().carrier != Carrier::Muscle) {
+        if self.instances.iter().all(|x| x.at != i || x.carrier != Carrier::Muscle) {
             return 0.0;
         }
         let own = &acts.muscles[i];
         let stock = plant.stock_forces(i, now);
-        let muscle = &plant.muscles[i];
-        let under = muscle.forces_under(stock, own, now.at.z(i), muscle.slow(&now.at), now.state.greatest_j[i]);
+        let under = plant.forces_seen(i, now, Some(acts));
         let pressure = stock.pressure_pa;
         let mut power = -(under.pull_n() - stock.pull_n()) * stock.speed_m_s;
-        let Drive::Hydraulic { chain, .. } = &muscle.drive else {
+        let Drive::Hydraulic { chain, .. } = &plant.muscles[i].drive else {
             // The line of the input counts the stock volume alone: what more there is comes by the law.
             return power;
         };

@@ -7,7 +7,7 @@ use crate::laws::{Acts as Sense, Carrier, Memory, Port, SLOPES};
 use crate::scalar::Scalar;
 use crate::system::plant::{Drive, Instant, MuscleForces, Plant};
 
-use super::apply::Terms;
+use super::apply::{ELASTIC, Terms};
 use super::{Act, Acts, Instance, PlantLaws};
 
 /// Places in [`SLOPES`].
@@ -77,8 +77,11 @@ fn line_slope<D: Scalar, const N: usize>(
 }
 
 /// What a muscle's pull depends on at one instant.
-struct Muscle<'a, D> {
-    acts: &'a super::MuscleActs<D>,
+struct Muscle<D> {
+    /// What laws scale the whole pull, the wall and the coil by.
+    whole: D,
+    wall: D,
+    coil: D,
     terms: Terms<D>,
     z: D,
     pressure_pa: D,
@@ -86,12 +89,11 @@ struct Muscle<'a, D> {
     sum_n: D,
 }
 
-impl<D: Scalar> Muscle<'_, D> {
+impl<D: Scalar> Muscle<D> {
     /// Change of the pull with a change of what acts at a port.
     fn pull_per(&self, port: Port, change: &Act<D>) -> D {
         let on = |term: D| term * change.scale + change.add;
-        let whole = self.acts.at(Port::Pull).scale;
-        let (wall, coil) = (self.acts.at(Port::Wall).scale, self.acts.at(Port::Coil).scale);
+        let (whole, wall, coil) = (self.whole, self.wall, self.coil);
         match port {
             Port::Wall => on(self.terms.wall_n) * whole,
             Port::Coil => on(self.terms.coil_n) * whole,
@@ -119,27 +121,49 @@ impl<D: Scalar> PlantLaws<D> {
         }
     }
 
-    fn at<'a>(&'a self, wanted: Carrier, at: usize) -> impl Iterator<Item = &'a Instance> + 'a {
-        self.instances.iter().filter(move |i| i.at == at && self.port(i).spec().carrier == wanted)
+    /// The value of a law whose slopes are wanted: where it is the only one at its port it is what acts there.
+    #[inline]
+    fn value_in_slope<const N: usize>(
+        &self,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) -> D {
+        let law = &self.laws[instance.law];
+        match Self::act_of(instance, acts) {
+            Some(act) if instance.is_alone => act.of(law.acts),
+            _ => self.evaluate(&law.programs.value, instance, plant, now, acts, 0),
+        }
     }
 
-    fn muscle<'a>(
+    fn at<'a>(&'a self, wanted: Carrier, at: usize) -> impl Iterator<Item = &'a Instance> + 'a {
+        self.instances.iter().filter(move |i| i.at == at && i.carrier == wanted)
+    }
+
+    fn muscle(
         &self,
         i: usize,
         plant: &Plant<D>,
         forces: &MuscleForces<D>,
         now_z: D,
-        acts: &'a super::MuscleActs<D>,
+        acts: &super::MuscleActs<D>,
         (slow, greatest_j): (&[D], D),
-    ) -> Muscle<'a, D> {
+    ) -> Muscle<D> {
         let muscle = &plant.muscles[i];
-        let seen = forces.elongation_m - acts.at(Port::RestLength).add;
-        let law = muscle.seen(seen, forces.pressure_pa, slow, greatest_j);
-        let terms = Terms::new(muscle, &law, seen - muscle.extras.set_m(slow), forces.speed_m_s, forces.pressure_pa);
+        let (v, p) = (forces.speed_m_s, forces.pressure_pa);
+        let terms = if acts.stand_at(ELASTIC) {
+            let seen = forces.elongation_m - acts.at(Port::RestLength).add;
+            let law = muscle.seen(seen, p, slow, greatest_j);
+            Terms::new(muscle, &law, seen - muscle.extras.set_m(slow), v, p)
+        } else {
+            Terms::without_elastic(muscle, v, p)
+        };
         let whole = acts.at(Port::Pull);
         let sum = forces.elastic_n + forces.friction_n + forces.damping_n - whole.add;
         let sum_n = if whole.scale.is_at(0.0) { sum } else { sum / whole.scale };
-        Muscle { acts, terms, z: now_z, pressure_pa: forces.pressure_pa, sum_n }
+        let (wall, coil) = (acts.at(Port::Wall).scale, acts.at(Port::Coil).scale);
+        Muscle { whole: whole.scale, wall, coil, terms, z: now_z, pressure_pa: forces.pressure_pa, sum_n }
     }
 
     /// Slopes of a muscle's laws, and tangents of their states for steps of `g`.
@@ -159,14 +183,16 @@ impl<D: Scalar> PlantLaws<D> {
             conductance_m3_s_pa: [zero; 2],
             drop_pa_s_m3: zero,
         };
-        let own = acts.muscles[i];
+        if acts.muscles[i].is_free() {
+            return slopes;
+        }
         let memory = (plant.muscles[i].slow(&now.at), now.state.greatest_j[i]);
-        let muscle = self.muscle(i, plant, forces, now.at.z(i), &own, memory);
-        for instance in self.at(Carrier::Muscle, i).filter(|x| self.port(x) != Port::Plunger) {
-            let (port, law) = (self.port(instance), &self.laws[instance.law]);
-            let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+        let muscle = self.muscle(i, plant, forces, now.at.z(i), &acts.muscles[i], memory);
+        for instance in self.at(Carrier::Muscle, i).filter(|x| x.port != Port::Plunger) {
+            let (port, law) = (instance.port, &self.laws[instance.law]);
+            let value = self.value_in_slope(instance, plant, now, acts);
             self.run(&law.programs.slopes, instance, plant, now, acts);
-            let total = own.at(port).scale;
+            let total = acts.muscles[i].at(port).scale;
             let change = |output: usize| self.change(instance, value, acts, output, total);
             slopes.pull_n_m += muscle.pull_per(port, &change(ELONGATION));
             slopes.pull_n_s_m += muscle.pull_per(port, &change(SPEED));
@@ -175,13 +201,15 @@ impl<D: Scalar> PlantLaws<D> {
                 Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change(PRESSURE).add,
                 Port::Outflow => slopes.conductance_m3_s_pa[1] += change(PRESSURE).add,
                 Port::Resistance | Port::PressureDrop => {
-                    slopes.drop_pa_s_m3 += line_slope(port, &own, plant, i, now, &change(FLOW));
+                    slopes.drop_pa_s_m3 += line_slope(port, &acts.muscles[i], plant, i, now, &change(FLOW));
                 }
                 _ => {}
             }
-            let pulls: Vec<D> =
-                (0..law.states.len()).map(|s| muscle.pull_per(port, &change(SLOPES.len() + s))).collect();
-            self.state_tangents(instance, plant, now, acts, (g, states, &pulls));
+            if !law.states.is_empty() {
+                let pulls: Vec<D> =
+                    (0..law.states.len()).map(|s| muscle.pull_per(port, &change(SLOPES.len() + s))).collect();
+                self.state_tangents(instance, plant, now, acts, (g, states, &pulls));
+            }
         }
         slopes
     }
@@ -195,13 +223,10 @@ impl<D: Scalar> PlantLaws<D> {
         (g, states, pulls): (f64, &mut [StateTangent<D>], &[D]),
     ) {
         let law = &self.laws[instance.law];
-        if law.states.is_empty() {
-            return;
-        }
         self.run(&law.programs.rate_slopes, instance, plant, now, acts);
         for (s, _) in law.states.iter().enumerate().filter(|(_, s)| s.memory == Memory::Rate) {
             let slope = |k: usize| law.programs.rate_slopes.output(3 * s + k, &acts.registers) * g;
-            let is_muscle = self.port(instance).spec().carrier == Carrier::Muscle;
+            let is_muscle = instance.carrier == Carrier::Muscle;
             states[instance.state_at + s] = StateTangent {
                 damper: (-slope(0) + 1.0).recip(),
                 by_elongation: if is_muscle { slope(1) } else { D::constant(0.0) },
@@ -221,12 +246,13 @@ impl<D: Scalar> PlantLaws<D> {
         (g, states): (f64, &mut [StateTangent<D>]),
     ) {
         for instance in &self.instances {
-            if self.port(instance).spec().carrier != Carrier::Muscle || self.port(instance) == Port::Plunger {
+            let has_memory = !self.laws[instance.law].states.is_empty();
+            if has_memory && (instance.carrier != Carrier::Muscle || instance.port == Port::Plunger) {
                 self.state_tangents(instance, plant, now, acts, (g, states, &[]));
             }
         }
         // What goes through the plunger acts on its speed alone.
-        for instance in self.instances.iter().filter(|i| self.port(i) == Port::Plunger) {
+        for instance in self.instances.iter().filter(|i| i.port == Port::Plunger) {
             for tangent in &mut states[instance.state_at..][..self.laws[instance.law].states.len()] {
                 tangent.muscle = None;
             }
@@ -249,8 +275,8 @@ impl<D: Scalar> PlantLaws<D> {
             let stretched = cable.stiffness_n_m * pull.stretch_m;
             let sum = elastic.on(stretched) + cable.damping_n_s_m * pull.rate_m_s;
             for instance in self.at(Carrier::Cable, i) {
-                let (port, law) = (self.port(instance), &self.laws[instance.law]);
-                let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+                let (port, law) = (instance.port, &self.laws[instance.law]);
+                let value = self.value_in_slope(instance, plant, now, acts);
                 self.run(&law.programs.slopes, instance, plant, now, acts);
                 let change = self.change(instance, value, acts, STRETCH, own.at(port).scale);
                 stiffness += match port {
@@ -282,8 +308,8 @@ impl<D: Scalar> PlantLaws<D> {
         let mut slopes = JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
         let whole = own.at(Port::Torque).scale;
         for instance in self.at(Carrier::Joint, site) {
-            let (port, law) = (self.port(instance), &self.laws[instance.law]);
-            let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
+            let (port, law) = (instance.port, &self.laws[instance.law]);
+            let value = self.value_in_slope(instance, plant, now, acts);
             self.run(&law.programs.slopes, instance, plant, now, acts);
             let change = |output: usize| self.change(instance, value, acts, output, own.at(port).scale);
             let torque = |act: Act<D>| match port {

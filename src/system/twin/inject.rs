@@ -49,6 +49,7 @@ impl Twin {
         };
         let (mut plant, state) = self.prepare(&setting);
         let mut course = Course::new(&mut plant, state, run);
+        let mut room = None;
         let mut changes = vec![vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()]; signals.len()];
         for k in 0..run.times_s.len() {
             if k > 0 {
@@ -63,7 +64,7 @@ impl Twin {
                 course.advance(&mut plant, run, k, steps);
             }
             for (o, output) in self.outputs.iter().enumerate() {
-                let Lanes(shown) = output.read(&plant, &course.state, &course.spans);
+                let Lanes(shown) = output.read(&plant, &course.state, &course.spans, &mut room);
                 for (change, value) in changes.iter_mut().zip(&shown[1..]) {
                     change[o].push(value - shown[0]);
                 }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::effects::{Effect, ElementKind};
 use crate::scalar::{Lanes, take_disagreement};
 use crate::system::PlantState;
+use crate::system::laws::Acts;
 use crate::system::plant::Plant;
 
 use super::course::Course;
@@ -96,7 +97,16 @@ impl Twin {
             let course = Course::new(&mut plant, state, run);
             Single { plant, course, has_diverged: false }
         });
-        Some(Bundle { run, plant, before: course.state.clone(), course, apart, phase: Phase::Together, patience: 0 })
+        Some(Bundle {
+            run,
+            plant,
+            before: course.state.clone(),
+            course,
+            room: None,
+            apart,
+            phase: Phase::Together,
+            patience: 0,
+        })
     }
 
     fn through_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -178,6 +188,8 @@ struct Bundle<'a, const L: usize> {
     run: &'a TwinRun,
     plant: Plant<Lanes<L>>,
     course: Course<Lanes<L>>,
+    /// For what laws do where outputs are read.
+    room: Option<Acts<Lanes<L>>>,
     /// The lanes' state where the interval began.
     before: PlantState<Lanes<L>>,
     apart: [Single; L],
@@ -251,7 +263,7 @@ impl<const L: usize> Bundle<'_, L> {
     fn read(&mut self, twin: &Twin, output: usize) -> [f64; L] {
         let output = &twin.outputs[output];
         if self.phase == Phase::Together {
-            let Lanes(read) = output.read(&self.plant, &self.course.state, &self.course.spans);
+            let Lanes(read) = output.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room);
             if !take_disagreement() {
                 return read;
             }
@@ -260,6 +272,7 @@ impl<const L: usize> Bundle<'_, L> {
                 single.course.spans.clone_from(&self.course.spans);
             }
         }
-        self.apart.each_ref().map(|single| output.read(&single.plant, &single.course.state, &single.course.spans))
+        let read = |s: &Single| output.read(&s.plant, &s.course.state, &s.course.spans, &mut None);
+        self.apart.each_ref().map(read)
     }
 }

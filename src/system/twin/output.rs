@@ -12,8 +12,8 @@ use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::arc::ArcSide;
 use crate::system::channels::sensor_laws;
-use crate::system::laws::LawSensor;
-use crate::system::plant::{Drive, InputSpan, Plant};
+use crate::system::laws::{Acts, LawSensor};
+use crate::system::plant::{Drive, InputSpan, Instant, Plant};
 use crate::system::posed::Posture;
 use crate::system::standalone::Standalone;
 
@@ -53,11 +53,17 @@ pub(super) struct TwinOutput {
 }
 
 impl TwinOutput {
-    /// The value in the channel's unit.
-    pub fn read<D: Scalar>(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> D {
+    /// The value in the channel's unit; `room` is for what laws do, and may be kept for the next.
+    pub fn read<D: Scalar>(
+        &self,
+        plant: &Plant<D>,
+        state: &PlantState<D>,
+        inputs: &[InputSpan],
+        room: &mut Option<Acts<D>>,
+    ) -> D {
         let value = match &self.reader {
             Reader::Elongation(m) => plant.muscles[*m].elongation_m::<0>(state.y()),
-            Reader::Pull(m) => plant.muscle_forces(*m, state, inputs, 0.0).pull_n(),
+            Reader::Pull(m) => plant.forces_in::<0>(*m, &Instant::of(state, inputs, 0.0), room).pull_n(),
             Reader::MusclePressure(m) => plant.muscle_pressure(*m, state, inputs, 0.0),
             Reader::SyringePressure(m) => match plant.muscles[*m].drive {
                 Drive::Hydraulic { .. } => state.line(*m).pressure_pa[0],

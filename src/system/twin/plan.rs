@@ -37,7 +37,7 @@ impl Twin {
         let (mut plant, state) = self.prepare(setting);
         let mut course = Course::new(&mut plant, state, run);
         let shown = |plant: &Plant<f64>, course: &Course<f64>| -> Vec<f64> {
-            self.outputs.iter().map(|o| o.read(plant, &course.state, &course.spans)).collect()
+            self.outputs.iter().map(|o| o.read(plant, &course.state, &course.spans, &mut None)).collect()
         };
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
