@@ -8,10 +8,9 @@ use super::case::{Case, Sealed};
 use super::confirm::{self, Confirmed};
 use super::error::DiagnoseError;
 use super::fit::Problem;
-use super::hypothesis::{self, OneLaw};
+use super::hypothesis::{self, OneLaw, Tried};
 use super::noise::{self, Noise};
 use super::search::{Begun, Bound, Found};
-use super::unlisted::Proposals;
 use super::verdict::Excess;
 use super::{broad, harm, prove, visible, weigh};
 
@@ -48,7 +47,7 @@ pub(super) fn explain(
     let begun = Begun::with_one(&weigh::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
     let explained = match hypothesis::one_law(case, &base.noise, &begun.found(), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
-        OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, tried)?,
+        OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
     let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
@@ -69,34 +68,35 @@ impl Search<'_> {
         case: &mut Case,
         begun: Begun,
         noise: Vec<Noise>,
-        tried: hypothesis::Tried,
+        tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
         let law = Bound(tried.law.as_ref());
         let open = weigh::open_runs(case, &noise);
         let found = begun.clone().finish(&open, self.variants, law, self.say);
         if !law.outdoes(&open, &found.baseline, &found.best) {
-            return self.to_the_end(case, noise, found, tried.proposals);
+            return self.to_the_end(case, noise, found, tried);
         }
         let mut cut_short =
             Explained { confirmed: Confirmed::InPart, ..proven(case, found, noise.clone(), self.seed)? };
-        if let Some(lawful) = self.by_laws(case, &mut cut_short, tried.proposals)? {
+        let again = Tried { instead: tried.instead.clone(), ..Tried::default() };
+        if let Some(lawful) = self.by_laws(case, &mut cut_short, tried)? {
             return Ok(lawful);
         }
         let found = begun.finish(&weigh::open_runs(case, &noise), self.variants, Bound(None), self.say);
-        self.to_the_end(case, noise, found, None)
+        self.to_the_end(case, noise, found, again)
     }
 
-    /// What was found in the catalogue, weighed, held against the sealed runs and against laws; `begun`: those that were proposed before.
+    /// What was found in the catalogue, weighed, held against the sealed runs and against laws; `tried`: what was tried with one before.
     fn to_the_end(
         &self,
         case: &mut Case,
         noise: Vec<Noise>,
         found: Found,
-        begun: Option<Proposals>,
+        tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
         let (found, noise) = weigh::weigh(case, noise, found, self.variants, self.say);
         let mut listed = self.held_against_sealed(case, found, noise)?;
-        Ok(self.by_laws(case, &mut listed, begun)?.unwrap_or(listed))
+        Ok(self.by_laws(case, &mut listed, tried)?.unwrap_or(listed))
     }
 
     /// What the catalogue explains, without what does not stand, held against the sealed runs.
@@ -128,10 +128,10 @@ impl Search<'_> {
         &self,
         case: &mut Case,
         listed: &mut Explained,
-        begun: Option<Proposals>,
+        tried: Tried,
     ) -> Result<Option<Explained>, DiagnoseError> {
         let Explained { found, confirmed, excess, noise, .. } = listed;
-        let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, begun, self.say) else {
+        let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, tried, self.say) else {
             return Ok(None);
         };
         let (found, noise) = hypothesis::renew(case, noise, found);

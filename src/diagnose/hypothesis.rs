@@ -35,7 +35,8 @@ const PER_LETTER: f64 = 0.02;
 const MOST_FORMS: usize = 4;
 
 /// A model with a law, the others that are as good, and where the misfit sits.
-struct Lawful {
+#[derive(Clone)]
+pub(super) struct Lawful {
     best: Fit,
     forms: Vec<Fit>,
     located: Vec<Located>,
@@ -46,7 +47,7 @@ pub(super) enum OneLaw {
     /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
     All(Box<Found>, Vec<Noise>),
     /// It does not, or was not asked for.
-    Part(Tried),
+    Part(Box<Tried>),
 }
 
 /// What has been tried with one law, for later.
@@ -55,11 +56,13 @@ pub(super) struct Tried {
     pub proposals: Option<Proposals>,
     /// The best law that is clearly better than any single effect.
     pub law: Option<Fit>,
+    /// The law in the place of the best single effect, or beside it, however much that leaves.
+    pub instead: Option<Lawful>,
 }
 
 /// Looks for one law in the place of the best single effect, where that leaves more than noise.
 pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
-    let nothing = OneLaw::Part(Tried::default());
+    let nothing = OneLaw::Part(Box::default());
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
     if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
         return nothing;
@@ -76,11 +79,13 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
         .filter(is_better);
     let instead = match alone.as_ref().is_some_and(is_all) {
         true => None,
-        false => instead(&open, found, say).filter(is_better),
+        false => instead(&open, found, say),
     };
-    let best = alone.into_iter().chain(instead).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
+    // What needs an effect beside it may stand for a second effect: it waits until the catalogue has tried that.
+    let better = instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1).filter(is_better);
+    let best = alone.into_iter().chain(better).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
     let law = best.as_ref().map(|lawful| lawful.best.clone());
-    let part = OneLaw::Part(Tried { law, proposals: Some(proposals) });
+    let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
     let Some(lawful) = best.filter(is_all) else { return part };
     let former = case.runs.clone();
     let (found, renewed) = renew(case, noise, lawful.beside(found));
@@ -93,8 +98,8 @@ pub(super) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn
     OneLaw::All(Box::new(found), renewed)
 }
 
-/// One law that makes the best single effect needless. Where much is missing derivatives at the calibration alone point anywhere; the
-/// effect, wrong as it is, has brought the model nearer to what was measured.
+/// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
+/// calibration alone point anywhere; the effect, wrong as it may be, has brought the model nearer to what was measured.
 fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful> {
     if found.best.model.effects.is_empty() {
         return None;
@@ -102,13 +107,13 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
     let proposals = propose(open, &found.best, Reach::Plain, say)?;
     let (best, forms) = equally_good(open, &proposals.fits, found.best.cost)?;
     let (best, forms) = without_idle(open, best, forms);
-    (best.model.effects.len() == 1).then_some(Lawful { best, forms, located: proposals.located })
+    Some(Lawful { best, forms, located: proposals.located })
 }
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
 /// catalogue explains a law must predict whole runs left out better than that does by itself.
 fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
-    let criterion = Criterion::of(open, [Some(&found.best), Some(lawful), None]);
+    let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
         true => foretells(open, &found.baseline, lawful),
         false => foretells_runs(open, &found.best, lawful),
@@ -126,13 +131,14 @@ impl Lawful {
     }
 }
 
-/// What laws make of what was found: one alone or two, or one beside the catalogue's effects, or nothing.
+/// What laws make of what was found: one alone or two, or one beside the catalogue's effects, or nothing. `tried`: what one law came to
+/// before several effects were tried.
 pub(super) fn weigh_laws(
     case: &Case,
     noise: &[Noise],
     (found, confirmed): (&mut Found, Confirmed),
     excess: Excess,
-    begun: Option<Proposals>,
+    tried: Tried,
     say: &dyn Fn(String),
 ) -> Option<Found> {
     if case.is_without(Step::OpenSet) {
@@ -147,14 +153,18 @@ pub(super) fn weigh_laws(
     if !is_open && (is_null || !(is_elsewhere || is_doubtful())) {
         return None;
     }
-    let alone = search(&open, &found.baseline, &found.baseline, begun, say);
-    let is_all = alone.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
-    let beside =
-        (is_open && !is_null && !is_all).then(|| search(&open, &found.baseline, &found.best, None, say)).flatten();
-    let criterion =
-        Criterion::of(&open, [Some(&found.best), alone.as_ref().map(|l| &l.best), beside.as_ref().map(|l| &l.best)]);
-    let best =
-        [alone, beside].into_iter().flatten().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
+    let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
+    let instead = tried.instead.and_then(|lawful| go_on(&open, &found.baseline, lawful, say));
+    let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
+    let is_enough = instead
+        .as_ref()
+        .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
+    let alone = if is_enough { None } else { search(&found.baseline, tried.proposals) };
+    let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
+    let beside = if is_beside { search(&found.best, None) } else { None };
+    let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
+    let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
+    let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
     let against = if is_open { &found.baseline } else { &found.best };
     if !is_clearly_better(&open, found, &best.best) {
         say(format!("{} is no better than {}", best.best.model.title(), against.model.title()));
@@ -200,7 +210,7 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
     if effect.channel.is_some() || effect.spec().unlisted().is_some() || variables.is_empty() {
         return false;
     }
-    let criterion = Criterion::of(open, [Some(&found.best), None, None]);
+    let criterion = Criterion::of(open, [&found.best]);
     let tie = tie(open, &found.best, found.baseline.cost);
     let own = &effect.spec().port;
     let others = elsewhere(open, &found.best);
@@ -223,7 +233,7 @@ fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
 /// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
 pub(super) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
     let first = fits.first()?;
-    let criterion = Criterion::of(open, [Some(first), None, None]);
+    let criterion = Criterion::of(open, [first]);
     let tie = tie(open, first, before);
     let mut same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
     let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
@@ -284,6 +294,12 @@ fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     })
 }
 
+/// Whether a fit leaves so little of the misfit that no further law is looked for.
+fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
+    let noise = open.noise_cost();
+    fit.cost - noise < EXPLAINED * (baseline.cost - noise)
+}
+
 /// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
 /// first with other weights.
 fn search(
@@ -293,14 +309,35 @@ fn search(
     begun: Option<Proposals>,
     say: &dyn Fn(String),
 ) -> Option<Lawful> {
+    add_laws(open, baseline, (from.clone(), None), begun, say)
+}
+
+/// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
+fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
+    let fit = open.fit(&own.best.model, &own.best.x)?;
+    let last = fit.model.effects.len() - 1;
+    let before = match last {
+        0 => baseline.cost,
+        _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
+    };
+    let mut fits = with_elsewhere(open, fit, before);
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let (best, forms) = equally_good(open, &fits, before)?;
+    let here = best.clone();
+    add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
+}
+
+fn add_laws(
+    open: &Problem,
+    baseline: &Fit,
+    (mut here, mut lawful): (Fit, Option<Lawful>),
+    begun: Option<Proposals>,
+    say: &dyn Fn(String),
+) -> Option<Lawful> {
     let mut begun = begun.map(|b| b.again(open));
-    let noise = open.noise_cost();
-    let mut lawful: Option<Lawful> = None;
-    let mut here = from.clone();
-    for _ in 0..MOST_LAWS {
-        let is_explained = here.cost - noise < EXPLAINED * (baseline.cost - noise);
+    for _ in usize::from(lawful.is_some())..MOST_LAWS {
         let is_all = lawful.is_some() && !leaves_something(open, &here);
-        if is_explained || is_all || here.model.effects.len() >= MOST_EFFECTS {
+        if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
         let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
@@ -339,7 +376,7 @@ fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec
 /// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
 fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, say: &dyn Fn(String)) -> Vec<Fit> {
     let Some(wide) = propose(open, from, Reach::Wide, say) else { return plain };
-    let criterion = Criterion::of(open, [plain.first(), wide.fits.first(), None]);
+    let criterion = Criterion::of(open, plain.first().into_iter().chain(wide.fits.first()));
     let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
     if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
 }
@@ -351,8 +388,8 @@ pub(super) struct Criterion {
 }
 
 impl Criterion {
-    fn of(problem: &Problem, fits: [Option<&Fit>; 3]) -> Self {
-        let least = fits.into_iter().flatten().map(|f| f.cost).fold(f64::INFINITY, f64::min);
+    fn of<'a>(problem: &Problem, fits: impl IntoIterator<Item = &'a Fit>) -> Self {
+        let least = fits.into_iter().map(|f| f.cost).fold(f64::INFINITY, f64::min);
         let dispersion = (least / problem.noise_cost().max(1.0)).max(1.0);
         Self { dispersion, per_number: (problem.samples() as f64).ln() }
     }
