@@ -154,7 +154,9 @@ pub(super) fn weigh_laws(
         return None;
     }
     let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
-    let instead = tried.instead.and_then(|lawful| go_on(&open, &found.baseline, lawful, say));
+    // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
+    let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
+    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
     let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
     let is_enough = instead
         .as_ref()
