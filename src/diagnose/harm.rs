@@ -66,7 +66,10 @@ pub(super) fn without_unplayable(
     if found.best.model.effects.is_empty() || play_full(case, &found.baseline, noise).is_err() {
         return;
     }
-    warnings.push(format!("with {} the full scene diverges: it is not put into scene.toml", found.best.model.title()));
+    warnings.push(format!(
+        "the full scene cannot be played with {}: it is not put into scene.toml",
+        found.best.model.title()
+    ));
     withhold(found, proof);
 }
 

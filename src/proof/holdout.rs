@@ -11,7 +11,8 @@ use crate::system::SystemError;
 /// What a corrected scene closes that cannot be run on the recording: it does harm, as much as there was to gain.
 const UNPLAYABLE: f64 = -1.0;
 
-/// Share of the gap between the calibrated scene and the noise that the corrected scene closes; -1 where that diverges.
+/// Share of the gap between the calibrated scene and the noise that the corrected scene closes; -1 where that diverges, or a law of it leaves
+/// the range in which it means anything.
 ///
 /// # Errors
 /// A calibrated scene that cannot be run, files that cannot be read.
@@ -33,7 +34,7 @@ fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Option<Vec<[f6
     let simulate = |scene: &str| replay(&answer.join(scene).display().to_string(), &[], &run, 1);
     let baseline = simulate("baseline.toml")?;
     let corrected = match simulate("scene.toml") {
-        Err(IdentifyError::System(SystemError::Diverged { .. })) => return Ok(None),
+        Err(IdentifyError::System(SystemError::Diverged { .. } | SystemError::Law { .. })) => return Ok(None),
         played => played?,
     };
     let outputs = truth.rig.outputs().iter().zip(&truth.noise);

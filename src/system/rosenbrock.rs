@@ -220,8 +220,7 @@ fn solve<D: Scalar, const N: usize>(
     if !tangents.dashpots.is_empty() {
         push_dashpots(plant, tangents, g, r.slow(), k_w);
     }
-    let laws = tangents.laws.as_ref().filter(|laws| !laws.states.is_empty());
-    if let Some(laws) = laws {
+    if let Some(laws) = tangents.laws.as_ref().filter(|laws| laws.remember()) {
         laws.push_states(plant, g, r.law_states(), k_w);
     }
     tangents.ldl.solve::<N>(k_w);
@@ -242,7 +241,7 @@ fn solve<D: Scalar, const N: usize>(
         let (coordinates, states) = k.y_and_slow();
         stages_of_dashpots(plant, tangents, r.slow(), coordinates, states);
     }
-    if let Some(laws) = tangents.laws.as_ref().filter(|laws| !laws.states.is_empty()) {
+    if let Some(laws) = tangents.laws.as_ref().filter(|laws| laws.remember()) {
         let (moving, states) = k.moving_and_law_states();
         laws.stages(plant, g, r.law_states(), moving, states);
     }

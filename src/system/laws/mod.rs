@@ -39,6 +39,7 @@ struct Instance {
     /// Index of the law, and its port.
     law: usize,
     port: Port,
+    /// The port's: asked for at every stage.
     carrier: Carrier,
     /// Whether no other law acts there.
     is_alone: bool,
@@ -101,9 +102,8 @@ impl<D: Scalar> PlantLaws<D> {
             }
             let sources = self.rig.sources(law, at)?;
             let (port, carrier) = (law.address.port, law.address.port.spec().carrier);
-            let mut others = self.instances.iter_mut().filter(|i| i.port == port && i.at == at);
-            let mut is_alone = true;
-            others.by_ref().for_each(|other| (other.is_alone, is_alone) = (false, false));
+            let is_alone = !self.instances.iter().any(|i| i.port == port && i.at == at);
+            self.instances.iter_mut().filter(|i| i.port == port && i.at == at).for_each(|i| i.is_alone = false);
             self.instances.push(Instance { law: index, port, carrier, is_alone, at, sources, state_at: self.states });
             self.states += law.states.len();
         }
@@ -226,17 +226,6 @@ impl<D: Scalar> PlantLaws<D> {
             Carrier::Muscle => Some(acts.muscles[at].at_mut(port)),
             Carrier::Cable => Some(acts.cables[at].at_mut(port)),
             Carrier::Joint => Some(acts.joints[at].at_mut(port)),
-            Carrier::Sensor => None,
-        }
-    }
-
-    #[inline(always)]
-    fn act_of<'a>(instance: &Instance, acts: &'a Acts<D>) -> Option<&'a Act<D>> {
-        let (port, at) = (instance.port, instance.at);
-        match instance.carrier {
-            Carrier::Muscle => Some(acts.muscles[at].at(port)),
-            Carrier::Cable => Some(acts.cables[at].at(port)),
-            Carrier::Joint => Some(acts.joints[at].at(port)),
             Carrier::Sensor => None,
         }
     }

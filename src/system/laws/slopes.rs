@@ -131,7 +131,7 @@ impl<D: Scalar> PlantLaws<D> {
         acts: &mut Acts<D>,
     ) -> D {
         let law = &self.laws[instance.law];
-        match Self::act_of(instance, acts) {
+        match Self::act_of_mut(instance, acts) {
             Some(act) if instance.is_alone => act.of(law.acts),
             _ => self.evaluate(&law.programs.value, instance, plant, now, acts, 0),
         }

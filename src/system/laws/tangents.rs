@@ -24,6 +24,12 @@ impl<D: Scalar> LawTangents<D> {
         Self { states: vec![StateTangent::none(); laws.states], levers: levers.collect(), travel_at: laws.travel_at }
     }
 
+    /// Whether some law remembers anything.
+    #[inline]
+    pub fn remember(&self) -> bool {
+        !self.states.is_empty()
+    }
+
     /// Takes the levers as the laws make them.
     pub fn levers_at(&mut self, laws: &PlantLaws<D>, plant: &Plant<D>, acts: &Acts<D>) {
         for ((levers, cable), own) in self.levers.iter_mut().zip(&plant.cables).zip(&acts.cables) {
