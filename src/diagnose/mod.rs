@@ -228,10 +228,10 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let sizes = steady::sizes_by_run(&case, &complete, &noise);
     let contradicted = steady::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
-    let verdict = match confirmed {
-        Confirmed::InPart if is_open_set => Verdict::UnknownPhysics,
-        _ if found.withheld.is_some() && is_open_set => Verdict::UnknownPhysics,
-        _ => verdict::verdict(&found, &effects, excess, is_open_set),
+    let is_in_part = confirmed == Confirmed::InPart || found.withheld.is_some();
+    let verdict = match is_open_set && is_in_part {
+        true => Verdict::UnknownPhysics,
+        false => verdict::verdict(&found, &effects, excess, is_open_set),
     };
     let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
@@ -241,7 +241,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let specimens = specimen::numbers(&case, &complete);
     warnings.extend(specimen::words(&case, &specimens));
     let withheld = found.withheld.as_ref().map_or_else(Vec::new, |known| verdict::named(known, &known.best, left));
-    let said = if found.withheld.is_some() { &withheld } else { &effects };
+    let said = if withheld.is_empty() { &effects } else { &withheld };
     let location = locate::location(&case, &found, said, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = next_experiment(&whole, &found, left)?;
