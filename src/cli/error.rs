@@ -58,13 +58,15 @@ impl CliError {
     /// 1 for what failed, 2 for what was asked wrongly.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::System(SystemError::Diverged { .. } | SystemError::Law { .. })
-            | Self::Identify(IdentifyError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
-            | Self::Sweep(SweepError::System(SystemError::Diverged { .. } | SystemError::Law { .. }))
-            | Self::Diagnose(
-                DiagnoseError::System(SystemError::Diverged { .. } | SystemError::Law { .. })
-                | DiagnoseError::Write { .. },
-            )
+            Self::System(error)
+            | Self::Identify(IdentifyError::System(error))
+            | Self::Sweep(SweepError::System(error))
+            | Self::Diagnose(DiagnoseError::System(error))
+                if error.is_breakdown() =>
+            {
+                ExitCode::from(1)
+            }
+            Self::Diagnose(DiagnoseError::Write { .. })
             | Self::Write { .. }
             | Self::Recording(RecordingError::Write { .. })
             | Self::Sweep(SweepError::Write { .. })

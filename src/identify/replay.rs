@@ -21,6 +21,14 @@ pub enum IdentifyError {
     Mismatch { file: String, message: String, remedy: String },
 }
 
+impl IdentifyError {
+    /// Whether a run began and could not go on: see [`SystemError::is_breakdown`].
+    #[must_use]
+    pub const fn is_breakdown(&self) -> bool {
+        matches!(self, Self::System(error) if error.is_breakdown())
+    }
+}
+
 /// A recorded run with its data.
 #[derive(Clone, Debug)]
 pub struct RecordedRun {

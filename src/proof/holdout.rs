@@ -4,9 +4,8 @@ use std::path::Path;
 
 use super::ProofError;
 use crate::conceal::Truth;
-use crate::identify::{IdentifyError, RecordedRun, replay};
+use crate::identify::{RecordedRun, replay};
 use crate::recording::{Recording, Run, RunUse, read_recording};
-use crate::system::SystemError;
 
 /// What a corrected scene closes that cannot be run on the recording: it does harm, as much as there was to gain.
 const UNPLAYABLE: f64 = -1.0;
@@ -34,7 +33,7 @@ fn errors(truth: &Truth, answer: &Path, holdout: &Path) -> Result<Option<Vec<[f6
     let simulate = |scene: &str| replay(&answer.join(scene).display().to_string(), &[], &run, 1);
     let baseline = simulate("baseline.toml")?;
     let corrected = match simulate("scene.toml") {
-        Err(IdentifyError::System(SystemError::Diverged { .. } | SystemError::Law { .. })) => return Ok(None),
+        Err(error) if error.is_breakdown() => return Ok(None),
         played => played?,
     };
     let outputs = truth.rig.outputs().iter().zip(&truth.noise);

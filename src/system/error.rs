@@ -31,3 +31,11 @@ pub enum SystemError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }
+
+impl SystemError {
+    /// Whether the run began and could not go on: it diverged, or a law left the range in which it has a value.
+    #[must_use]
+    pub const fn is_breakdown(&self) -> bool {
+        matches!(self, Self::Diverged { .. } | Self::Law { .. })
+    }
+}
