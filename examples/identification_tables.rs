@@ -1,4 +1,4 @@
-//! The tables of docs/identification.md: every model on loops of the first-principles rig, and every model on its own data.
+//! The tables of docs/validation/identification.md: every model on loops of the first-principles rig, and every model on its own data.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example identification_tables -- [rig | recovery [TRIALS]]
