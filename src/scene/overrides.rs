@@ -144,14 +144,18 @@ impl Override {
     fn put(&self, root: &mut Value) -> Result<(), SceneError> {
         let key = calibration_key(&self.key);
         let path: Vec<&str> = key.split('.').collect();
-        let missing = |depth: usize, known: &[String]| SceneError::Override {
-            key: self.key.clone(),
-            message: format!(
-                "there is no `{}` in the scene{}",
-                path[..=depth].join("."),
-                did_you_mean(path[depth], &known.iter().map(String::as_str).collect::<Vec<_>>())
-            ),
-            remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
+        let deeper = if child_at(root, path[0]).is_none() { path_to(root, path[0]) } else { None };
+        let missing = |depth: usize, known: &[String]| {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let meant = match &deeper {
+                Some(whole) => format!(", did you mean \"{}\"?", [&[whole.as_str()], &path[1..]].concat().join(".")),
+                None => did_you_mean(path[depth], &known),
+            };
+            SceneError::Override {
+                key: self.key.clone(),
+                message: format!("there is no `{}` in the scene{meant}", path[..=depth].join(".")),
+                remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
+            }
         };
         let last = path.len() - 1;
         let mut here = root;
@@ -237,6 +241,15 @@ pub(super) fn child_at<'a>(value: &'a Value, segment: &str) -> Option<&'a Value>
     }
 }
 
+/// The way down to the first table of this name, if there is one within tables.
+fn path_to(value: &Value, name: &str) -> Option<String> {
+    let table = value.as_table()?;
+    if table.get(name).is_some_and(Value::is_table) {
+        return Some(name.to_owned());
+    }
+    table.iter().find_map(|(key, below)| Some(format!("{key}.{}", path_to(below, name)?)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,5 +287,8 @@ mod tests {
         let mut scene: Table = "[a]\nb = 1.5".parse().expect("test TOML");
         let error = Override::number("c.d", 1.0).apply(&mut scene).expect_err("no table c");
         assert!(error.to_string().starts_with("--set c.d: there is no `c` in the scene"), "{error}");
+        let mut deep: Table = "[a.c]\nd = 1.5".parse().expect("test TOML");
+        let error = Override::number("c.d", 1.0).apply(&mut deep).expect_err("no table c").to_string();
+        assert!(error.starts_with("--set c.d: there is no `c` in the scene, did you mean \"a.c.d\"?\n"), "{error}");
     }
 }
