@@ -1,4 +1,5 @@
-//! Contract: imports point down, engine and viewer stay behind their folders, and the map shows every folder.
+//! Contract: imports point down, between folders and between the steps of a diagnosis; engine and viewer stay behind their folders; the
+//! map shows every folder.
 //!
 //! The sources are read as text: no compiler, no crates. `cargo test --test architecture`.
 
@@ -6,8 +7,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What each top-level folder (or file) of `src/` may import from the others. Whatever is not listed is upward.
-const ALLOWED: &[(&str, &[&str])] = &[
+/// Folders (or files), and what each may import from the others. Whatever is not listed is upward.
+type Table = [(&'static str, &'static [&'static str])];
+
+/// The top-level folders of `src/`.
+const ALLOWED: &Table = &[
     ("scalar", &[]),
     ("columns", &[]),
     ("files", &[]),
@@ -80,6 +84,22 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// The steps of a diagnosis: the folders of `src/diagnose/`.
+const STEPS: &Table = &[
+    ("error", &[]),
+    ("diagnosis", &[]),
+    ("case", &["error"]),
+    ("fit", &["case", "error"]),
+    ("full", &["case", "diagnosis", "error", "fit"]),
+    ("grammar", &["case", "fit"]),
+    ("search", &["case", "fit", "grammar"]),
+    ("verdict", &["case", "diagnosis", "fit", "search"]),
+    ("unknown", &["case", "fit", "grammar", "search", "verdict"]),
+    ("validation", &["case", "diagnosis", "error", "fit", "full", "grammar", "search", "unknown", "verdict"]),
+    ("experiment", &["case", "diagnosis", "fit", "verdict"]),
+    ("answer", &["case", "diagnosis", "error", "fit", "full", "search", "verdict"]),
+];
+
 /// Crates that belong to one folder: names as they stand in Rust paths, and the folder.
 const OWNED: &[(&str, &str)] = &[
     ("rapier3d_f64", "mechanism"),
@@ -97,26 +117,40 @@ const OWNED: &[(&str, &str)] = &[
     ("chrono", "recording"),
 ];
 
-/// Roots of the crate; they name every folder and stand outside the order.
+/// Roots of the crate, and of the diagnosis; they name every folder and stand outside the order.
 const ROOTS: [&str; 2] = ["lib", "main"];
+const STEP_ROOTS: [&str; 2] = ["mod", "explained"];
+
+/// How paths begin that lead to another top-level folder, and to another step: by its full name, or by climbing up to it.
+const CRATE: [&str; 2] = ["crate::", "smam::"];
+const DIAGNOSE: [&str; 2] = ["crate::diagnose::", "super::"];
 
 fn root() -> PathBuf {
     PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR"))
 }
 
-/// A source file: path from `src/`, top-level folder, and text without comments.
+/// A source file: path from `src/`, folder (or file) of the first level, and text without comments.
 struct Source {
     path: String,
     module: String,
     code: String,
 }
 
+/// All sources, by top-level folder.
 fn sources() -> Vec<Source> {
-    let src = root().join("src");
-    let mut files = Vec::new();
-    collect(&src, &mut files);
+    sources_below("")
+}
+
+/// The sources of the diagnosis, by step.
+fn steps() -> Vec<Source> {
+    sources_below("diagnose")
+}
+
+fn sources_below(folder: &str) -> Vec<Source> {
+    let (src, mut files) = (root().join("src"), Vec::new());
+    collect(&src.join(folder), &mut files);
     files.sort();
-    files.iter().map(|file| read(&src, file)).collect()
+    files.iter().map(|file| read(&src, folder, file)).collect()
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
@@ -130,9 +164,9 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-fn read(src: &Path, file: &Path) -> Source {
+fn read(src: &Path, folder: &str, file: &Path) -> Source {
     let inside = file.strip_prefix(src).expect("below src");
-    let first = inside.iter().next().expect("a name").to_string_lossy();
+    let first = inside.strip_prefix(folder).expect("below the folder").iter().next().expect("a name").to_string_lossy();
     let text = fs::read_to_string(file).expect("UTF-8");
     Source {
         path: inside.display().to_string(),
@@ -146,10 +180,10 @@ fn without_comment(line: &str) -> &str {
     line.split("//").next().unwrap_or("")
 }
 
-/// Top-level modules named after `crate::` or `smam::`, grouped imports (`crate::{a, b::c}`) included.
-fn imports(code: &str) -> BTreeSet<String> {
+/// Names after any of these beginnings of a path (`crate::`), grouped imports (`crate::{a, b::c}`) included.
+fn imports(code: &str, prefixes: &[&str]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    for prefix in ["crate::", "smam::"] {
+    for prefix in prefixes {
         for (at, _) in code.match_indices(prefix) {
             if is_word_before(code, at) {
                 continue;
@@ -201,37 +235,58 @@ fn names_crate(code: &str, name: &str) -> bool {
     })
 }
 
-#[test]
-fn imports_point_down() {
-    let sources = sources();
+/// Imports of these sources that their table does not list; `prefixes` begin the paths from one folder to another.
+fn upward(sources: &[Source], table: &Table, roots: &[&str], prefixes: &[&str]) -> Vec<String> {
     let modules: BTreeSet<&str> = sources.iter().map(|s| s.module.as_str()).collect();
     let mut wrong = Vec::new();
-    for source in sources.iter().filter(|s| !ROOTS.contains(&s.module.as_str())) {
-        let Some((_, allowed)) = ALLOWED.iter().find(|(name, _)| *name == source.module) else {
-            wrong.push(format!(
-                "src/{}: the folder `{}` is not in the table of allowed imports",
-                source.path, source.module
-            ));
+    for Source { path, module, code } in sources.iter().filter(|s| !roots.contains(&s.module.as_str())) {
+        let Some((_, allowed)) = table.iter().find(|(name, _)| name == module) else {
+            wrong.push(format!("src/{path}: the folder `{module}` is not in the table of allowed imports"));
             continue;
         };
-        for import in imports(&source.code) {
-            let is_module = modules.contains(import.as_str()) && import != source.module;
+        for import in imports(code, prefixes) {
+            let is_module = modules.contains(import.as_str()) && import != *module;
             if is_module && !allowed.contains(&import.as_str()) {
-                wrong.push(format!("src/{}: `{}` must not import `{import}`", source.path, source.module));
+                wrong.push(format!("src/{path}: `{module}` must not import `{import}`"));
             }
         }
     }
     wrong.dedup();
+    wrong
+}
+
+#[test]
+fn imports_point_down() {
+    let wrong = upward(&sources(), ALLOWED, &ROOTS, &CRATE);
     assert!(wrong.is_empty(), "upward imports:\n  {}", wrong.join("\n  "));
 }
 
-/// The table itself has an order: every folder comes after all that it may import.
+#[test]
+fn imports_between_steps_of_a_diagnosis_point_down() {
+    let wrong = upward(&steps(), STEPS, &STEP_ROOTS, &DIAGNOSE);
+    assert!(wrong.is_empty(), "upward imports:\n  {}", wrong.join("\n  "));
+}
+
+/// What `diagnose` exports would hide from which step it comes.
+#[test]
+fn steps_of_a_diagnosis_import_from_steps() {
+    for Source { path, module, code } in steps().iter().filter(|s| !STEP_ROOTS.contains(&s.module.as_str())) {
+        for import in imports(code, &DIAGNOSE[..1]) {
+            let is_step = STEPS.iter().any(|(name, _)| *name == import);
+            assert!(is_step, "src/{path}: `{module}` must import `{import}` from the step that has it");
+        }
+    }
+}
+
+/// The tables themselves have an order: every folder comes after all that it may import.
 #[test]
 fn allowed_imports_have_no_cycle() {
-    for (i, (name, allowed)) in ALLOWED.iter().enumerate() {
-        for import in *allowed {
-            let earlier = ALLOWED[..i].iter().any(|(other, _)| other == import);
-            assert!(earlier, "`{name}` may import `{import}`, which does not stand above it in the table");
+    for table in [ALLOWED, STEPS] {
+        for (i, (name, allowed)) in table.iter().enumerate() {
+            for import in *allowed {
+                let earlier = table[..i].iter().any(|(other, _)| other == import);
+                assert!(earlier, "`{name}` may import `{import}`, which does not stand above it in the table");
+            }
         }
     }
 }
@@ -252,7 +307,8 @@ fn engine_and_viewer_stay_in_their_folders() {
 #[test]
 fn the_map_shows_every_folder() {
     let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
-    let modules: BTreeSet<String> = sources().into_iter().map(|s| s.module).collect();
+    let folders = sources().into_iter().chain(steps().into_iter().filter(|s| s.module != "mod"));
+    let modules: BTreeSet<String> = folders.map(|s| s.module).collect();
     let known = |m: &String| map.contains(&format!("`{m}/`")) || map.contains(&format!("`{m}.rs`"));
     let missing: Vec<&String> = modules.iter().filter(|m| !known(m)).collect();
     assert!(missing.is_empty(), "ARCHITECTURE.md does not show: {missing:?}");
@@ -274,8 +330,11 @@ fn the_map_shows_no_folder_that_is_gone() {
 fn the_reader_of_imports_sees_what_it_should() {
     let code =
         "use crate::scene::{A, B};\nlet x = crate::muscle::Wall;\nuse crate::{view::V, report};\nuse othercrate::cli;";
-    let expected: BTreeSet<String> = ["scene", "muscle", "view", "report"].map(str::to_owned).into();
-    assert_eq!(imports(code), expected);
+    let set = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<BTreeSet<String>>();
+    assert_eq!(imports(code, &CRATE), set(&["scene", "muscle", "view", "report"]));
+    let code =
+        "use crate::diagnose::{fit::Fit, case};\npub(super) fn f() {}\nuse super::super::search::{Found, settled};";
+    assert_eq!(imports(code, &DIAGNOSE), set(&["fit", "case", "super", "search"]));
     assert!(names_crate("use rerun::Vec3D;", "rerun") && names_crate("let a = rerun::X;", "rerun"));
     assert!(!names_crate("let rerun_path = 1; prerun::x()", "rerun"));
 }

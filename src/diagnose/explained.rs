@@ -1,21 +1,14 @@
 //! What explains the recordings: the calibration, effects of the catalogue, laws that nobody listed, and what they are worth on the
 //! sealed runs.
 
-use super::answer::Proof;
-use super::baseline;
-use super::candidates::{self, Variant};
-use super::case::{Case, Sealed};
-use super::confirm::{self, Confirmed};
+use super::case::{Case, Noise, Sealed};
+use super::diagnosis::Proof;
 use super::error::DiagnoseError;
-use super::fit::Problem;
-use super::hypothesis::{self, OneLaw, Tried};
-use super::noise::{self, Noise};
-use super::search::{Begun, Bound, Found};
-use super::verdict::Excess;
-use super::{broad, harm, prove, visible, weigh};
-
-/// Residuals by run, channel and time.
-type Residuals = Vec<Vec<Vec<f64>>>;
+use super::fit::{Problem, Variant, baseline};
+use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
+use super::unknown::hypothesis::{self, OneLaw, Tried};
+use super::validation::{confirm, harm, prove};
+use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
 /// What stands after the search and its proofs.
 pub(super) struct Explained {
@@ -44,7 +37,7 @@ pub(super) fn explain(
     say("baseline".to_owned());
     let base = baseline::baseline(case)?;
     let variants = candidates::variants(case);
-    let begun = Begun::with_one(&weigh::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
+    let begun = Begun::with_one(&reweight::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
     let explained = match hypothesis::one_law(case, &base.noise, &begun.found(), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
@@ -71,7 +64,7 @@ impl Search<'_> {
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
         let law = Bound(tried.law.as_ref());
-        let open = weigh::open_runs(case, &noise);
+        let open = reweight::open_runs(case, &noise);
         let found = begun.clone().finish(&open, self.variants, law, self.say);
         if !law.outdoes(&open, &found.baseline, &found.best) {
             return self.to_the_end(case, noise, found, tried);
@@ -82,7 +75,7 @@ impl Search<'_> {
         if let Some(lawful) = self.by_laws(case, &mut cut_short, tried)? {
             return Ok(lawful);
         }
-        let found = begun.finish(&weigh::open_runs(case, &noise), self.variants, Bound(None), self.say);
+        let found = begun.finish(&reweight::open_runs(case, &noise), self.variants, Bound(None), self.say);
         self.to_the_end(case, noise, found, again)
     }
 
@@ -94,7 +87,7 @@ impl Search<'_> {
         found: Found,
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
-        let (found, noise) = weigh::weigh(case, noise, found, self.variants, self.say);
+        let (found, noise) = reweight::weigh(case, noise, found, self.variants, self.say);
         let mut listed = self.held_against_sealed(case, found, noise)?;
         Ok(self.by_laws(case, &mut listed, tried)?.unwrap_or(listed))
     }
@@ -107,12 +100,12 @@ impl Search<'_> {
         noise: Vec<Noise>,
     ) -> Result<Explained, DiagnoseError> {
         let (variants, say) = (self.variants, self.say);
-        let found = broad::broaden(case, &noise, found, variants, say);
+        let found = creep::broaden(case, &noise, found, variants, say);
         let case = &*case;
         let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
         let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
         let mut found = confirm::prune(&open, found, variants, say);
-        visible::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
+        detection_limit::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
         let mut warnings = Vec::new();
         let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
         let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
@@ -164,13 +157,4 @@ fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &d
 
 pub(super) fn diverges() -> DiagnoseError {
     DiagnoseError::Simulation("it diverges".to_owned())
-}
-
-/// Residuals with what was found, and how much of baseline and best is more than noise.
-pub(super) fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
-    let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
-    let after = whole.residuals(&found.best.model, &found.best.x)?;
-    let (baseline, error) = noise::structured_excess(&before, whole.noise);
-    let (best, _) = noise::structured_excess(&after, whole.noise);
-    Some((after, Excess { baseline, best, error }))
 }

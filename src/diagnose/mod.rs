@@ -1,8 +1,8 @@
 //! What a recording shows and the simulation lacks: locate, name, model, prove, and say what to record next.
 //!
-//! [`diagnose`] goes through the steps one by one, each a module of its own: `preflight`, `baseline`, detection in
-//! `noise`, `locate`, `search`, `verdict`, `prove`. It works on the fast model of the scene
-//! ([`crate::system::Twin`]); what it finds is written as a scene.
+//! [`diagnose`] goes through the steps one by one, each a folder of its own: `case` and `fit` (recordings, noise, calibration), `search`,
+//! `verdict`, `unknown`, `validation`, `experiment`, `answer`. A step imports those below it, never one above (`tests/architecture.rs`). All work
+//! on the fast model of the scene ([`crate::system::Twin`]) but `full`; what is found is written as a scene.
 //!
 //! Half a minute for a bench:
 //!
@@ -24,145 +24,48 @@
 //! # }
 //! ```
 
-mod acting;
 mod answer;
-mod apart;
-mod baseline;
-mod broad;
-mod candidates;
 mod case;
-mod case_load;
-mod caveats;
-mod confirm;
-mod corrected;
-mod descent;
-mod elsewhere;
+mod diagnosis;
 mod error;
 mod experiment;
 mod explained;
-mod figures;
-mod files;
 mod fit;
-mod folds;
 mod full;
 mod grammar;
-mod harm;
-mod hypothesis;
-mod instants;
-mod intervals;
-mod known_as;
-mod locate;
-#[cfg(test)]
-mod made;
-mod model;
-mod noise;
-mod normal;
-mod on_full;
-mod preflight;
-pub mod programme;
-mod prove;
-mod reading;
-mod refits;
-mod screening;
-mod seal;
 mod search;
-mod settle;
-mod shaped;
-mod shapes;
-mod shown;
-mod side_by_side;
-mod span;
-mod specimen;
-mod steady;
-mod summary;
-mod swaps;
-mod thin;
-mod unlisted;
+mod unknown;
+mod validation;
 mod verdict;
-mod visible;
-mod weigh;
-mod without;
-mod written;
 
 use std::collections::BTreeMap;
 
-pub use answer::{
+pub use answer::{Outcome, side_by_side, write_answer, write_answer_with};
+pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, Sealed, Step};
+pub use diagnosis::{
     ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof, Verdict,
     size_key,
 };
-pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Sealed};
 pub use error::DiagnoseError;
-pub use files::{write_answer, write_answer_with};
-pub use fit::Fit;
-pub use model::{Model, Placed};
-pub use noise::Noise;
-pub use side_by_side::side_by_side;
-pub use without::Step;
+pub use experiment::programme;
+pub use fit::{Fit, Model, Placed};
 
-use confirm::Confirmed;
+use answer::{caveats, figures, location, specimens, summary};
 use experiment::Experiment;
 use explained::{Explained, diverges};
-use fit::Problem;
-use screening::Screened;
-use search::Found;
+use fit::{Problem, intervals};
+use full::refine;
+use search::{Found, Screened};
+use validation::{consistency, preflight};
+use verdict::{Confirmed, misfit};
 
-use crate::effects::Effect;
-use crate::recording::{Recording, RecordingError};
+use crate::recording::RecordingError;
 
 /// What a diagnosis is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Of the bootstrap's draws.
     pub seed: u64,
-}
-
-/// A diagnosis with what its report and its scene are made of.
-pub struct Outcome {
-    pub diagnosis: Diagnosis,
-    pub case: Case,
-    /// The calibration alone and with the effects, both fitted to the open runs.
-    pub baseline: Option<Fit>,
-    pub corrected: Option<Fit>,
-    /// The corrected fit renewed on all runs: what the scene gets.
-    pub complete: Option<Fit>,
-    /// Measured minus simulated of all runs: baseline, corrected.
-    pub residuals: Option<[Vec<Vec<Vec<f64>>>; 2]>,
-    pub noise: Vec<Noise>,
-    /// Models that were refitted and lost, with their chi².
-    pub rivals: Vec<(String, f64)>,
-    /// Every effect at the size from which these recordings would show it.
-    pub just_visible: Vec<Effect<f64>>,
-    /// The programme to play next: time and inputs, in the columns' units.
-    pub next_inputs: Option<Recording>,
-}
-
-impl Outcome {
-    /// The corrected scene as text.
-    ///
-    /// # Errors
-    /// A fitted number that the scene's own checks refuse.
-    pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
-        self.scene_text_of(self.case.specimens().first().copied())
-    }
-
-    /// The corrected scene of one of several specimens.
-    ///
-    /// # Errors
-    /// A fitted number that the scene's own checks refuse.
-    pub fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, crate::scene::SceneError>> {
-        let fit = self.complete.as_ref()?;
-        Some(corrected::fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
-    }
-
-    /// The scene calibrated to the open runs, with no effect added, as text: what everything found is compared with.
-    ///
-    /// # Errors
-    /// A fitted number that the scene's own checks refuse.
-    pub fn baseline_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
-        let fit = self.baseline.as_ref()?;
-        let specimen = self.case.specimens().first().copied();
-        Some(corrected::fitted_scene(&self.case, fit, specimen, "calibrated", "Calibrated, nothing added"))
-    }
 }
 
 /// Diagnoses a case; `say` hears of progress.
@@ -225,8 +128,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let mut effects = verdict::named(&found, &complete, left);
     add_curves(&case, &complete, &mut effects);
-    let sizes = steady::sizes_by_run(&case, &complete, &noise);
-    let contradicted = steady::report(sizes, &complete, &mut effects, &mut warnings);
+    let sizes = consistency::sizes_by_run(&case, &complete, &noise);
+    let contradicted = consistency::report(sizes, &complete, &mut effects, &mut warnings);
     let is_open_set = !case.is_without(Step::OpenSet);
     let is_in_part = confirmed == Confirmed::InPart || found.withheld.is_some();
     let verdict = match is_open_set && is_in_part {
@@ -238,11 +141,11 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         warnings.push(SEALED_ALONE.to_owned());
     }
     warnings.extend(figures::on_bounds(&case, &complete));
-    let specimens = specimen::numbers(&case, &complete);
-    warnings.extend(specimen::words(&case, &specimens));
+    let specimens = specimens::numbers(&case, &complete);
+    warnings.extend(specimens::words(&case, &specimens));
     let withheld = found.withheld.as_ref().map_or_else(Vec::new, |known| verdict::named(known, &known.best, left));
     let said = if withheld.is_empty() { &effects } else { &withheld };
-    let location = locate::location(&case, &found, said, &whole, &before, verdict);
+    let location = location::location(&case, &found, said, &whole, &before, verdict);
     say("next experiment".to_owned());
     let experiment = next_experiment(&whole, &found, left)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
@@ -285,14 +188,14 @@ fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experime
     if open.rivals.is_empty() {
         return experiment::confirm(whole, &found.best, found.rivals.iter().flatten());
     }
-    settle::settle(whole, &found.best, &open)
+    experiment::settle(whole, &found.best, &open)
 }
 
 /// Gives every effect that the complete fit has the curve of its law.
 fn add_curves(case: &Case, complete: &Fit, effects: &mut [NamedEffect]) {
     for (at, placed) in complete.model.effects.iter().enumerate() {
         if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
-            own.curve = written::curve(case, complete, at);
+            own.curve = verdict::curve(case, complete, at);
         }
     }
 }
@@ -306,14 +209,14 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
     let mut complete = fitted.unwrap_or_else(|| found.best.clone());
     intervals::widen(whole, &mut complete);
     // Numbers of all runs with which the full scene diverges are no use: then those of the open runs, with which it does not.
-    let settled = on_full::settle(whole, complete.clone()).or_else(|| on_full::settle(whole, found.best.clone()));
+    let settled = refine::settle(whole, complete.clone()).or_else(|| refine::settle(whole, found.best.clone()));
     settled.unwrap_or(complete)
 }
 
 /// Whether the open runs hold more than noise that the best does not explain.
 fn open_is_loud(case: &Case, noise: &[Noise], found: &Found) -> bool {
     let open = Problem { case, runs: case.subset(Sealed::Open), noise };
-    noise::left(&open, &found.best).is_none_or(|(excess, error)| verdict::is_loud(excess, error))
+    misfit::left(&open, &found.best).is_none_or(|(excess, error)| verdict::is_loud(excess, error))
 }
 
 fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {

@@ -1,0 +1,67 @@
+//! What an answer has to be read with: it stands in the verdict's own words, not in a list below.
+
+use crate::diagnose::case::{Case, Noise, noise};
+use crate::diagnose::fit::Fit;
+
+/// So near to an end of its range, in shares of the range, a number stands on it.
+const ON_BOUND: f64 = 1e-6;
+
+/// Clauses for an answer whose scene has the numbers of `fit`; `contradicted` are numbers of which single runs say
+/// otherwise.
+pub(in crate::diagnose) fn caveats(case: &Case, fit: &Fit, noise: &[Noise], contradicted: &[String]) -> Vec<String> {
+    let clauses = [
+        counted(
+            "channels with next to no noise, of whose range a hundred-thousandth is taken for it",
+            &without_noise(case, noise),
+        ),
+        counted("numbers on an end of their range, where intervals say nothing", &on_bounds(case, fit)),
+        counted("numbers that differ from run to run", contradicted),
+        counted("runs that lack the samples in which cables hardly hold the joint", &slack_in(case)),
+    ];
+    clauses.into_iter().flatten().collect()
+}
+
+/// `WORDS: a, b and 3 more`; nothing of nothing.
+fn counted(words: &str, names: &[String]) -> Option<String> {
+    let (shown, more) = names.split_at(names.len().min(2));
+    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+    (!shown.is_empty()).then(|| format!("{words}: {}{more}", shown.join(", ")))
+}
+
+/// Columns whose noise is the least that is believed.
+fn without_noise(case: &Case, noise: &[Noise]) -> Vec<String> {
+    let of_channels = case.channels.iter().zip(noise).enumerate();
+    let at_floor = of_channels.filter(|(c, (own, n))| own.stated_sd.is_none() && n.sd <= noise::least(case, *c));
+    at_floor.map(|(_, (own, _))| own.column.clone()).collect()
+}
+
+/// Numbers of calibration and effects that the data would have beyond the end of their range. A zero is no news.
+fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
+    let calibrated = fit.on_bound.iter().filter(|&&i| fit.x[i] != 0.0).map(|&i| case.parameters[i].title());
+    let first = fit.x.len() - fit.model.effect_numbers();
+    let of_effects = fit.model.places().into_iter().zip(&fit.x[first..]).filter_map(|((effect, i), &value)| {
+        let placed = &fit.model.effects[effect];
+        let p = &placed.spec().parameters[i];
+        let near = ON_BOUND * (p.range.max - p.range.min);
+        let is_on = value != 0.0 && (value - p.range.min <= near || p.range.max - value <= near);
+        is_on.then(|| format!("{} of {}", p.key, placed.title()))
+    });
+    calibrated.chain(of_effects).collect()
+}
+
+fn slack_in(case: &Case) -> Vec<String> {
+    case.runs.iter().filter(|r| r.unheld.iter().any(|samples| !samples.is_empty())).map(|r| r.file.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_are_named_and_the_others_counted() {
+        let names = |n: usize| (0..n).map(|i| format!("n{i}")).collect::<Vec<_>>();
+        assert_eq!(counted("late", &names(0)), None);
+        assert_eq!(counted("late", &names(2)).as_deref(), Some("late: n0, n1"));
+        assert_eq!(counted("late", &names(5)).as_deref(), Some("late: n0, n1 and 3 more"));
+    }
+}

@@ -1,0 +1,16 @@
+//! The answer: its parts in words and figures, its files, and its runs beside the full scene.
+//!
+//! May import `verdict`, `search`, `full`, `fit`, `case`, `diagnosis` and `error`.
+
+pub(super) mod caveats;
+pub(super) mod figures;
+mod files;
+pub(super) mod location;
+mod outcome;
+mod side_by_side;
+pub(super) mod specimens;
+pub(super) mod summary;
+
+pub use files::{write_answer, write_answer_with};
+pub use outcome::Outcome;
+pub use side_by_side::side_by_side;

@@ -1,0 +1,119 @@
+//! The verdict in plain words.
+
+use crate::diagnose::diagnosis::{Diagnosis, NamedEffect, Verdict};
+
+/// The verdict in two sentences, and what it has to be read with.
+pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
+    let verdict = verdict(d);
+    if caveats.is_empty() { verdict } else { format!("{verdict} Read it with care: {}.", caveats.join("; ")) }
+}
+
+fn verdict(d: &Diagnosis) -> String {
+    let effects: Vec<String> = d
+        .effects
+        .iter()
+        .map(|e| match &e.channel {
+            Some(channel) => format!("{} on {channel}", e.name),
+            None => format!("{} in {}", e.name, e.element),
+        })
+        .collect();
+    let said = said(d, &effects);
+    if d.calibration.is_empty() && d.verdict != Verdict::UnusableData {
+        return format!("{said} The scene names nothing to calibrate, so every number of it was taken as measured.");
+    }
+    said
+}
+
+fn said(d: &Diagnosis, effects: &[String]) -> String {
+    // Less than the noise can be left by chance: no more than all of a gap is closed.
+    let closed = format!(
+        "On the sealed runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
+        100.0 * d.fit.gap_closed.min(1.0)
+    );
+    match d.verdict {
+        Verdict::Adequate => format!(
+            "The calibrated scene explains the recordings down to their noise: nothing is missing that they could show. \
+             What is left is {:.4} of the noise's variance.",
+            d.detection.excess_chi2_per_sample.max(0.0)
+        ),
+        Verdict::MissingPhysics => format!("The scene lacks {}. {closed}", effects.join(" and ")),
+        Verdict::Ambiguous => format!("The scene lacks one of these: {}{}. {closed}", effects.join(", "), or_laws(d)),
+        Verdict::UnknownPhysics => format!(
+            "Something is missing that is not in the catalogue{}. {}",
+            d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
+            unknown(d, &closed)
+        ),
+        Verdict::UnusableData => d.summary.clone(),
+    }
+}
+
+/// Probability from which laws at other ports are worth a word.
+const WORTH_A_WORD: f64 = 0.05;
+
+/// Laws at other ports, where the effects that are named leave them a probability, in words.
+fn or_laws(d: &Diagnosis) -> &'static str {
+    let named: f64 = d.effects.iter().map(|e| e.probability).sum();
+    let has_forms = d.effects.iter().any(|e| e.forms.iter().any(|form| form.port != e.port));
+    if has_forms && 1.0 - named > WORTH_A_WORD { ", or a law elsewhere (see forms)" } else { "" }
+}
+
+/// What comes nearest, and what hypothesis takes it further.
+fn unknown(d: &Diagnosis, closed: &str) -> String {
+    if let [only] = &d.effects[..]
+        && let Some(number) = mere_number(only)
+    {
+        return format!("A number of the scene is another on the rig: {number} explains it. {closed}");
+    }
+    if !d.withheld.is_empty() {
+        return withheld(&d.withheld);
+    }
+    let (laws, listed): (Vec<&NamedEffect>, Vec<&NamedEffect>) = d.effects.iter().partition(|e| e.hypothetical);
+    let known = listed.iter().map(|e| format!("{} in {}", e.name, e.element)).collect::<Vec<_>>().join(" with ");
+    let law = laws.iter().map(|e| law(e)).collect::<Vec<_>>().join(", and ");
+    let others: usize = laws.iter().map(|e| e.forms.len()).sum();
+    let as_well = match others {
+        0 => String::new(),
+        1 => " (one other form explains as much: see forms)".to_owned(),
+        n => format!(" ({n} other forms explain as much: see forms)"),
+    };
+    match (known.as_str(), law.as_str()) {
+        ("", "") => "No known effect explains any of it.".to_owned(),
+        (known, "") => format!("The nearest known effect, {known}, leaves a part of it. {closed}"),
+        ("", law) => format!("No known effect explains it as well as a law does: {law}{as_well}. {closed}"),
+        (known, law) => {
+            format!(
+                "The nearest known effect, {known}, leaves a part of it; a law takes more: {law}{as_well}. {closed}"
+            )
+        }
+    }
+}
+
+/// What explains the open runs and is not put into the scene.
+fn withheld(effects: &[NamedEffect]) -> String {
+    let one = |e: &NamedEffect| if e.hypothetical { law(e) } else { format!("{} in {}", e.name, e.element) };
+    let all: Vec<String> = effects.iter().map(one).collect();
+    format!(
+        "It is located, not modelled: {} explains the runs that it was fitted to, and does not stand in others (see warnings), so \
+         scene.toml is the calibrated scene.",
+        all.join(" with ")
+    )
+}
+
+/// A law with where it acts and its numbers: `muscle.friction times (1 + ...)`.
+fn law(effect: &NamedEffect) -> String {
+    let own = match effect.acts.as_str() {
+        "scales" => format!("{} times ({})", effect.port, effect.law),
+        _ => format!("{} plus {}", effect.port, effect.law),
+    };
+    effect.known_as.as_ref().map_or_else(|| own.clone(), |name| format!("{own} - {name}"))
+}
+
+/// A law that depends on nothing, as a number: `muscle_2.wall times 1.08`.
+fn mere_number(effect: &NamedEffect) -> Option<String> {
+    let is_one = effect.hypothetical && effect.variables.is_empty() && !effect.port.is_empty();
+    let constant = effect.parameters.values().next().filter(|_| is_one)?.value;
+    Some(match effect.acts.as_str() {
+        "scales" => format!("{} times {:.4}", effect.port, 1.0 + constant),
+        _ => format!("{} of {constant:.4e} in SI units", effect.port),
+    })
+}

@@ -1,0 +1,56 @@
+//! What is held back of the recordings, so that an answer can be proved on it.
+
+use super::{Case, CaseRun};
+
+impl Case {
+    /// Holds the last run back unless the recordings say which; of a single run its last third is cut off, and of every run where
+    /// nothing drives them: then none foretells another.
+    pub(super) fn seal(&mut self) {
+        if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
+            return;
+        }
+        self.runs.iter_mut().for_each(|r| r.is_sealed = false);
+        let is_driven = !self.scene.file.input.is_empty();
+        if let [_, .., last] = self.runs.as_mut_slice()
+            && is_driven
+        {
+            last.is_sealed = true;
+            return;
+        }
+        let note = match self.runs.len() {
+            1 => "one run only: its last third is held back",
+            _ => "nothing drives these runs: the last third of each is held back",
+        };
+        self.notes.push(note.to_owned());
+        let ends = self.runs.iter().map(|run| run.cut_at(run.times_s().len() * 2 / 3));
+        let (open, sealed): (Vec<CaseRun>, Vec<CaseRun>) = ends.map(|[open, sealed]| (open, sealed)).unzip();
+        self.runs = open.into_iter().chain(sealed).collect();
+    }
+
+    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
+    pub fn seal_from(&mut self, cut: usize) {
+        self.runs = self.runs[..1].iter().flat_map(|run| run.cut_at(cut)).collect();
+    }
+}
+
+impl CaseRun {
+    /// What lies before sample `cut`, open, and the rest, held back; that is simulated from the start.
+    fn cut_at(&self, cut: usize) -> [Self; 2] {
+        let cut = cut.min(self.times_s().len());
+        let (mut open, mut sealed) = (self.clone(), self.clone());
+        open.keep(0..cut);
+        open.is_sealed = false;
+        sealed.open_part = Some(sealed.measured.clone());
+        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
+        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
+        sealed.is_sealed = true;
+        [open, sealed]
+    }
+
+    fn keep(&mut self, range: std::ops::Range<usize>) {
+        let end = self.lead_in + range.end;
+        self.drive.times_s.truncate(end);
+        self.drive.inputs.iter_mut().for_each(|x| x.truncate(end));
+        self.measured.iter_mut().for_each(|m| m.truncate(range.end));
+    }
+}

@@ -1,0 +1,220 @@
+//! The recordings of one rig beside the fast model of their scene, read, decimated, one run held out; and their noise.
+//!
+//! May import `error`.
+
+mod ablation;
+mod decimate;
+mod held_out;
+mod instants;
+mod load;
+#[cfg(test)]
+pub(super) mod made;
+pub(super) mod noise;
+mod specimen;
+
+use std::borrow::Cow;
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use crate::effects::Effect;
+use crate::scene::Scene;
+use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
+
+pub use ablation::Step;
+pub use noise::Noise;
+
+/// An output that was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseChannel {
+    pub column: String,
+    /// Its place among the outputs of the fast model.
+    pub output: usize,
+    /// Standard deviation of its noise as stated, in its unit.
+    pub stated_sd: Option<f64>,
+    /// The recording's zero is arbitrary: each run has an offset of its own.
+    pub has_free_zero: bool,
+}
+
+/// One recorded run.
+#[derive(Clone, Debug)]
+pub struct CaseRun {
+    pub file: String,
+    /// The scene under this run's conditions, and its fast model.
+    pub scene: Arc<Scene>,
+    pub twin: Arc<Twin>,
+    pub drive: TwinRun,
+    /// Instants at the start of `drive` that were not recorded: the way from rest to where the recording begins.
+    pub lead_in: usize,
+    /// Of each channel, its values at the recorded times; missing ones are NaN.
+    pub measured: Vec<Vec<f64>>,
+    /// Of each channel, the samples and values that were left out because next to nothing held the joint that they show.
+    pub unheld: Vec<Vec<(usize, f64)>>,
+    /// Which sample, or set-up, it was recorded on, if that is stated.
+    pub specimen: Option<String>,
+    pub is_sealed: bool,
+    /// Of the sealed end of a run: what was measured before it. A free zero is decided there.
+    pub open_part: Option<Vec<Vec<f64>>>,
+}
+
+impl CaseRun {
+    /// Recorded times, s.
+    pub fn times_s(&self) -> &[f64] {
+        &self.drive.times_s[self.lead_in..]
+    }
+
+    /// How the first input moves at a recorded sample.
+    pub fn direction(&self, sample: usize) -> Direction {
+        let Some(input) = self.drive.inputs.first() else { return Direction::Resting };
+        let at = self.lead_in + sample;
+        let before = input[at.saturating_sub(1)];
+        let after = input[(at + 1).min(input.len() - 1)];
+        match after.total_cmp(&before) {
+            Ordering::Less => Direction::Falling,
+            Ordering::Equal => Direction::Resting,
+            Ordering::Greater => Direction::Rising,
+        }
+    }
+}
+
+/// How an input moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    Falling,
+    Rising,
+    Resting,
+}
+
+impl Direction {
+    pub const ALL: [Self; 3] = [Self::Rising, Self::Falling, Self::Resting];
+
+    /// As it is said in figures.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Falling => "input falling",
+            Self::Rising => "input rising",
+            Self::Resting => "input at rest",
+        }
+    }
+}
+
+/// A calibrated parameter with its range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseParameter {
+    pub key: String,
+    pub parameter: TwinParameter,
+    /// Where several were recorded: the specimen whose number it is.
+    pub specimen: Option<String>,
+    pub min: f64,
+    pub max: f64,
+    pub start: f64,
+}
+
+/// Share of the noise by which doubled steps may change a channel over one sampling interval.
+const STEP_TOLERANCE: f64 = 1e-2;
+
+/// Everything a diagnosis looks at.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub scene: Scene,
+    /// Effects that the scene has already.
+    pub known_effects: Vec<Effect<f64>>,
+    /// As the recordings name it.
+    pub scene_name: String,
+    pub folders: Vec<String>,
+    pub channels: Vec<CaseChannel>,
+    pub parameters: Vec<CaseParameter>,
+    pub runs: Vec<CaseRun>,
+    pub notes: Vec<String>,
+    /// Whether the times of all runs are times, and no count of rows.
+    pub has_clock: bool,
+    /// A step of the diagnosis that is left out.
+    without: Option<Step>,
+}
+
+impl Case {
+    /// Plans the fast model's steps at a setting for each run, so that what they leave out vanishes in the noise.
+    /// `None` when the fast model diverges.
+    pub fn plan_steps(&mut self, settings: &[TwinSetting<f64>], noise: &[Noise]) -> Option<()> {
+        let count = self.scene.file.output.len();
+        let mut tolerance = vec![None; count];
+        for (channel, noise) in self.channels.iter().zip(noise) {
+            tolerance[channel.output] = Some(STEP_TOLERANCE * noise.sd);
+        }
+        let plan = |(run, setting): (&mut CaseRun, &TwinSetting<f64>)| -> Option<()> {
+            run.drive.plan = Some(run.twin.plan(&run.drive, setting, &tolerance)?);
+            Some(())
+        };
+        self.runs.par_iter_mut().zip(settings).map(plan).collect()
+    }
+
+    /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the fast model diverges.
+    pub fn leave_out_unheld(&mut self, settings: &[TwinSetting<f64>]) -> Option<()> {
+        let unheld: Vec<_> =
+            self.runs.par_iter().zip(settings).map(|(r, s)| r.twin.unheld(&r.drive, s)).collect::<Option<Vec<_>>>()?;
+        for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
+            run.unheld.resize(self.channels.len(), Vec::new());
+            for (c, channel) in self.channels.iter().enumerate() {
+                run.unheld[c].extend(leave_out(&mut run.measured[c], &unheld[channel.output][run.lead_in..]));
+            }
+        }
+        Some(())
+    }
+
+    /// Whether joints were held by next to nothing somewhere.
+    pub fn goes_slack(&self) -> bool {
+        self.runs.iter().any(|r| r.unheld.iter().any(|samples| !samples.is_empty()))
+    }
+
+    /// What was done with the recordings, for whoever reads the answer.
+    pub fn notes(&self) -> Vec<String> {
+        let counted = |r: &CaseRun| -> Vec<String> {
+            let left_out = self.channels.iter().zip(&r.unheld).filter(|(_, samples)| !samples.is_empty());
+            left_out.map(|(c, samples)| unheld_note(&r.file, &c.column, samples.len())).collect()
+        };
+        self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
+    }
+
+    /// Runs to fit and select with, or those held back.
+    pub fn subset(&self, sealed: Sealed) -> Vec<Cow<'_, CaseRun>> {
+        let wanted = |r: &&CaseRun| match sealed {
+            Sealed::Open => !r.is_sealed,
+            Sealed::Sealed => r.is_sealed,
+            Sealed::Both => true,
+        };
+        self.runs.iter().filter(wanted).map(Cow::Borrowed).collect()
+    }
+}
+
+fn unheld_note(file: &str, column: &str, count: usize) -> String {
+    format!(
+        "{file}: {count} samples of {column} are left out: the cables hardly hold the joint there, and the smallest force decides \
+         where it lies"
+    )
+}
+
+/// Which runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sealed {
+    Open,
+    Sealed,
+    Both,
+}
+
+/// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.
+const AROUND_UNHELD: usize = 10;
+
+/// Blanks what is unheld and its neighbours, and gives the values that were there. Nothing if it would be most of them.
+fn leave_out(measured: &mut [f64], unheld: &[bool]) -> Vec<(usize, f64)> {
+    let near = |i: usize| {
+        let (from, to) = (i.saturating_sub(AROUND_UNHELD), (i + AROUND_UNHELD + 1).min(unheld.len()));
+        unheld[from..to].contains(&true)
+    };
+    let blank: Vec<usize> = (0..measured.len()).filter(|&i| measured[i].is_finite() && near(i)).collect();
+    let there = measured.iter().filter(|m| m.is_finite()).count();
+    if 2 * blank.len() > there {
+        return Vec::new();
+    }
+    blank.into_iter().map(|i| (i, std::mem::replace(&mut measured[i], f64::NAN))).collect()
+}

@@ -1,0 +1,157 @@
+//! Step 8 for an ambiguous answer: what would settle it, programme and sensor together.
+
+use super::design::{
+    ALL, Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
+};
+use super::discrimination::{More, Question};
+use crate::diagnose::diagnosis::{NextExperiment, SETTLES_SIGMA};
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::verdict::Open;
+use crate::recording::RecordingError;
+
+/// Durations that are looked at, one after the other, until one is sure to settle what is open, s.
+const DURATIONS_S: [f64; 3] = [DURATION_S, 180.0, 300.0];
+/// Separation to aim at, standard errors: laws are idealisations, and what just settles on paper often does not on a rig.
+const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
+
+/// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
+/// greatest, counted with the recordings that there are. A minute long, or longer where that is surer; where none is sure
+/// to do, the programme and the sensor that together would.
+///
+/// # Errors
+/// Input columns without a known unit.
+pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
+    let Some(mut question) = Question::of_open(whole, best, open) else { return Ok(none_to_play()) };
+    let minute = candidates(whole, best, &question, (ALL, DURATION_S))?;
+    let alike = leave_out_alike(&mut question, &minute);
+    let untold = (!alike.is_empty()).then(|| untold(&alike));
+    if let Some(untold) = untold.as_ref().filter(|_| question.is_empty()) {
+        let why = format!("{} explains these recordings as well as others do, and {untold}", best.model.title());
+        return Ok(Experiment { next: NextExperiment::none(&why), inputs: None });
+    }
+    let mut experiment = settle_what_can_be(whole, best, &question, minute)?;
+    experiment.next.why.extend(untold.map(|untold| format!("; {untold}")));
+    Ok(experiment)
+}
+
+fn untold(alike: &[&Fit]) -> String {
+    let titles: Vec<String> = alike.iter().map(|fit| fit.model.title()).collect();
+    format!("nothing that can be played and recorded here tells it from {}", titles.join(", "))
+}
+
+/// Rivals that no programme of a minute sets apart by so much as this, in standard errors, every output of the scene recorded,
+/// say the same here: five minutes would make little more than twice of it.
+const ALIKE_SIGMA: f64 = 1.0;
+
+fn leave_out_alike<'a>(question: &mut Question<'a>, minute: &[Candidate]) -> Vec<&'a Fit> {
+    let seen: Vec<Vec<f64>> = minute.iter().map(|c| question.separations(&c.foreseen, More::Everything)).collect();
+    question.count_only(|rival| seen.is_empty() || seen.iter().any(|sigmas| sigmas[rival] >= ALIKE_SIGMA))
+}
+
+fn settle_what_can_be(
+    whole: &Problem,
+    best: &Fit,
+    question: &Question,
+    minute: Vec<Candidate>,
+) -> Result<Experiment, RecordingError> {
+    let mut tried = vec![minute];
+    let mut firsts = Vec::from_iter(first(question, &tried[0]));
+    for duration_s in &DURATIONS_S[1..] {
+        if firsts.last().is_none_or(|(_, promise)| promise.sigma > SURE_SIGMA) {
+            break;
+        }
+        tried.push(candidates(whole, best, question, (ALL, *duration_s))?);
+        match first(question, &tried[tried.len() - 1]) {
+            Some(longer) => firsts.push(longer),
+            None => break,
+        }
+    }
+    let Some(at) = surest(firsts.iter().map(|(_, promise)| promise.sigma)) else { return Ok(none_to_play()) };
+    let (winner, promise) = firsts[at];
+    if promise.sigma > SURE_SIGMA {
+        let winner = tried.swap_remove(at).swap_remove(winner);
+        let sensor = best_sensor(question, std::slice::from_ref(&winner), promise.sigma);
+        return Ok(proposal(best, true, (winner, promise), sensor));
+    }
+    let sensed = sensed(question, &tried, &firsts).filter(|(_, sensor)| sensor.sigma > promise.sigma);
+    Ok(match sensed {
+        None => proposal(best, true, (tried.swap_remove(at).swap_remove(winner), promise), None),
+        Some((at, sensor)) => {
+            let same = tried.swap_remove(at).swap_remove(sensor.candidate);
+            let alone = first(question, std::slice::from_ref(&same)).map_or(promise, |(_, alone)| alone);
+            proposal(best, true, (same, alone), Some(sensor))
+        }
+    })
+}
+
+/// The first that is sure to settle; else the greatest that should; else the first.
+fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
+    let all: Vec<f64> = separations.collect();
+    let greatest = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
+    let first_sure = all.iter().position(|s| *s > SURE_SIGMA);
+    Some(first_sure.unwrap_or(if all[greatest] > SETTLES_SIGMA { greatest } else { 0 }))
+}
+
+/// The duration, and the sensor with the programme that together set the best apart most, of programmes of a minute; longer,
+/// if that is surer. None where no sensor is worth it.
+fn sensed(question: &Question, tried: &[Vec<Candidate>], firsts: &[(usize, Promise)]) -> Option<(usize, Sensed)> {
+    let minute = best_sensor(question, &tried[0], firsts.first()?.1.sigma)?;
+    let name = tried[0][minute.candidate].name;
+    let mut found = vec![(0, minute)];
+    for (at, programmes) in tried.iter().enumerate().skip(1) {
+        if found.last().is_some_and(|(_, sensed)| sensed.sigma > SURE_SIGMA) {
+            break;
+        }
+        let Some(same) = programmes.iter().position(|c| c.name == name) else { continue };
+        let Some((_, alone)) = first(question, &programmes[same..=same]) else { continue };
+        let sensed = best_sensor(question, &programmes[same..=same], alone.sigma);
+        found.extend(sensed.map(|sensed| (at, Sensed { candidate: same, ..sensed })));
+    }
+    let at = surest(found.iter().map(|(_, sensed)| sensed.sigma))?;
+    Some(found.swap_remove(at))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::fit::{Model, Placed};
+    use crate::effects::{Element, ElementKind, find};
+
+    #[test]
+    fn the_shortest_that_is_sure_comes_first() {
+        let chosen = |separations: &[f64]| surest(separations.iter().copied());
+        assert_eq!(chosen(&[4.0, 12.0, 30.0]), Some(1));
+        assert_eq!(chosen(&[6.0, 9.0, 8.0]), Some(1));
+        // What would not do in five minutes either is not worth the time.
+        assert_eq!(chosen(&[2.0, 3.0, 4.0]), Some(0));
+        assert_eq!(chosen(&[]), None);
+    }
+
+    /// A rival that is the answer in other words is named and left out; one that is not is told apart.
+    #[test]
+    fn what_says_the_same_is_left_out() {
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let noise = [Noise::white(0.02)];
+        let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let fit = |id, element, values: &[f64]| {
+            let entry = find(id).expect("of the catalogue");
+            let model = Model::baseline().plus(&Placed { entry, element, channel: None }, values);
+            let x = whole.start(&model, None);
+            let numbers = x.len();
+            Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(numbers, numbers), on_bound: Vec::new() }
+        };
+        let leak = fit("leak", Element::of(ElementKind::Line, 0, 1), &[1e-17]);
+        let creep = fit("viscoelasticity", Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0, 0.0]);
+        let answer = |rivals: Vec<&Fit>| settle(&whole, &leak, &Open { rivals, unit: 1.0 }).expect("known units");
+        let none = answer(vec![&leak]);
+        assert!(none.inputs.is_none() && none.next.file.is_none());
+        assert!(none.next.why.ends_with("nothing that can be played and recorded here tells it from leak in line"));
+        let next = answer(vec![&leak, &creep]).next;
+        assert!(next.file.is_some() && next.separation_sigma > SETTLES_SIGMA, "{next:?}");
+        assert!(next.between.is_some_and(|[_, rival]| rival == "viscoelasticity in muscle"));
+        assert!(next.why.ends_with("tells it from leak in line"), "{}", next.why);
+    }
+}

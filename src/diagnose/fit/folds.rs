@@ -1,0 +1,54 @@
+//! Parts of the recordings that are left out by turns: what a model foretells it has not only been fitted to.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::problem::Problem;
+use crate::diagnose::case::CaseRun;
+
+impl Problem<'_> {
+    /// Every run left out once: the others, and it. A single run is cut into its halves.
+    pub fn runs_left_out(&self) -> Vec<(Problem<'_>, Problem<'_>)> {
+        if self.runs.len() < 2 {
+            return self.halves_left_out();
+        }
+        let without = |i: usize| {
+            let mut rest = self.borrowed();
+            let left_out = rest.remove(i);
+            (self.part(rest), self.part(vec![left_out]))
+        };
+        (0..self.runs.len()).map(without).collect()
+    }
+
+    /// Every half of every run left out once: all the rest, and it.
+    pub fn halves_left_out(&self) -> Vec<(Problem<'_>, Problem<'_>)> {
+        let one = |i: usize| {
+            let run = &self.runs[i];
+            let (half, end) = (run.times_s().len() / 2, run.times_s().len());
+            [(0..half, half..end), (half..end, 0..half)].map(|(kept, left_out)| {
+                let mut rest = self.borrowed();
+                rest[i] = Cow::Owned(without_samples(run, left_out));
+                // What is left out is foretold with the zero that the rest decides.
+                let mut foretold = without_samples(run, kept);
+                foretold.open_part = Some(rest[i].measured.clone());
+                (self.part(rest), self.part(vec![Cow::Owned(foretold)]))
+            })
+        };
+        (0..self.runs.len()).flat_map(one).collect()
+    }
+
+    fn borrowed(&self) -> Vec<Cow<'_, CaseRun>> {
+        self.runs.iter().map(|r| Cow::Borrowed(r.as_ref())).collect()
+    }
+
+    fn part<'s>(&'s self, runs: Vec<Cow<'s, CaseRun>>) -> Problem<'s> {
+        Problem { case: self.case, runs, noise: self.noise }
+    }
+}
+
+/// A run that is driven as before, with nothing measured at some of its times.
+fn without_samples(run: &CaseRun, times: Range<usize>) -> CaseRun {
+    let mut part = run.clone();
+    part.measured.iter_mut().for_each(|m| m[times.clone()].fill(f64::NAN));
+    part
+}

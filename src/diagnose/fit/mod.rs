@@ -1,0 +1,19 @@
+//! Least squares of a model, calibration and effects, against runs; and the first of all fits, that of the calibration alone.
+//!
+//! May import `case` and `error`.
+
+pub(super) mod baseline;
+mod descent;
+mod folds;
+pub(super) mod intervals;
+mod model;
+mod normal;
+mod problem;
+
+pub use model::{Model, Placed};
+pub use problem::Fit;
+
+pub(super) use descent::Underway;
+pub(super) use model::{Probe, Sides, Variant, respond, simulate, simulate_many};
+pub(super) use normal::{Normal, Number, Rows, orthogonal};
+pub(super) use problem::{Problem, probe, probes};

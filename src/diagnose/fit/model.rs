@@ -1,0 +1,217 @@
+//! What is compared with the recordings: calibrated parameters and a set of effects.
+
+use crate::effects::{Effect, Element, Entry, EntryId};
+use crate::system::TwinSetting;
+
+use crate::diagnose::case::{Case, CaseRun};
+
+/// An effect on its element, without numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Placed {
+    pub entry: EntryId,
+    pub element: Element,
+    pub channel: Option<String>,
+}
+
+impl Placed {
+    /// The catalogue's entry.
+    pub fn spec(&self) -> &'static Entry {
+        self.entry.entry()
+    }
+
+    /// What a reader is told: `trapped_air in line_2`, `sensor_gain on angle_deg`.
+    pub fn title(&self) -> String {
+        match &self.channel {
+            Some(channel) => format!("{} on {channel}", self.spec().name),
+            None => format!("{} in {}", self.spec().name, self.element),
+        }
+    }
+
+    /// Whether another answer would be given in the same words.
+    pub fn says_the_same(&self, other: &Self) -> bool {
+        self.spec().name == other.spec().name && self.element == other.element && self.channel == other.channel
+    }
+
+    /// With numbers.
+    pub fn with(&self, values: &[f64]) -> Effect<f64> {
+        Effect { entry: self.entry, element: self.element, channel: self.channel.clone(), values: values.to_vec() }
+    }
+}
+
+/// An effect with numbers to start from; the size is the first of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    pub placed: Placed,
+    pub values: Vec<f64>,
+}
+
+/// Relaxation times of one muscle, or terms of one hypothesis, at most.
+const MOST_BRANCHES: usize = 3;
+
+/// A set of effects beside the calibration, and the numbers that are not fitted.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Model {
+    pub effects: Vec<Placed>,
+    /// All numbers of each effect; those that are fitted are replaced.
+    pub values: Vec<Vec<f64>>,
+    /// Of each effect: which of its numbers are fitted.
+    pub fitted: Vec<Vec<usize>>,
+}
+
+impl Model {
+    /// The calibration alone.
+    pub fn baseline() -> Self {
+        Self::default()
+    }
+
+    /// Its effects in words.
+    pub fn title(&self) -> String {
+        if self.effects.is_empty() {
+            return "calibration alone".to_owned();
+        }
+        self.effects.iter().map(Placed::title).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// One effect more, its numbers starting at `values`.
+    pub fn plus(&self, placed: &Placed, values: &[f64]) -> Self {
+        let mut model = self.clone();
+        let spec = placed.spec();
+        model.effects.push(placed.clone());
+        model.values.push(values.to_vec());
+        model.fitted.push((0..spec.parameters.len()).filter(|&i| spec.parameters[i].is_fitted).collect());
+        model
+    }
+
+    /// Whether an effect may be added: not twice on one element, but for relaxation, which has a spectrum.
+    pub fn takes(&self, placed: &Placed) -> bool {
+        let standing = self.effects.iter().filter(|e| *e == placed).count();
+        standing < if placed.entry.may_repeat { MOST_BRANCHES } else { 1 }
+    }
+
+    /// One effect less.
+    pub fn without(&self, index: usize) -> Self {
+        let mut model = self.clone();
+        model.effects.remove(index);
+        model.values.remove(index);
+        model.fitted.remove(index);
+        model
+    }
+
+    /// Number of fitted numbers of the effects.
+    pub fn effect_numbers(&self) -> usize {
+        self.fitted.iter().map(Vec::len).sum()
+    }
+
+    /// Where each fitted number of the effects stands: effect and index.
+    pub fn places(&self) -> Vec<(usize, usize)> {
+        self.fitted.iter().enumerate().flat_map(|(e, list)| list.iter().map(move |&i| (e, i))).collect()
+    }
+
+    /// The effects with the fitted numbers at `x`, which follows the calibration in the vector of a fit.
+    pub fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
+        let mut effects: Vec<Effect<f64>> = self.effects.iter().zip(&self.values).map(|(p, v)| p.with(v)).collect();
+        for ((effect, index), value) in self.places().into_iter().zip(x) {
+            effects[effect].values[index] = *value;
+        }
+        effects
+    }
+}
+
+impl Model {
+    /// What the fast model is given for a run; `x` holds the calibration, then the fitted numbers of the effects.
+    pub(in crate::diagnose) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> TwinSetting<f64> {
+        let parameters = case.twin_parameters(run, x);
+        let mut effects = case.known_effects.clone();
+        effects.extend(self.effects_at(&x[case.parameters.len()..]));
+        TwinSetting { parameters, effects }
+    }
+
+    /// The same for every run of a case.
+    pub(in crate::diagnose) fn settings(&self, case: &Case, x: &[f64]) -> Vec<TwinSetting<f64>> {
+        case.runs.iter().map(|run| self.setting(case, run, x)).collect()
+    }
+}
+
+/// Simulated channels of one run, and their derivatives to the numbers asked for.
+pub(in crate::diagnose) struct Response {
+    /// By channel, then time.
+    pub values: Vec<Vec<f64>>,
+    /// By number, then channel, then time.
+    pub slopes: Vec<Vec<Vec<f64>>>,
+}
+
+/// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
+pub(in crate::diagnose) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
+    simulate_many(case, run, &[model.setting(case, run, x)]).pop()?
+}
+
+/// Simulates a run at several settings; the compared channels of each.
+pub(in crate::diagnose) fn simulate_many(
+    case: &Case,
+    run: &CaseRun,
+    settings: &[TwinSetting<f64>],
+) -> Vec<Option<Vec<Vec<f64>>>> {
+    let compared =
+        |series: Vec<Vec<f64>>| case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect();
+    let many = run.twin.simulate_many(&run.drive, settings);
+    many.into_iter().map(|series| series.map(compared)).collect()
+}
+
+/// A number of `x` and the step over which its derivative is taken, to one side or to both.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::diagnose) struct Probe {
+    pub number: usize,
+    pub step: f64,
+    pub sides: Sides,
+}
+
+impl Probe {
+    /// Derivative of every channel from its values at the probe's step and without it.
+    pub fn slope(&self, ahead: &[Vec<f64>], behind: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        slope(ahead, behind, self.step)
+    }
+}
+
+fn slope(ahead: &[Vec<f64>], behind: &[Vec<f64>], way: f64) -> Vec<Vec<f64>> {
+    let channels = ahead.iter().zip(behind);
+    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
+}
+
+/// Differences to one side cost half; those to both sides are exact enough for narrow valleys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::diagnose) enum Sides {
+    One,
+    Both,
+}
+
+/// Simulates with derivatives, as differences over the probes' steps.
+///
+/// The exact derivatives that the fast model also has would cost the same. But where a cable hangs between taut and
+/// slack they are those of the branch taken at every step, and grow without bound; a finite step does not.
+pub(in crate::diagnose) fn respond(
+    case: &Case,
+    run: &CaseRun,
+    model: &Model,
+    x: &[f64],
+    probes: &[Probe],
+) -> Option<Response> {
+    let mut jobs = vec![x.to_vec()];
+    let mut ends = Vec::new();
+    for probe in probes {
+        let mut end = |step: f64| {
+            let mut moved = x.to_vec();
+            moved[probe.number] += step;
+            jobs.push(moved);
+            jobs.len() - 1
+        };
+        let ahead = end(probe.step);
+        ends.push(match probe.sides {
+            Sides::One => (ahead, 0, probe.step),
+            Sides::Both => (ahead, end(-probe.step), 2.0 * probe.step),
+        });
+    }
+    let settings: Vec<_> = jobs.iter().map(|x| model.setting(case, run, x)).collect();
+    let series = simulate_many(case, run, &settings).into_iter().collect::<Option<Vec<_>>>()?;
+    let slopes = ends.into_iter().map(|(ahead, behind, way)| slope(&series[ahead], &series[behind], way)).collect();
+    Some(Response { values: series[0].clone(), slopes })
+}

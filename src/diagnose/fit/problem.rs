@@ -1,0 +1,215 @@
+//! Least squares of a [`Model`] against runs.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::model::{Model, Probe, Sides, respond, simulate};
+use super::normal::{Number, Rows};
+use crate::diagnose::case::{Case, CaseRun, Noise};
+
+/// A fitted model.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    pub model: Model,
+    /// Calibration, then the fitted numbers of the effects.
+    pub x: Vec<f64>,
+    /// Sum of squared residuals in units of the noise, colour allowed for.
+    pub cost: f64,
+    /// Inverse of the normal matrix: covariance of `x`.
+    pub covariance: DMatrix<f64>,
+    /// Calibrated parameters that ended on a bound.
+    pub on_bound: Vec<usize>,
+}
+
+impl Fit {
+    /// Half width of the 95 % interval of a number.
+    pub fn half_width(&self, number: usize) -> f64 {
+        1.96 * self.covariance[(number, number)].max(0.0).sqrt()
+    }
+}
+
+/// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
+const CALIBRATION_STEP: f64 = 1e-3;
+const EFFECT_STEP: f64 = 2e-2;
+/// The same for calibrated numbers where cables go slack. Where a joint comes to rest after that depends on how it bounced: over a
+/// thousandth of a range that makes derivatives a hundred times too large and intervals too narrow, over a tenth it averages out.
+const STEP_ACROSS_SLACK: f64 = 1e-1;
+
+/// Steps to both sides are alike; away from a bound that is near.
+pub(in crate::diagnose) fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
+    which.map(|number| probe(&numbers[number], x[number], number, sides)).collect()
+}
+
+/// The step over which a number at `x` is differentiated.
+pub(in crate::diagnose) fn probe(n: &Number, x: f64, number: usize, sides: Sides) -> Probe {
+    // A number grown far beyond its scale is probed in proportion.
+    let size = (n.step * n.scale).max(1e-3 * x.abs());
+    let has_room = x - size >= n.min && x + size <= n.max;
+    let step = if x + size > n.max { -size } else { size };
+    Probe { number, step, sides: if has_room { sides } else { Sides::One } }
+}
+
+/// The part of the data that is fitted, with its weights.
+pub(in crate::diagnose) struct Problem<'a> {
+    pub case: &'a Case,
+    pub runs: Vec<Cow<'a, CaseRun>>,
+    pub noise: &'a [Noise],
+}
+
+impl Problem<'_> {
+    pub fn numbers(&self, model: &Model) -> Vec<Number> {
+        let step = if self.case.goes_slack() { STEP_ACROSS_SLACK } else { CALIBRATION_STEP };
+        let mut numbers: Vec<Number> = self
+            .case
+            .parameters
+            .iter()
+            .map(|p| {
+                let half = (p.max - p.min) / 2.0;
+                Number { min: p.min, max: p.max, scale: half, step, prior: p.start, prior_weight: 1.0 / (2.0 * half) }
+            })
+            .collect();
+        for (effect, index) in model.places() {
+            let p = &model.effects[effect].spec().parameters[index];
+            let scale = p.typical.abs().max(1e-3 * p.range.max.abs().min(1.0));
+            let (min, max) = (p.range.min, p.range.max);
+            numbers.push(Number { min, max, scale, step: EFFECT_STEP, prior: 0.0, prior_weight: 0.0 });
+        }
+        numbers
+    }
+
+    /// Where a fit of a model starts: calibration as in `near` (or the scene), effects at their numbers.
+    pub fn start(&self, model: &Model, near: Option<&[f64]>) -> Vec<f64> {
+        let n = self.case.parameters.len();
+        let mut x: Vec<f64> = match near {
+            Some(near) => near[..n].to_vec(),
+            None => self.case.parameters.iter().map(|p| p.start).collect(),
+        };
+        x.extend(model.places().into_iter().map(|(effect, index)| model.values[effect][index]));
+        x
+    }
+
+    /// Residuals measured minus simulated by run, channel and time, in the channels' units.
+    pub fn residuals(&self, model: &Model, x: &[f64]) -> Option<Vec<Vec<Vec<f64>>>> {
+        let one = |run: &Cow<'_, CaseRun>| {
+            let simulated = simulate(self.case, run, model, x)?;
+            Some(self.subtract(run, &simulated))
+        };
+        self.runs.par_iter().map(one).collect()
+    }
+
+    /// Residuals at `x` and the derivatives to the numbers `wanted`, one row per sample that is there.
+    pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
+        let numbers = self.numbers(model);
+        let probes = probes(&numbers, x, wanted.clone(), sides);
+        let one = |run: &Cow<'_, CaseRun>| -> Option<Vec<Rows>> {
+            let response = respond(self.case, run, model, x, &probes)?;
+            let residuals = self.subtract(run, &response.values);
+            let channels = residuals.iter().enumerate();
+            let rows = channels.map(|(c, r)| self.weighted_rows(run, c, r, &response.slopes, &numbers[wanted.clone()]));
+            Some(rows.collect())
+        };
+        let parts = self.runs.par_iter().map(one).collect::<Option<Vec<_>>>()?;
+        Rows::stack(&parts.concat())
+    }
+
+    /// Residuals at `x` in units of the noise, in the order of [`Problem::rows`].
+    pub fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
+        Some(self.in_noise(&self.residuals(model, x)?))
+    }
+
+    /// Residuals by run, channel and time in units of the noise, where something was measured, in the order of [`Problem::rows`].
+    pub fn in_noise(&self, residuals: &[Vec<Vec<f64>>]) -> DVector<f64> {
+        let mut all = Vec::with_capacity(self.samples());
+        for (run, residuals) in self.runs.iter().zip(residuals) {
+            for ((measured, residual), noise) in run.measured.iter().zip(residuals).zip(self.noise) {
+                let there = measured.iter().zip(residual).filter(|(m, _)| m.is_finite());
+                all.extend(there.map(|(_, r)| r / noise.scale()));
+            }
+        }
+        DVector::from_vec(all)
+    }
+
+    fn weighted_rows(
+        &self,
+        run: &CaseRun,
+        channel: usize,
+        residual: &[f64],
+        slopes: &[Vec<Vec<f64>>],
+        numbers: &[Number],
+    ) -> Rows {
+        let weight = 1.0 / self.noise[channel].scale();
+        let there = |(measured, residual): (&f64, &f64)| measured.is_finite().then_some(residual * weight);
+        let residual: Vec<f64> = run.measured[channel].iter().zip(residual).filter_map(there).collect();
+        let mut rows =
+            Rows { slopes: DMatrix::zeros(residual.len(), numbers.len()), residual: DVector::from_vec(residual) };
+        for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
+            let column = self.weighted_slope(run, channel, &slope[channel], number);
+            rows.slopes.column_mut(k).iter_mut().zip(column).for_each(|(to, from)| *to = from);
+        }
+        rows
+    }
+
+    /// Derivative of a channel where it was measured, in units of the noise and of the number's scale.
+    pub fn weighted_slope(
+        &self,
+        run: &CaseRun,
+        channel: usize,
+        slope: &[f64],
+        number: &Number,
+    ) -> impl Iterator<Item = f64> {
+        let weight = 1.0 / self.noise[channel].scale();
+        let zero = self.zero(run, channel, |i, _| slope[i]);
+        let there = run.measured[channel].iter().zip(slope).filter(|(measured, _)| measured.is_finite());
+        there.map(move |(_, slope)| (slope - zero) * (weight * number.scale))
+    }
+
+    /// Sum of squares of the residuals at `x`, in units of the noise.
+    pub fn cost_at(&self, model: &Model, x: &[f64]) -> Option<f64> {
+        Some(self.weighted_residual(model, x)?.norm_squared())
+    }
+
+    /// Measured minus simulated, each channel with a free zero about its own.
+    pub fn subtract(&self, run: &CaseRun, simulated: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let channel = |(c, measured): (usize, &Vec<f64>)| -> Vec<f64> {
+            let zero = self.zero(run, c, |i, m| m - simulated[c][i]);
+            measured.iter().zip(&simulated[c]).map(|(m, s)| m - s - zero).collect()
+        };
+        run.measured.iter().enumerate().map(channel).collect()
+    }
+
+    /// Where a channel's zero lies: the mean of `value(sample, measured)` if it is free, else 0.
+    fn zero(&self, run: &CaseRun, channel: usize, value: impl Fn(usize, f64) -> f64) -> f64 {
+        if !self.case.channels[channel].has_free_zero {
+            return 0.0;
+        }
+        let decides = run.open_part.as_ref().unwrap_or(&run.measured)[channel].iter().enumerate();
+        let values = decides.filter(|(_, m)| m.is_finite()).map(|(i, m)| value(i, *m));
+        let (sum, count) = values.fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
+    /// Number of samples compared.
+    pub fn samples(&self) -> usize {
+        self.runs.iter().flat_map(|r| &r.measured).flatten().filter(|v| v.is_finite()).count()
+    }
+
+    /// Sum of squares, in the units of [`Fit::cost`], that noise alone would leave.
+    pub fn noise_cost(&self) -> f64 {
+        let count = |c: usize| -> usize {
+            self.runs.iter().map(|r| r.measured[c].iter().filter(|v| v.is_finite()).count()).sum()
+        };
+        self.noise.iter().enumerate().map(|(c, noise)| count(c) as f64 / noise.inflation()).sum()
+    }
+
+    /// The numbers of a fit without those of one effect.
+    pub fn start_without(&self, fit: &Fit, effect: usize) -> Vec<f64> {
+        let n = self.case.parameters.len();
+        let mut x = fit.x[..n].to_vec();
+        let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
+        x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
+        x
+    }
+}

@@ -1,0 +1,10 @@
+//! The full scene with the numbers of a fit: as text, played beside the fast model, and with the last word on the numbers.
+//!
+//! May import `fit`, `case`, `diagnosis` and `error`.
+
+mod play;
+pub(super) mod refine;
+mod scene;
+
+pub(super) use play::{FullRun, agreement, full_simulation, play_full};
+pub(super) use scene::fitted_scene;

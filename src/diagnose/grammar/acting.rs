@@ -1,0 +1,64 @@
+//! What is tried at each port, and laws as something that a model can hold.
+
+use std::collections::BTreeMap;
+
+use crate::diagnose::case::Case;
+use crate::diagnose::fit::Placed;
+use crate::effects::{Element, EntryId, Fitted, Range};
+use crate::laws::{Acts, Carrier, Law, LawTable, ParameterTable, Port, Surroundings};
+
+/// What is tried at each port: whether it adds or scales, and a size that is plain to see.
+pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
+    use Acts::{Adds, Scales};
+    Some(match port {
+        Port::Plunger => (Adds, "m", 2e-5),
+        Port::SyringeFlow | Port::Outflow => (Adds, "m3/s", 1e-11),
+        Port::PressureDrop => (Adds, "Pa", 1e4),
+        Port::Resistance => (Scales, "1", 2.0),
+        Port::Inertance => return None,
+        Port::Pull => (Adds, "N", 0.02),
+        Port::RestLength => (Adds, "m", 2e-4),
+        Port::Stretch => (Adds, "m", 1e-4),
+        Port::Torque => (Adds, "N m", 1e-4),
+        Port::Sensor => return None,
+        _ => (Scales, "1", 0.05),
+    })
+}
+
+/// A law at a port whose only number is what acts there.
+pub fn injected(case: &Case, address: &str, port: Port) -> Option<(Placed, f64)> {
+    let (acts, unit, typical) = action(port)?;
+    let (adds, scales) = does(acts, "u".to_owned());
+    let number = ParameterTable { unit: Some(unit.to_owned()), ..ParameterTable::default() };
+    let table = LawTable {
+        name: "injected".to_owned(),
+        port: address.to_owned(),
+        adds,
+        scales,
+        parameter: BTreeMap::from([("u".to_owned(), number)]),
+        ..LawTable::default()
+    };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let range = Range { min: -1e3 * typical, max: 1e3 * typical };
+    Some((written(case, &table, &law, &[Fitted { typical, range, is_fitted: true }], 0), typical))
+}
+
+/// A law as something that a model can hold.
+pub fn written(case: &Case, table: &LawTable, law: &Law, numbers: &[Fitted], size: usize) -> Placed {
+    let entry = EntryId::write(table, law, size, numbers);
+    let number = law.address.number;
+    let count = match law.address.port.spec().carrier {
+        Carrier::Cable => case.scene.file.cable.len(),
+        _ => case.scene.file.muscle.len(),
+    };
+    let count = if number.is_some() { count } else { 1 };
+    Placed { entry, element: Element::of(entry.element, number.unwrap_or(0), count), channel: None }
+}
+
+/// The expression that a law adds, or that it scales by.
+pub fn does(acts: Acts, by: String) -> (Option<String>, Option<String>) {
+    match acts {
+        Acts::Adds => (Some(by), None),
+        Acts::Scales => (None, Some(format!("1 + {by}"))),
+    }
+}

@@ -1,0 +1,129 @@
+//! Laws of the grammar with their numbers: a slot's in a shape or as a curve, and one that the scene proposes.
+
+use std::collections::BTreeMap;
+
+use super::acting::{action, does, written};
+use super::shapes::{P, P_RANGE, Shape};
+use super::slots::Slot;
+use crate::diagnose::case::Case;
+use crate::diagnose::fit::Variant;
+use crate::effects::{Fitted, Range};
+use crate::laws::{LawTable, ParameterTable, QUANTITIES, Surroundings};
+use crate::scene::Candidate;
+
+/// The law of a slot in a shape, its scale so many times the slot's; none where the port cannot have it.
+pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<Variant> {
+    let (acts, unit, typical) = action(slot.port)?;
+    let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
+    let name = format!("scale{ending}");
+    let x = slot.reading.text(&slot.variable, &name);
+    let own = if slot.is_constant() { "a".to_owned() } else { format!("a * {}", spelled(shape.text, &x)) };
+    let mut parameter = BTreeMap::new();
+    parameter.insert("a".to_owned(), number(typical, Some(unit)));
+    if !slot.is_constant() {
+        parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
+    }
+    if shape.has_number {
+        parameter.insert("p".to_owned(), number(P, Some("1")));
+    }
+    let more = slot.reading.parameter(&slot.variable);
+    parameter.extend(more.iter().map(|(name, table, _)| (name.clone(), table.clone())));
+    let (adds, scales) = does(acts, own);
+    let table = LawTable {
+        name: slot.name(),
+        port: slot.address.clone(),
+        adds,
+        scales,
+        parameter,
+        state: slot.reading.states(&slot.variable),
+        ..LawTable::default()
+    };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let size = law.parameter("a")?;
+    let numbers: Vec<Fitted> = law
+        .parameters
+        .iter()
+        .map(|p| match (p.name.as_str(), &more) {
+            ("a", _) => Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true },
+            ("p", _) => Fitted { typical: P, range: P_RANGE, is_fitted: true },
+            (own, Some((name, table, is_fitted))) if own == name => around(table.value, *is_fitted),
+            _ => Fitted {
+                typical: scale,
+                range: Range { min: 0.02 * slot.scale, max: 50.0 * slot.scale },
+                is_fitted: shape.has_scale,
+            },
+        })
+        .collect();
+    let placed = written(case, &table, &law, &numbers, size);
+    let values = placed.spec().typical();
+    Some(Variant { placed, values })
+}
+
+/// A slot's law as a curve: the sum of the shapes of its basis, each with a size of its own, at the slot's scale.
+pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
+    let (acts, unit, typical) = action(slot.port)?;
+    let ending = ending(&slot.variable);
+    let scale = format!("scale{ending}");
+    let x = slot.reading.text(&slot.variable, &scale);
+    let terms: Vec<String> = slot.basis().zip(SIZES).map(|(s, a)| format!("{a} * {}", spelled(s.text, &x))).collect();
+    let mut parameter: BTreeMap<String, ParameterTable> =
+        SIZES.iter().take(terms.len()).map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
+    parameter.insert(scale, number(slot.scale, ending.is_empty().then_some("1")));
+    let sum = terms.join(" + ");
+    let (adds, scales) = does(acts, sum);
+    let port = slot.address.clone();
+    let table = LawTable { name: slot.name(), port, adds, scales, parameter, ..LawTable::default() };
+    let law = table.law(&Surroundings::default()).ok()?;
+    let own = Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true };
+    let fixed = Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false };
+    let is_size = |name: &str| SIZES.contains(&name);
+    let numbers: Vec<Fitted> = law.parameters.iter().map(|p| if is_size(&p.name) { own } else { fixed }).collect();
+    let placed = written(case, &table, &law, &numbers, law.parameter(SIZES[0])?);
+    let values = placed.spec().typical();
+    Some(Variant { placed, values })
+}
+
+fn number(value: f64, unit: Option<&str>) -> ParameterTable {
+    ParameterTable { value, unit: unit.map(str::to_owned), ..ParameterTable::default() }
+}
+
+/// Sizes of a curve's shapes.
+const SIZES: [&str; 5] = ["a", "b", "c", "d", "e"];
+
+/// A number that may be fifty times as great or as small.
+fn around(typical: f64, is_fitted: bool) -> Fitted {
+    Fitted { typical, range: Range { min: 0.02 * typical, max: 50.0 * typical }, is_fitted }
+}
+
+/// A law that the scene proposes, tried from its own numbers. A parameter without a range has that of its scale.
+pub fn candidate(case: &Case, own: &Candidate) -> Variant {
+    let number = |(i, p): (usize, &crate::laws::Parameter)| {
+        let scale = p.value.abs().max(f64::MIN_POSITIVE);
+        let (low, high) = if i == own.size { (-1e3 * scale, 1e3 * scale) } else { (0.02 * p.value, 50.0 * p.value) };
+        let or = |bound: f64, other: f64| if bound.is_finite() { bound } else { other };
+        let range = Range { min: or(p.min, low.min(high)), max: or(p.max, low.max(high)) };
+        Fitted { typical: p.value, range, is_fitted: true }
+    };
+    let numbers: Vec<Fitted> = own.law.parameters.iter().enumerate().map(number).collect();
+    let placed = written(case, &own.table, &own.law, &numbers, own.size);
+    let values = placed.spec().typical();
+    Variant { placed, values }
+}
+
+/// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
+fn ending(variable: &str) -> &str {
+    let spec = QUANTITIES.iter().find(|q| q.name() == variable);
+    let own = spec.map_or(0, |q| q.ending.len());
+    if own == 0 { "" } else { &variable[variable.len() - own - 1..] }
+}
+
+/// A shape with `x` spelled out.
+fn spelled(shape: &str, x: &str) -> String {
+    let letters: Vec<char> = shape.chars().collect();
+    let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
+    let each = letters.iter().enumerate().map(|(i, c)| match c {
+        'x' if !(is_word(i + 1) || i > 0 && is_word(i - 1)) => x.to_owned(),
+        c => c.to_string(),
+    });
+    each.collect()
+}

@@ -1,0 +1,236 @@
+//! Laws that nobody listed: every port of the scene, every variable that it can depend on, in shapes that a law may have.
+
+use super::acting::{action, injected};
+use super::reading::{Reading, readings};
+use super::shapes::{CONSTANT, MORE_SHAPES, SHAPES, Shape};
+use crate::diagnose::case::Case;
+use crate::diagnose::fit::{Fit, Placed};
+use crate::laws::{Acts, Address, Carrier, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings};
+
+/// How far the grammar reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// A shape over a variable.
+    Plain,
+    /// More shapes, products of two variables, and what is remembered of one.
+    Wide,
+}
+
+/// Variables that are tried at a port without a number in the name.
+fn variables(spec: &PortSpec) -> &'static [Quantity] {
+    use Quantity as Q;
+    match spec.carrier {
+        Carrier::Muscle if spec.element == "muscle" => &[Q::Elongation, Q::Speed, Q::Pressure, Q::Time],
+        Carrier::Muscle if spec.element == "plunger" => &[Q::Pressure, Q::Plunger, Q::Time],
+        Carrier::Muscle => &[Q::Pressure, Q::Flow, Q::Elongation, Q::Time],
+        Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::AngularSpeed, Q::Time],
+        Carrier::Joint => &[Q::Angle, Q::AngularSpeed, Q::Time],
+        Carrier::Sensor => &[],
+    }
+}
+
+/// A law of the grammar before it has a shape: where it acts, and on what it depends.
+#[derive(Clone, Debug)]
+pub struct Slot {
+    pub address: String,
+    pub port: Port,
+    /// Empty where the law depends on nothing.
+    pub variable: String,
+    /// What of the variable the shape is over.
+    pub reading: Reading,
+    shapes: &'static [Shape],
+    /// Unit scale of the variable: half of the greatest that it reaches.
+    pub scale: f64,
+    /// The variable in each open run.
+    pub series: Vec<Vec<f64>>,
+    /// A law whose only number is what acts at the port, and the size that is plain to see.
+    pub injected: Placed,
+    pub typical: f64,
+}
+
+impl Slot {
+    /// Whether its law depends on nothing.
+    pub fn is_constant(&self) -> bool {
+        self.variable.is_empty()
+    }
+
+    /// The shapes that its law may have.
+    pub fn shapes(&self) -> &'static [Shape] {
+        self.shapes
+    }
+
+    /// The same slot, whose law may have the shapes that are tried where the simple ones leave something.
+    pub fn bent(&self) -> Self {
+        Self { shapes: &MORE_SHAPES, ..self.clone() }
+    }
+
+    /// Those of which its curve is made up when slots are screened.
+    pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
+        let is_constant = self.is_constant();
+        // What is remembered is many: a straight line and a parabola must do.
+        let most = if self.reading == Reading::Plain { usize::MAX } else { 2 };
+        self.shapes().iter().filter(move |s| s.is_basis || is_constant).take(most)
+    }
+
+    /// Whether its law goes by rate or by time, which a count of rows does not tell.
+    fn needs_clock(&self) -> bool {
+        let of_rate = QUANTITIES.iter().any(|q| q.quantity.is_rate() && q.name() == self.variable);
+        of_rate || self.port.is_of_rate() || self.reading.needs_clock()
+    }
+
+    /// Name of its law.
+    pub fn name(&self) -> String {
+        format!("{}{}", self.address.replace('.', "_"), self.reading.word())
+    }
+
+    /// Name of the element that it belongs to, as answers have it.
+    pub fn element(&self) -> String {
+        Address::parse(&self.address).map_or_else(|_| self.address.clone(), |a| a.element())
+    }
+}
+
+impl PartialEq for Slot {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.address, &self.variable, &self.reading) == (&other.address, &other.variable, &other.reading)
+    }
+}
+
+/// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.
+pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
+    let mut slots = over_variables(case, from);
+    match reach {
+        Reach::Plain => slots.extend(constants(case)),
+        Reach::Wide => {
+            let more = slots.iter().flat_map(|slot| beyond(case, slot, &slots)).collect::<Vec<_>>();
+            slots.iter_mut().for_each(|slot| slot.shapes = &MORE_SHAPES);
+            slots.extend(more);
+        }
+    }
+    slots.retain(|slot| case.has_clock || !slot.needs_clock());
+    slots
+}
+
+/// Slots at the place of one over a variable: its products, and what is remembered of it.
+fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
+    let quantity = |slot: &Slot| Some(QUANTITIES.iter().find(|q| q.name() == slot.variable)?.quantity);
+    let here: Vec<&Slot> = all.iter().filter(|slot| slot.address == own.address).collect();
+    let known: Vec<(Quantity, f64)> = here.iter().filter_map(|s| Some((quantity(s)?, s.scale))).collect();
+    let Some(variable) = quantity(own) else { return Vec::new() };
+    let slot = |reading: Reading| {
+        let other = reading.other().and_then(|q| here.iter().find(|slot| quantity(slot) == Some(q)));
+        let runs = case.runs.iter().filter(|run| !run.is_sealed).enumerate();
+        let series: Vec<Vec<f64>> = runs
+            .map(|(r, run)| reading.series(&own.series[r], other.map_or(&[][..], |o| &o.series[r]), &run.drive.times_s))
+            .collect();
+        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        (greatest > 0.0).then(|| Slot { reading, series, scale: 0.5 * greatest, shapes: &SHAPES, ..own.clone() })
+    };
+    readings(variable, &known).into_iter().filter_map(slot).collect()
+}
+
+/// Slots of laws that depend on nothing. What acts in the fluid as it did before adds no number of its own: a steady flow or pressure
+/// is physics, not a number.
+fn constants(case: &Case) -> Vec<Slot> {
+    let open = || case.runs.iter().filter(|run| !run.is_sealed);
+    let is_number = |spec: &&PortSpec| {
+        action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength
+    };
+    let each =
+        PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
+    let slot = |(port, address): (Port, String)| {
+        let (injected, typical) = injected(case, &address, port)?;
+        let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();
+        let shapes = std::slice::from_ref(&CONSTANT);
+        let (variable, reading) = (String::new(), Reading::Plain);
+        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, injected, typical })
+    };
+    each.filter_map(slot).collect()
+}
+
+/// Slots whose variable moves in the open runs.
+fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
+    let mut asked = Vec::new();
+    for spec in PORTS.iter().filter(|spec| action(spec.port).is_some()) {
+        for address in addresses(case, spec) {
+            for quantity in variables(spec) {
+                let variable = quantity.spec().name();
+                let probe = LawTable {
+                    name: "probe".to_owned(),
+                    port: address.clone(),
+                    adds: Some(format!("0.0 * {variable}")),
+                    ..LawTable::default()
+                };
+                let probe = match spec.adds.is_empty() {
+                    true => None,
+                    false => probe.law(&Surroundings::default()).ok(),
+                };
+                asked.extend(probe.map(|law| (law, address.clone(), spec.port, variable)));
+            }
+        }
+    }
+    let laws: Vec<Law> = asked.iter().map(|(law, ..)| law.clone()).collect();
+    let open = case.runs.iter().filter(|run| !run.is_sealed);
+    let Some(visited) = open
+        .map(|run| run.twin.visited(&run.drive, &from.model.setting(case, run, &from.x), &laws))
+        .collect::<Option<Vec<_>>>()
+    else {
+        return Vec::new();
+    };
+    let slot = |(i, (_, address, port, variable)): (usize, (Law, String, Port, String))| {
+        let series: Vec<Vec<f64>> = visited.iter().map(|run| run[i].clone()).collect();
+        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let (injected, typical) = injected(case, &address, port)?;
+        let (reading, shapes, scale) = (Reading::Plain, &SHAPES[..], 0.5 * greatest);
+        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, injected, typical })
+    };
+    asked.into_iter().enumerate().filter_map(slot).collect()
+}
+
+/// A port of every element that there is by itself, and of all at once where there are several.
+fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
+    let file = &case.scene.file;
+    let (count, together) = match spec.carrier {
+        Carrier::Muscle => (file.muscle.len(), true),
+        Carrier::Cable => (file.cable.len(), true),
+        // On a slider that a muscle moves itself a force on the joint is one of the muscle.
+        Carrier::Joint => (usize::from(file.mechanism.is_some() && !file.cable.is_empty()), false),
+        Carrier::Sensor => (0, false),
+    };
+    let name = |number: Option<usize>| {
+        let number = number.map_or(String::new(), |n| format!("_{n}"));
+        if spec.term.is_empty() {
+            format!("{}{number}", spec.element)
+        } else {
+            format!("{}{number}.{}", spec.element, spec.term)
+        }
+    };
+    match count {
+        0 => Vec::new(),
+        1 => vec![name(None)],
+        n => (1..=n).map(|i| name(Some(i))).chain(together.then(|| name(None))).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::fit::{Model, Problem};
+
+    /// Rows that are only counted tell an order, and no pace.
+    #[test]
+    fn without_a_clock_nothing_goes_by_rate() {
+        let mut case = made::recorded("antagonistic_pulley", &[], &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);
+        let of_rate = |case: &Case| {
+            let noise = [Noise::white(0.01)];
+            let problem = Problem { case, runs: case.subset(Sealed::Open), noise: &noise };
+            let fit = problem.fit(&Model::baseline(), &problem.start(&Model::baseline(), None)).expect("a fit");
+            let all = slots(case, &fit, Reach::Wide);
+            (all.len(), all.iter().filter(|slot| slot.needs_clock()).count())
+        };
+        assert!(of_rate(&case).1 > 0);
+        case.has_clock = false;
+        assert_eq!(of_rate(&case).1, 0);
+        assert!(of_rate(&case).0 > 0);
+    }
+}

@@ -1,0 +1,17 @@
+//! Steps 3 and 4: effects of the catalogue are screened, refitted, exchanged, until no other explains the open runs better.
+//!
+//! May import `grammar`, for laws that the scene proposes, `fit` and `case`.
+
+pub(super) mod candidates;
+pub(super) mod creep;
+pub(super) mod detection_limit;
+mod exchange;
+mod refits;
+pub(super) mod reweight;
+mod screening;
+mod stepwise;
+
+pub(super) use creep::is_broad;
+pub(super) use refits::{foretells, foretells_runs};
+pub(super) use screening::{Screened, least_gain};
+pub(super) use stepwise::{Begun, Bound, Found, MOST_EFFECTS, leaves_much, settled};

@@ -1,0 +1,187 @@
+//! Candidates for one more effect: which are worth a joint refit, the refits, and which of them may win.
+
+use rayon::prelude::*;
+
+use super::screening::{Screened, Screening, start_values};
+use crate::diagnose::case::Step;
+use crate::diagnose::fit::{Fit, Placed, Problem, Sides};
+
+/// Candidates that are refitted in full at every stage.
+const REFITTED: usize = 10;
+/// Of those, at most so many to the end, when they come within this share of the best's gain.
+const FINISHED: usize = 4;
+const NEAR: f64 = 0.1;
+/// Candidates that promise less than this share of the best are not refitted.
+const WORTH: f64 = 0.1;
+/// At most so many that the calibration may hide.
+const MOST_SWALLOWED: usize = 2;
+/// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
+pub(super) const BRANCH_TIE: f64 = 0.02;
+
+/// Which effects are tried that the calibration has taken in. From the scene's calibration their fits are the dearest of all.
+#[derive(Clone, Copy)]
+pub(super) enum Swallowed<'a> {
+    Any,
+    /// Those of these.
+    Among(&'a [Placed]),
+}
+
+/// The candidates worth a full refit: the most promising of every effect, and some that the calibration may hide.
+pub(super) fn pick(screened: &[Screened], least: f64, swallowed: Swallowed) -> Vec<Screened> {
+    let mut picked: Vec<Screened> = Vec::new();
+    let top = screened.first().map_or(0.0, |s| s.gain);
+    for s in screened {
+        // A signature at zero size says little of laws with a threshold: they get the benefit of the doubt.
+        let promising = s.gain > 0.2 * least && s.gain > WORTH * top;
+        if promising && picked.iter().filter(|p| p.variant.placed == s.variant.placed).count() < 2 {
+            picked.push(s.clone());
+        }
+        if picked.len() >= REFITTED {
+            break;
+        }
+    }
+    picked.extend(taken_in(screened, swallowed));
+    picked
+}
+
+/// Effects that the calibration has taken in, the most visible first. Their signatures promise nothing: at another calibration
+/// they may explain more than all that do.
+fn taken_in(screened: &[Screened], which: Swallowed) -> Vec<Screened> {
+    let is_tried = |s: &&Screened| match which {
+        Swallowed::Any => s.is_swallowed,
+        Swallowed::Among(known) => s.is_swallowed && known.contains(&s.variant.placed),
+    };
+    let mut taken_in: Vec<&Screened> = screened.iter().filter(is_tried).collect();
+    taken_in.sort_by(|a, b| a.typical_over_least().total_cmp(&b.typical_over_least()).reverse());
+    taken_in.into_iter().take(MOST_SWALLOWED).cloned().collect()
+}
+
+/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
+/// fitted roughly; those that come near the best are fitted to the end.
+pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
+    let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
+    let rough = best_of_each(rough.into_iter().flatten().collect());
+    let Some(best) = rough.first().map(|f| f.cost) else { return rough };
+    let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
+    let close = rough.iter().take_while(|f| f.cost <= near).count().min(FINISHED);
+    let finished: Vec<Option<Fit>> = rough[..close].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
+    let mut fits: Vec<Fit> = finished.into_iter().flatten().chain(rough[close..].iter().cloned()).collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
+/// The same refits, cheapest first, those near the best also fitted from the scene's calibration: only where the best one gains by
+/// it, since mostly none does.
+pub(super) fn afresh(problem: &Problem, refits: Vec<Fit>) -> Vec<Fit> {
+    let again = |f: &Fit| problem.fit_afresh(&f.model, &f.x, f.cost);
+    let Some(best) = refits.first().and_then(again) else { return refits };
+    let others: Vec<Option<Fit>> = refits[1..].par_iter().take(FINISHED - 1).map(again).collect();
+    let mut fits = refits;
+    fits[0] = best;
+    for (fit, other) in fits[1..].iter_mut().zip(others) {
+        *fit = other.unwrap_or_else(|| fit.clone());
+    }
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
+}
+
+/// The cheapest fit of each effect, cheapest first.
+fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut seen: Vec<Placed> = Vec::new();
+    fits.retain(|f| {
+        let last = f.model.effects.last().cloned();
+        let is_new = last.as_ref().is_some_and(|l| !seen.contains(l));
+        seen.extend(last);
+        is_new
+    });
+    fits
+}
+
+/// A rough fit with one effect more, on the slopes of the fit it starts from and those of the effect's numbers.
+fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
+    let (from, values) = (&screening.from, start_values(candidate));
+    let model = from.model.plus(&candidate.variant.placed, &values);
+    let mut start = from.x.clone();
+    start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
+    if candidate.is_swallowed {
+        // Where the calibration stands the effect is not wanted: it begins where the scene has it.
+        let calibrated = problem.case.parameters.iter().map(|p| p.start);
+        start.iter_mut().zip(calibrated).for_each(|(x, scene)| *x = scene);
+        let slopes = problem.rows(&model, &start, 0..start.len(), Sides::One)?.slopes;
+        return problem.fit_roughly(&model, &start, slopes);
+    }
+    let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
+    let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);
+    slopes.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
+    problem.fit_roughly(&model, &start, slopes)
+}
+
+/// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
+pub(super) fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Vec<&'a Fit> {
+    let Some(first) = simplest(refits, before, baseline_cost) else { return Vec::new() };
+    let near = before.cost - NEARLY_AS_GOOD * (before.cost - first.cost);
+    let others = refits.iter().filter(|f| f.cost < near && f.model != first.model);
+    std::iter::once(first).chain(others.take(FINISHED)).collect()
+}
+
+/// Share of the best's gain from which another refit may stand in for it.
+const NEARLY_AS_GOOD: f64 = 0.5;
+
+pub(super) fn first_that_foretells<'a>(
+    problem: &Problem,
+    before: &Fit,
+    fits: impl Iterator<Item = &'a Fit>,
+    say: &dyn Fn(String),
+) -> Option<&'a Fit> {
+    for fit in fits {
+        if foretells(problem, before, fit) {
+            return Some(fit);
+        }
+        say(format!("{}: does not foretell runs it was not fitted to", fit.model.title()));
+    }
+    None
+}
+
+/// Whether a fit only gives an effect that is there already one more branch.
+pub(super) fn adds_branch(before: &Fit, after: &Fit) -> bool {
+    after.model.effects.last().is_some_and(|e| before.model.effects.contains(e))
+}
+
+/// The cheapest fit; but of nearly equal ones that which only gives an effect already named one more branch.
+fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
+    let cheapest = refits.first()?;
+    let tie = cheapest.cost + BRANCH_TIE * (baseline_cost - cheapest.cost).max(0.0);
+    refits.iter().take_while(|f| f.cost <= tie).find(|f| adds_branch(before, f)).or(Some(cheapest))
+}
+
+/// Share of its gain that an effect must foretell of halves of runs where it does not foretell whole ones.
+const FORETOLD: f64 = 0.5;
+
+/// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
+///
+/// Where the other runs say too little about an effect or the calibration beside it, it is carried too far: then it must foretell halves
+/// of runs, all others known, and much better.
+pub(in crate::diagnose) fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    foretells_runs(problem, before, after)
+        || foretold(problem.halves_left_out(), before, after) > FORETOLD * (before.cost - after.cost)
+}
+
+/// Whether a model predicts whole runs, each fitted to the others, better than another does. A single run is cut in two.
+pub(in crate::diagnose) fn foretells_runs(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    problem.case.is_without(Step::CrossValidation) || foretold(problem.runs_left_out(), before, after) > 0.0
+}
+
+/// By how much less chi² a model leaves in what its fits have not seen.
+fn foretold(folds: Vec<(Problem, Problem)>, before: &Fit, after: &Fit) -> f64 {
+    // A fold on which the model before cannot be played says nothing; one on which that with more in it cannot is not foretold.
+    let gain = |(rest, left_out): (Problem, Problem)| -> f64 {
+        let cost = |fit: &Fit| {
+            let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;
+            let fitted = rest.fit_roughly(&fit.model, &fit.x, slopes)?;
+            left_out.cost_at(&fit.model, &fitted.x)
+        };
+        cost(before).map_or(0.0, |was| was - cost(after).unwrap_or(f64::INFINITY))
+    };
+    folds.into_iter().map(gain).sum()
+}

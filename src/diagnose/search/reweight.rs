@@ -1,0 +1,73 @@
+//! Weights and steps of the search: set by the baseline, renewed around what was found.
+
+use super::screening::least_gain;
+use super::stepwise::{Begun, Bound, Found};
+use crate::diagnose::case::{Case, Noise, Sealed, noise};
+use crate::diagnose::fit::{Fit, Problem, Variant};
+
+/// Searches again from what was found, where that asks for other weights or other steps.
+pub(in crate::diagnose) fn weigh(
+    case: &mut Case,
+    mut noise: Vec<Noise>,
+    mut found: Found,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> (Found, Vec<Noise>) {
+    for _ in 0..2 {
+        if found.best.model.effects.is_empty() {
+            break;
+        }
+        let former = case.runs.clone();
+        let Some(renewed) = renew(case, &noise, &found) else {
+            // With the former steps the fast model could follow; what it cannot on a sealed run is taken back later.
+            case.runs = former;
+            break;
+        };
+        let with_new_steps = open_runs(case, &noise).cost_at(&found.best.model, &found.best.x);
+        noise = renewed.noise;
+        let problem = open_runs(case, &noise);
+        let least = SAME_COST * least_gain(problem.samples());
+        let steps_hold = with_new_steps.is_some_and(|cost| (cost - found.best.cost).abs() < least);
+        let is_lowest = renewed.start.cost > found.best.cost - least;
+        if renewed.weights_hold && steps_hold && is_lowest {
+            break;
+        }
+        let begun = Begun::again(&problem, (renewed.baseline, renewed.start), variants, found.known(), say);
+        found = begun.finish(&problem, variants, Bound(None), say);
+    }
+    (found, noise)
+}
+
+/// Steps hold when new ones change chi² by less than this share of the least gain.
+const SAME_COST: f64 = 0.3;
+
+/// What was found and the baseline, fitted with weights and steps of their own.
+pub(in crate::diagnose) struct Renewed {
+    pub noise: Vec<Noise>,
+    /// Whether the former weights were good enough.
+    weights_hold: bool,
+    pub start: Fit,
+    pub baseline: Fit,
+}
+
+/// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the fast model then
+/// diverges; the case's steps are those that it does so with.
+pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
+    let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
+    let noise = noise::estimate(case, &residuals);
+    let weights_hold = noise.iter().zip(former).all(|(new, old)| new.is_near(old));
+    let settings = found.best.model.settings(case, &found.best.x);
+    case.plan_steps(&settings, &noise)?;
+    case.leave_out_unheld(&settings)?;
+    let problem = open_runs(case, &noise);
+    let start = problem.fit(&found.best.model, &found.best.x)?;
+    let start = problem.fit_afresh(&start.model, &start.x, start.cost).unwrap_or(start);
+    let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
+    let baseline = problem.fit_afresh(&baseline.model, &baseline.x, baseline.cost).unwrap_or(baseline);
+    Some(Renewed { noise, weights_hold, start, baseline })
+}
+
+/// The fit of the runs that are not sealed.
+pub(in crate::diagnose) fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
+    Problem { case, runs: case.subset(Sealed::Open), noise }
+}

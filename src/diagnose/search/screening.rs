@@ -1,0 +1,197 @@
+//! What each candidate promises, by its signature alone.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::effects::Effect;
+
+use crate::diagnose::case::CaseRun;
+use crate::diagnose::fit::{Fit, Number, Probe, Problem, Rows, Sides, Variant, orthogonal, probe, simulate_many};
+
+/// Share of an effect in chi² per sample below which it is not called missing physics.
+const LEAST_SHARE: f64 = 2e-3;
+/// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
+const LEAST_GAIN: f64 = 35.0;
+
+/// Fall of chi² that makes an effect worth naming, for so many samples.
+pub fn least_gain(samples: usize) -> f64 {
+    LEAST_GAIN.max(LEAST_SHARE * samples as f64)
+}
+
+/// A candidate with what it would gain, by its signature alone.
+#[derive(Clone, Debug)]
+pub struct Screened {
+    pub variant: Variant,
+    /// Fall of chi² that the signature promises, colour of the noise allowed for.
+    pub gain: f64,
+    /// Size at which the promise is met.
+    pub size: f64,
+    /// Size that would gain [`least_gain`]: what could just be seen.
+    pub least_size: f64,
+    /// Whether the calibration has taken the effect in: it imitates nearly all of the signature, and what it does not
+    /// points out of the effect's range. A misfit may then still be that effect's, at a size that only a refit finds.
+    pub is_swallowed: bool,
+    /// The signature without what the calibration can imitate, of unit length.
+    direction: Arc<DVector<f64>>,
+}
+
+impl Screened {
+    /// The effect at the size that could just be seen; none where no size could.
+    pub fn just_visible(&self) -> Option<Effect<f64>> {
+        let mut values = self.variant.values.clone();
+        values[0] = self.signed_least();
+        self.is_possible().then(|| self.variant.placed.with(&values))
+    }
+
+    /// Whether the law's range holds the size that could just be seen.
+    pub(super) fn is_possible(&self) -> bool {
+        let range = self.variant.placed.spec().parameters[0].range;
+        self.least_size < range.max.abs().max(range.min.abs())
+    }
+
+    /// The size that could just be seen, of the sign that the law's range has.
+    pub(super) fn signed_least(&self) -> f64 {
+        let range = self.variant.placed.spec().parameters[0].range;
+        if range.max > 0.0 { self.least_size } else { -self.least_size }
+    }
+
+    pub(super) fn typical(&self) -> f64 {
+        self.variant.placed.spec().parameters[0].typical.abs()
+    }
+
+    /// How much more than just visible the effect is at its typical size.
+    pub fn typical_over_least(&self) -> f64 {
+        self.typical() / self.least_size
+    }
+
+    /// Cosine of the angle between two signatures: 1 where no recording of this kind tells the effects apart.
+    pub fn likeness(&self, other: &Self) -> f64 {
+        if self.direction.len() == other.direction.len() { self.direction.dot(&other.direction).abs() } else { 0.0 }
+    }
+}
+
+/// Numbers to start a refit from: the size that the signature promises, kept within reason.
+pub(super) fn start_values(s: &Screened) -> Vec<f64> {
+    let mut values = s.variant.values.clone();
+    let p = &s.variant.placed.spec().parameters[0];
+    let largest = 30.0 * p.typical.abs();
+    let size = s.size.clamp(-largest, largest).clamp(p.range.min, p.range.max);
+    values[0] = if size == 0.0 { p.typical } else { size };
+    values
+}
+
+/// A fit with its slopes, and what the signatures of all variants promise there, best first.
+#[derive(Clone)]
+pub(super) struct Screening {
+    pub from: Fit,
+    pub slopes: DMatrix<f64>,
+    pub screened: Vec<Screened>,
+}
+
+/// Screens all variants at a fit. `None` when it cannot be simulated there.
+pub(super) fn screen(problem: &Problem, from: &Fit, variants: &[Variant]) -> Option<Screening> {
+    let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
+    let screened = promises(problem, from, &known, variants);
+    Some(Screening { from: from.clone(), slopes: known.slopes, screened })
+}
+
+/// The same share from which on nothing is left but rounding.
+const NOTHING_LEFT: f64 = 1e-9;
+/// Length of what the calibration cannot imitate of a signature, as a share of the signature, below which it may have taken
+/// the effect in.
+const SWALLOWED: f64 = 0.5;
+
+/// What every variant promises, best first.
+fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
+    let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
+    let basis = known.slopes.clone().qr().q();
+    let left = orthogonal(&basis, &known.residual);
+    let samples = known.residual.len();
+    let signatures = signatures(problem, fit, &fresh.iter().map(|v| (*v, None)).collect::<Vec<_>>());
+    let found = fresh.into_par_iter().zip(signatures).filter_map(|(variant, raw)| Some((variant, raw?)));
+    let mut screened: Vec<Screened> = found
+        .map(|(variant, raw)| {
+            let signature = orthogonal(&basis, &raw);
+            let length = signature.norm();
+            let scale = variant.placed.spec().parameters[0].typical.abs();
+            let amplitude = if length > NOTHING_LEFT * raw.norm() { signature.dot(&left) / length } else { 0.0 };
+            let range = variant.placed.spec().parameters[0].range;
+            let feasible = (amplitude > 0.0 && range.max > 0.0) || (amplitude < 0.0 && range.min < 0.0);
+            Screened {
+                gain: if feasible { amplitude * amplitude } else { 0.0 },
+                size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
+                is_swallowed: !feasible && length > NOTHING_LEFT * raw.norm() && length < SWALLOWED * raw.norm(),
+                least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
+                direction: Arc::new(signature / length.max(f64::MIN_POSITIVE)),
+                variant: variant.clone(),
+            }
+        })
+        .collect();
+    screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    screened
+}
+
+/// A variant, its size as a fitted number, and how far from zero that is tried.
+struct Trial<'a> {
+    variant: &'a Variant,
+    number: Number,
+    probe: Probe,
+}
+
+/// Derivatives of the simulated channels to the size of each variant at zero, in units of the typical size: one simulation
+/// for each and one that all share, since an effect of no size is none. Over a small size, or over that which stands beside the variant.
+pub(super) fn signatures(
+    problem: &Problem,
+    fit: &Fit,
+    variants: &[(&Variant, Option<f64>)],
+) -> Vec<Option<DVector<f64>>> {
+    let trials: Vec<Trial> = variants.iter().map(|(variant, size)| Trial::of(problem, fit, variant, *size)).collect();
+    let parts: Vec<Vec<Option<DVector<f64>>>> =
+        problem.runs.par_iter().map(|run| in_run(problem, fit, run, &trials)).collect();
+    let whole = |i: usize| {
+        let parts = parts.iter().map(|run| run[i].as_ref()).collect::<Option<Vec<_>>>()?;
+        let entries = parts.iter().flat_map(|part| part.iter().copied());
+        Some(DVector::from_vec(entries.collect()))
+    };
+    (0..trials.len()).map(whole).collect()
+}
+
+/// The part of each signature that stands in one run.
+fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<Option<DVector<f64>>> {
+    let case = problem.case;
+    let base = fit.model.setting(case, run, &fit.x);
+    let tried = trials.iter().map(|trial| {
+        let mut setting = base.clone();
+        let mut values = trial.variant.values.clone();
+        values[0] = trial.probe.step;
+        setting.effects.push(trial.variant.placed.with(&values));
+        setting
+    });
+    let settings: Vec<_> = std::iter::once(base.clone()).chain(tried).collect();
+    let mut series = simulate_many(case, run, &settings).into_iter();
+    let Some(Some(base)) = series.next() else { return vec![None; trials.len()] };
+    let column = |(trial, series): (&Trial, Option<Vec<Vec<f64>>>)| {
+        let slopes: Vec<Vec<f64>> = trial.probe.slope(&series?, &base);
+        let channels = 0..slopes.len();
+        let weighted = channels.flat_map(|c| problem.weighted_slope(run, c, &slopes[c], &trial.number));
+        Some(DVector::from_vec(weighted.collect()))
+    };
+    trials.iter().zip(series).map(column).collect()
+}
+
+impl<'a> Trial<'a> {
+    fn of(problem: &Problem, fit: &Fit, variant: &'a Variant, size: Option<f64>) -> Self {
+        let mut model = fit.model.clone();
+        let mut values = variant.values.clone();
+        values[0] = 0.0;
+        model.effects.push(variant.placed.clone());
+        model.values.push(values);
+        model.fitted.push(vec![0]);
+        let numbers = problem.numbers(&model);
+        let number = numbers[fit.x.len()];
+        let small = probe(&number, 0.0, fit.x.len(), Sides::One);
+        Self { variant, number, probe: Probe { step: size.unwrap_or(small.step), ..small } }
+    }
+}

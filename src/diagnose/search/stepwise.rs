@@ -1,0 +1,330 @@
+//! Which effects explain the recordings: ways up from the calibration, effect by effect.
+
+use super::exchange::{Settled, Stage, Swaps, is_same};
+use super::refits::{Swallowed, adds_branch, afresh, candidates, first_that_foretells, foretells, pick, refit};
+use super::screening::{Screened, Screening, least_gain, screen};
+use crate::diagnose::fit::{Fit, Placed, Problem, Variant};
+
+/// At most this many effects in one answer.
+pub(in crate::diagnose) const MOST_EFFECTS: usize = 4;
+/// Share of all that is explained below which one more effect may be no more than the others' laws being idealised.
+const LEAST_OF_ALL: f64 = 1e-3;
+
+/// One more effect explains this share of all that is explained, or that share of what was left over: laws that are
+/// idealised leave something that others imitate in part.
+const FAIR_OF_ALL: f64 = 0.03;
+const FAIR_OF_LEFT: f64 = 0.75;
+
+/// A model with the rivals that were refitted beside it.
+#[derive(Clone, Debug)]
+pub struct Found {
+    pub baseline: Fit,
+    pub best: Fit,
+    /// For each effect of the best: the other effects tried in its place, refitted jointly; cheapest first.
+    pub rivals: Vec<Vec<Fit>>,
+    /// Chi² that the rivals' compares with: the best's beside which they were fitted, before it was given hypothetical terms.
+    pub rivals_against: f64,
+    /// What the baseline's residual promised of every effect.
+    pub screened: Vec<Screened>,
+    /// Other shapes and places of the last law that explain as much.
+    pub forms: Vec<Fit>,
+    /// Elements of the slots that were screened for laws, with the fall of chi² that each promised.
+    pub located: Vec<(String, f64)>,
+    /// What predicts held-out runs worse than the calibration, or cannot be played: known, and not put into the scene.
+    pub withheld: Option<Box<Found>>,
+}
+
+impl Found {
+    /// Effects that were worth fitting.
+    pub(super) fn known(&self) -> Vec<Placed> {
+        let rivals = self.rivals.iter().flatten().filter_map(|f| f.model.effects.last());
+        self.best.model.effects.iter().chain(rivals).cloned().collect()
+    }
+}
+
+/// A law that nobody listed against which the search for several effects is held: where it leaves little, they must leave less.
+#[derive(Clone, Copy)]
+pub(in crate::diagnose) struct Bound<'a>(pub Option<&'a Fit>);
+
+impl Bound<'_> {
+    /// Whether the law leaves less than several effects do, and not much.
+    pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
+        self.0.is_some_and(|law| {
+            let is_lower = law.cost < several.cost - least_gain(problem.samples());
+            several.model.effects.len() > 1 && is_lower && !leaves_much(problem, baseline, law)
+        })
+    }
+}
+
+/// A search that has begun: where its way up stands, and what it has come by.
+#[derive(Clone)]
+pub(in crate::diagnose) struct Begun {
+    baseline: Fit,
+    way: Way,
+    seen: Seen,
+    /// Effects that one knows to be worth something somewhere.
+    known: Vec<Placed>,
+    screened: Vec<Screened>,
+    is_new: bool,
+}
+
+impl Begun {
+    /// The best single effect beside the calibration.
+    pub fn with_one(problem: &Problem, baseline: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Self {
+        let screening = screen(problem, &baseline, variants);
+        let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
+        let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
+        let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
+        let way = climb(&mut swaps, &baseline, way, &mut seen, (1, Bound(None)), say);
+        Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
+    }
+
+    /// From what a former search has found and known.
+    pub fn again(
+        problem: &Problem,
+        (baseline, start): (Fit, Fit),
+        variants: &[Variant],
+        known: Vec<Placed>,
+        say: &dyn Fn(String),
+    ) -> Self {
+        if start.model.effects.is_empty() {
+            return Self { known, ..Self::with_one(problem, baseline, variants, say) };
+        }
+        let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
+        let mut swaps = Swaps::new(problem, variants, known);
+        let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
+        let way = Way::at(settled.best, settled.rivals);
+        Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
+    }
+
+    /// What stands as far as it went.
+    pub fn found(&self) -> Found {
+        Found {
+            baseline: self.baseline.clone(),
+            rivals_against: self.way.best.cost,
+            best: self.way.best.clone(),
+            rivals: self.way.rivals.clone(),
+            screened: self.screened.clone(),
+            forms: Vec::new(),
+            located: Vec::new(),
+            withheld: None,
+        }
+    }
+
+    /// Goes on to the end.
+    ///
+    /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
+    /// beginnings are tried as well. Where a law outdoes two effects the way ends there.
+    pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
+        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        let baseline = self.baseline.clone();
+        if self.is_new && self.way.best.model.effects.is_empty() {
+            self.way = several_to_begin(&mut swaps, self.way, say);
+        }
+        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (MOST_EFFECTS, law), say);
+        let best = &self.way.best;
+        let is_done = law.outdoes(problem, &baseline, best) || !leaves_much(problem, &baseline, best);
+        if !self.is_new || best.model.effects.len() < 2 || is_done {
+            return self.found();
+        }
+        for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
+            if !leaves_much(problem, &baseline, &self.way.best) {
+                break;
+            }
+            if !self.seen.is_new(&other) {
+                continue;
+            }
+            say(format!("once more, beginning with {}", other.model.title()));
+            let way =
+                climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
+            if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
+                (self.way.best, self.way.rivals) = (way.best, way.rivals);
+            }
+        }
+        self.found()
+    }
+}
+
+/// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
+const BEGINNINGS: usize = 2;
+const BEGINNING_WORTH: f64 = 0.3;
+/// Share of the misfit that is much.
+const MUCH: f64 = 0.05;
+
+/// The best fits with one effect that no way has come by, each effect once.
+fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
+    let worth = baseline.cost - BEGINNING_WORTH * (baseline.cost - first.first().map_or(0.0, |f| f.cost));
+    let mut others: Vec<Fit> = Vec::new();
+    for fit in first.iter().filter(|f| f.cost < worth && !seen.contains(f)) {
+        if others.iter().all(|other| other.model.title() != fit.model.title()) {
+            others.push(fit.clone());
+        }
+    }
+    others.truncate(BEGINNINGS);
+    others
+}
+
+/// Whether a fit leaves much of what the baseline leaves.
+pub(in crate::diagnose) fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
+    let noise = problem.noise_cost();
+    best.cost - noise > MUCH * (baseline.cost - noise) && best.cost - noise > least_gain(problem.samples())
+}
+
+/// One greedy way up.
+#[derive(Clone)]
+struct Way {
+    best: Fit,
+    rivals: Vec<Vec<Fit>>,
+    /// The refits with one effect, cheapest first, if it began with none.
+    first: Vec<Fit>,
+    /// What the effects promise at `best`, where that is known.
+    screening: Option<Screening>,
+    /// Whether nothing that can be added helps.
+    is_at_end: bool,
+}
+
+impl Way {
+    fn at(best: Fit, rivals: Vec<Vec<Fit>>) -> Self {
+        Self { best, rivals, first: Vec::new(), screening: None, is_at_end: false }
+    }
+}
+
+/// Where the ways of one search have been: another that comes there goes on as they did.
+#[derive(Clone, Default)]
+struct Seen(Vec<Fit>);
+
+impl Seen {
+    fn contains(&self, fit: &Fit) -> bool {
+        self.0.iter().any(|other| is_same(other, fit))
+    }
+
+    /// Whether no way has been here before; from now on one has.
+    fn is_new(&mut self, fit: &Fit) -> bool {
+        let is_new = !self.contains(fit);
+        if is_new {
+            self.0.push(fit.clone());
+        }
+        is_new
+    }
+}
+
+/// A way on which no single effect helped, begun with several at once; as it was where those do not help either.
+fn several_to_begin(swaps: &mut Swaps, mut way: Way, say: &dyn Fn(String)) -> Way {
+    let least = least_gain(swaps.problem.samples());
+    if let Some(next) = together(swaps, &way.best, &way.first, least, say) {
+        (way.best, way.rivals, way.is_at_end) = (next.best, next.rivals, false);
+    }
+    way
+}
+
+/// [`several_at_once`], and says so.
+fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &dyn Fn(String)) -> Option<Settled> {
+    let next = several_at_once(swaps, before, refits, least)?;
+    say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), before.cost, next.best.cost));
+    Some(next)
+}
+
+/// Adds effect by effect up to so many, and settles after each, until nothing helps, a law outdoes them or another way has been there.
+fn climb(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    mut way: Way,
+    seen: &mut Seen,
+    (most, law): (usize, Bound),
+    say: &dyn Fn(String),
+) -> Way {
+    let problem = swaps.problem;
+    while !way.is_at_end && way.best.model.effects.len() < most && !law.outdoes(problem, baseline, &way.best) {
+        let best = &way.best;
+        let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
+        let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));
+        match next {
+            Some(next) => {
+                (way.best, way.rivals) = (next.best, next.rivals);
+                way.is_at_end = !seen.is_new(&way.best);
+            }
+            None => way.is_at_end = true,
+        }
+    }
+    way
+}
+
+/// The best with one effect more, settled, or with several; none where nothing helps. `first` gets the refits where there was none
+/// before: several to begin with are for [`several_to_begin`].
+fn step_up(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    best: &Fit,
+    screening: &Screening,
+    first: &mut Vec<Fit>,
+    say: &dyn Fn(String),
+) -> Option<Settled> {
+    let problem = swaps.problem;
+    let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
+    let refits = refit(problem, screening, &pick(&screening.screened, least, Swallowed::Any));
+    let refits = afresh(problem, refits);
+    if best.model.effects.is_empty() {
+        first.clone_from(&refits);
+    }
+    let worthy = candidates(&refits, best, baseline.cost)
+        .into_iter()
+        .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
+    swaps.keep_in_mind(best, &refits, least);
+    let Some(winner) = first_that_foretells(problem, best, worthy, say).cloned() else {
+        return if best.model.effects.is_empty() { None } else { together(swaps, best, &refits, least, say) };
+    };
+    say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
+    if winner.model.effects.len() > 1 {
+        return Some(swaps.settle(winner, least, Some(Stage { before: best, refits: &refits }), say));
+    }
+    let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
+    Some(Settled { best: winner, rivals: vec![rivals] })
+}
+
+/// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which
+/// effects that only imitate another's idealised law do not.
+const TOGETHER: f64 = 0.9;
+/// Misfit per sample, in units of the noise's variance, from which it is worth looking for several at once.
+const MUCH_PER_SAMPLE: f64 = 0.3;
+
+/// Two effects or more that explain together what is left over, where none of them does its share by itself: the first that was found
+/// may stand for another, and then each of the others alone changes little. `None` if they do not, or not on runs left out.
+fn several_at_once(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64) -> Option<Settled> {
+    let problem = swaps.problem;
+    let left = before.cost - problem.noise_cost();
+    if left < MUCH_PER_SAMPLE * problem.samples() as f64 {
+        return None;
+    }
+    let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();
+    loop {
+        let settled = swaps.settle(best, least, None, &|_| {});
+        if before.cost - settled.best.cost > TOGETHER * left {
+            return foretells(problem, before, &settled.best).then_some(settled);
+        }
+        if settled.best.model.effects.len() >= MOST_EFFECTS {
+            return None;
+        }
+        let screening = screen(problem, &settled.best, swaps.variants)?;
+        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
+        best = refits.into_iter().next().filter(|f| settled.best.cost - f.cost > least)?;
+    }
+}
+
+/// What was found with another best model, and the rivals of that.
+pub(in crate::diagnose) fn settled(
+    problem: &Problem,
+    found: Found,
+    best: Fit,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Found {
+    let settled = Swaps::new(problem, variants, found.known()).settle(best, least_gain(problem.samples()), None, say);
+    Found { rivals_against: settled.best.cost, best: settled.best, rivals: settled.rivals, ..found }
+}
+
+/// Whether what one more effect explains is more than what another's idealised law may leave over.
+fn explains_its_share(problem: &Problem, baseline_cost: f64, before: &Fit, after: &Fit) -> bool {
+    let (gain, all) = (before.cost - after.cost, baseline_cost - after.cost);
+    let left = before.cost - problem.noise_cost();
+    adds_branch(before, after) || gain > FAIR_OF_ALL * all || gain > FAIR_OF_LEFT * left
+}

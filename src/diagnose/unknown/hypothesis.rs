@@ -1,0 +1,398 @@
+//! Step 6: what the catalogue does not explain, as laws that the grammar proposes. They are found on the open runs alone.
+
+use rayon::prelude::*;
+
+use super::elsewhere::elsewhere;
+use super::shown::Located;
+use super::unlisted::{Proposals, propose};
+use crate::diagnose::case::{Case, Noise, Sealed, Step};
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::grammar::Reach;
+use crate::diagnose::search::{Found, MOST_EFFECTS, foretells, foretells_runs, least_gain, leaves_much, reweight};
+use crate::diagnose::verdict::{self, Confirmed, Excess, misfit};
+
+/// Laws in one answer, at most.
+const MOST_LAWS: usize = 2;
+/// Share of the misfit below which no further law is looked for.
+const EXPLAINED: f64 = 0.02;
+/// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
+const CLEARLY: f64 = 20.0;
+/// Standard errors from which what is left is more than noise.
+const SEEN: f64 = 3.0;
+/// Laws are called equally good within so many units of chi²: odds of one to twenty.
+const SAME: f64 = 6.0;
+/// Two laws of one place whose chi² differ by no more are one.
+const SAME_LAW: f64 = 0.01;
+/// Rough fits are fitted to the end within so many times that.
+const NEARLY: f64 = 20.0;
+/// What a letter of a law costs among forms that are equally good, in units of the criterion.
+const PER_LETTER: f64 = 0.02;
+/// Forms that an answer names beside its own, at most.
+const MOST_FORMS: usize = 4;
+
+/// A model with a law, the others that are as good, and where the misfit sits.
+#[derive(Clone)]
+pub(in crate::diagnose) struct Lawful {
+    best: Fit,
+    forms: Vec<Fit>,
+    located: Vec<Located>,
+}
+
+/// What one law makes of the recordings before the catalogue has tried several effects.
+pub(in crate::diagnose) enum OneLaw {
+    /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
+    All(Box<Found>, Vec<Noise>),
+    /// It does not, or was not asked for.
+    Part(Box<Tried>),
+}
+
+/// What has been tried with one law, for later.
+#[derive(Default)]
+pub(in crate::diagnose) struct Tried {
+    pub proposals: Option<Proposals>,
+    /// The best law that is clearly better than any single effect.
+    pub law: Option<Fit>,
+    /// The law in the place of the best single effect, or beside it, however much that leaves.
+    pub instead: Option<Lawful>,
+}
+
+/// Looks for one law in the place of the best single effect, where that leaves more than noise.
+pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
+    let nothing = OneLaw::Part(Box::default());
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
+        return nothing;
+    }
+    let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return nothing };
+    let is_all = |lawful: &Lawful| !leaves_something(&open, &lawful.best);
+    // One that leaves much neither ends a search nor bounds it.
+    let is_better = |lawful: &Lawful| {
+        (is_all(lawful) || !leaves_much(&open, &found.baseline, &lawful.best))
+            && is_clearly_better(&open, found, &lawful.best)
+    };
+    let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
+        .map(|(best, forms)| Lawful { best, forms, located: proposals.located.clone() })
+        .filter(is_better);
+    let instead = match alone.as_ref().is_some_and(is_all) {
+        true => None,
+        false => instead(&open, found, say),
+    };
+    // What needs an effect beside it may stand for a second effect: it waits until the catalogue has tried that.
+    let better = instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1).filter(is_better);
+    let best = alone.into_iter().chain(better).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
+    let law = best.as_ref().map(|lawful| lawful.best.clone());
+    let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
+    let Some(lawful) = best.filter(is_all) else { return part };
+    let former = case.runs.clone();
+    let (found, renewed) = renew(case, noise, lawful.beside(found));
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
+    if leaves_something(&open, &found.best) {
+        case.runs = former;
+        return part;
+    }
+    say(format!("{} explains it all", found.best.model.title()));
+    OneLaw::All(Box::new(found), renewed)
+}
+
+/// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
+/// calibration alone point anywhere; the effect, wrong as it may be, has brought the model nearer to what was measured.
+fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful> {
+    if found.best.model.effects.is_empty() {
+        return None;
+    }
+    let proposals = propose(open, &found.best, Reach::Plain, say)?;
+    let (best, forms) = equally_good(open, &proposals.fits, found.best.cost)?;
+    let (best, forms) = without_idle(open, best, forms);
+    Some(Lawful { best, forms, located: proposals.located })
+}
+
+/// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
+/// catalogue explains a law must predict whole runs left out better than that does by itself.
+fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+    let criterion = Criterion::of(open, [&found.best, lawful]);
+    let predicts = || match found.best.model.effects.is_empty() {
+        true => foretells(open, &found.baseline, lawful),
+        false => foretells_runs(open, &found.best, lawful),
+    };
+    criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
+}
+
+impl Lawful {
+    /// What was found with the law in its place.
+    fn beside(self, found: &Found) -> Found {
+        let rivals = vec![Vec::new(); self.best.model.effects.len()];
+        let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
+        let (rivals_against, forms) = (self.best.cost, self.forms);
+        Found { rivals_against, best: self.best, rivals, forms, located, ..found.clone() }
+    }
+}
+
+/// What laws make of what was found: one alone or two, or one beside the catalogue's effects, or nothing. `tried`: what one law came to
+/// before several effects were tried.
+pub(in crate::diagnose) fn weigh_laws(
+    case: &Case,
+    noise: &[Noise],
+    (found, confirmed): (&mut Found, Confirmed),
+    excess: Excess,
+    tried: Tried,
+    say: &dyn Fn(String),
+) -> Option<Found> {
+    if case.is_without(Step::OpenSet) {
+        return None;
+    }
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let is_open = confirmed == Confirmed::InPart || verdict::is_unknown(found, excess);
+    let is_null = found.best.model.effects.is_empty();
+    let is_elsewhere = !is_open && other_places(&open, found);
+    let found = &*found;
+    let is_doubtful = || found.best.model.effects.len() > 1 || leaves_something(&open, &found.best);
+    if !is_open && (is_null || !(is_elsewhere || is_doubtful())) {
+        return None;
+    }
+    let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
+    // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
+    let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
+    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
+    let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
+    let is_enough = instead
+        .as_ref()
+        .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
+    let alone = if is_enough { None } else { search(&found.baseline, tried.proposals) };
+    let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
+    let beside = if is_beside { search(&found.best, None) } else { None };
+    let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
+    let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
+    let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
+    let against = if is_open { &found.baseline } else { &found.best };
+    if !is_clearly_better(&open, found, &best.best) {
+        say(format!("{} is no better than {}", best.best.model.title(), against.model.title()));
+        return None;
+    }
+    say(format!("{}: chi2 {:.0} -> {:.0}", best.best.model.title(), found.best.cost, best.best.cost));
+    Some(best.beside(found))
+}
+
+/// The same with weights and steps that the law asks for: the law and the forms beside it are fitted and chosen anew.
+pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Found, Vec<Noise>) {
+    let former = case.runs.clone();
+    let Some(renewed) = reweight::renew(case, noise, &found) else {
+        case.runs = former;
+        return (found, noise.to_vec());
+    };
+    let open = reweight::open_runs(case, &renewed.noise);
+    let again: Vec<Option<Fit>> = found.forms.par_iter().map(|f| open.fit(&f.model, &f.x)).collect();
+    let mut fits: Vec<Fit> = again.into_iter().flatten().collect();
+    fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
+        (found.rivals_against, found.best, found.forms) = (best.cost, best, forms);
+    }
+    found.baseline = renewed.baseline;
+    (found, renewed.noise)
+}
+
+/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. `before` is the chi²
+/// without it.
+fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
+    let near = fit.cost + NEARLY * tie(open, &fit, before);
+    let rough = elsewhere(open, &fit);
+    let named = other_forms(&fit, rough.iter().take_while(|f| f.cost < near));
+    named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
+}
+
+/// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
+/// them clearly better, so that the effect only stands in for a law.
+fn other_places(open: &Problem, found: &mut Found) -> bool {
+    let [effect] = &found.best.model.effects[..] else { return false };
+    let variables: Vec<&str> = effect.spec().variables.iter().map(String::as_str).collect();
+    if effect.channel.is_some() || effect.spec().unlisted().is_some() || variables.is_empty() {
+        return false;
+    }
+    let criterion = Criterion::of(open, [&found.best]);
+    let tie = tie(open, &found.best, found.baseline.cost);
+    let own = &effect.spec().port;
+    let others = elsewhere(open, &found.best);
+    let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
+    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().and_then(|e| e.spec().unlisted()) {
+        Some(written) => written.law.address.port.spec().name() != *own,
+        None => false,
+    };
+    let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
+    found.forms = other_forms(&found.best, near);
+    is_better
+}
+
+/// Chi² within which other models are as good as one; `before` is the chi² without its last effect.
+fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
+    let left = misfit::left(open, fit).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
+    SAME * verdict::unit(before - fit.cost, left)
+}
+
+/// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
+pub(in crate::diagnose) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
+    let first = fits.first()?;
+    let criterion = Criterion::of(open, [first]);
+    let tie = tie(open, first, before);
+    let mut same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
+    let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
+    same.sort_by(|a, b| price(a).total_cmp(&price(b)));
+    Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
+}
+
+/// Of fits that are as good as another, best first, those that an answer names: one on every other element first, then one at every
+/// other place, then other shapes. What the sensors cannot tell apart comes before how it may be written.
+fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
+    let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();
+    let mut named = vec![best];
+    for is_new in [is_on_another_element, is_at_another_place, is_another_law] {
+        for fit in &same {
+            let is_named = named.iter().any(|own| own.model.effects == fit.model.effects);
+            if !is_named && named.iter().all(|own| is_new(own, fit)) {
+                named.push(fit);
+            }
+        }
+    }
+    named.into_iter().skip(1).take(MOST_FORMS).cloned().collect()
+}
+
+fn is_on_another_element(own: &Fit, other: &Fit) -> bool {
+    element(own) != element(other)
+}
+
+fn is_at_another_place(own: &Fit, other: &Fit) -> bool {
+    place(own) != place(other)
+}
+
+/// Whether it is not the same law in other words: `abs(time_s)` is `time_s`.
+fn is_another_law(own: &Fit, other: &Fit) -> bool {
+    is_at_another_place(own, other) || (own.cost - other.cost).abs() > SAME_LAW
+}
+
+/// The element that the last effect of a fit acts on.
+fn element(fit: &Fit) -> Option<String> {
+    let last = fit.model.effects.last()?;
+    Some(last.spec().unlisted().map_or_else(|| last.element.to_string(), |own| own.law.address.element()))
+}
+
+/// Where the last effect of a fit acts, and on what it depends.
+fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
+    let law = &fit.model.effects.last()?.spec().unlisted()?.law;
+    Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
+}
+
+/// Length of the last effect's law as text: of forms that do the same the shorter stands.
+fn letters(fit: &Fit) -> usize {
+    fit.model.effects.last().map_or(0, |e| e.spec().equation.len())
+}
+
+/// Whether a fit leaves more than noise, and more than a search would still take up.
+fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+    misfit::left(open, fit).is_none_or(|(excess, error)| {
+        excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
+    })
+}
+
+/// Whether a fit leaves so little of the misfit that no further law is looked for.
+fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
+    let noise = open.noise_cost();
+    fit.cost - noise < EXPLAINED * (baseline.cost - noise)
+}
+
+/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
+/// first with other weights.
+fn search(
+    open: &Problem,
+    baseline: &Fit,
+    from: &Fit,
+    begun: Option<Proposals>,
+    say: &dyn Fn(String),
+) -> Option<Lawful> {
+    add_laws(open, baseline, (from.clone(), None), begun, say)
+}
+
+/// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
+fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
+    let fit = open.fit(&own.best.model, &own.best.x)?;
+    let last = fit.model.effects.len() - 1;
+    let before = match last {
+        0 => baseline.cost,
+        _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
+    };
+    let mut fits = with_elsewhere(open, fit, before);
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let (best, forms) = equally_good(open, &fits, before)?;
+    let here = best.clone();
+    add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
+}
+
+fn add_laws(
+    open: &Problem,
+    baseline: &Fit,
+    (mut here, mut lawful): (Fit, Option<Lawful>),
+    begun: Option<Proposals>,
+    say: &dyn Fn(String),
+) -> Option<Lawful> {
+    let mut begun = begun.map(|b| b.again(open));
+    for _ in usize::from(lawful.is_some())..MOST_LAWS {
+        let is_all = lawful.is_some() && !leaves_something(open, &here);
+        if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
+            break;
+        }
+        let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
+        let Some(first) = proposals.fits.first() else { break };
+        if lawful.is_none() && leaves_something(open, first) {
+            proposals.fits = wider(open, &here, proposals.fits, say);
+        }
+        let Some(first) = proposals.fits.first() else { break };
+        if here.cost - first.cost < least_gain(open.samples()) {
+            break;
+        }
+        let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
+        let (best, forms) = without_idle(open, best, forms);
+        here = best.clone();
+        let located = lawful.map_or(proposals.located, |l| l.located);
+        lawful = Some(Lawful { best, forms, located });
+    }
+    lawful
+}
+
+/// A fit and its forms without the effects that the law which came last has made needless.
+fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
+    let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
+    let least = least_gain(open.samples());
+    loop {
+        let others = best.model.effects.len() - 1;
+        let fewer: Vec<Option<Fit>> = (0..others).into_par_iter().map(|i| without(&best, i)).collect();
+        let idle = fewer.into_iter().enumerate().filter_map(|(i, fit)| Some((i, fit?)));
+        let idle = idle.filter(|(_, fit)| fit.cost - best.cost < least).min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        let Some((i, fit)) = idle else { return (best, forms) };
+        forms = forms.par_iter().filter_map(|form| without(form, i)).collect();
+        best = fit;
+    }
+}
+
+/// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
+fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, say: &dyn Fn(String)) -> Vec<Fit> {
+    let Some(wide) = propose(open, from, Reach::Wide, say) else { return plain };
+    let criterion = Criterion::of(open, plain.first().into_iter().chain(wide.fits.first()));
+    let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
+    if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
+}
+
+/// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + numbers ln(samples)`.
+pub(super) struct Criterion {
+    pub dispersion: f64,
+    per_number: f64,
+}
+
+impl Criterion {
+    fn of<'a>(problem: &Problem, fits: impl IntoIterator<Item = &'a Fit>) -> Self {
+        let least = fits.into_iter().map(|f| f.cost).fold(f64::INFINITY, f64::min);
+        let dispersion = (least / problem.noise_cost().max(1.0)).max(1.0);
+        Self { dispersion, per_number: (problem.samples() as f64).ln() }
+    }
+
+    fn at(&self, fit: &Fit) -> f64 {
+        fit.cost / self.dispersion + fit.model.effect_numbers() as f64 * self.per_number
+    }
+}

@@ -1,0 +1,12 @@
+//! Step 6: what the catalogue does not explain, as laws of the grammar.
+//!
+//! May import `verdict`, `search`, `grammar`, `fit` and `case`.
+
+mod elsewhere;
+pub(super) mod hypothesis;
+mod shown;
+mod span;
+mod unlisted;
+
+pub(super) use hypothesis::equally_good;
+pub(super) use unlisted::propose;

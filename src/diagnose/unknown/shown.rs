@@ -1,0 +1,309 @@
+//! Signals injected at the ports of a fitted model: how much of a misfit a law at each of them could explain, whatever its shape.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::span::{explained, sizes};
+use crate::diagnose::case::CaseRun;
+use crate::diagnose::fit::{Fit, Model, Number, Problem, Sides, Underway, Variant, orthogonal};
+use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
+
+/// Scales of a shape that are tried, in those of the slot.
+const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+/// Steps that every refit takes, how many of the refits go on, and for how many steps more.
+const FIRST_STEPS: usize = 4;
+const GOING_ON: usize = 8;
+const MORE_STEPS: usize = 20;
+/// Share of a slot's typical size that is injected.
+const INJECTED: f64 = 2e-2;
+
+/// A slot with the share of the misfit that a curve over its variable could explain.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Located {
+    pub slot: Slot,
+    /// Fall of chi² that the best curve promises.
+    pub gain: f64,
+}
+
+/// A signature that is wanted: slot, shape and scale of the variable.
+#[derive(Clone, Copy, Debug)]
+struct Wanted<'a> {
+    slot: &'a Slot,
+    shape: &'a Shape,
+    scale: f64,
+}
+
+impl PartialEq for Wanted<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.slot, self.shape.text, self.scale) == (other.slot, other.shape.text, other.scale)
+    }
+}
+
+/// A shape beside those of a slot's basis, with its scale.
+pub(super) type More = Option<(&'static Shape, f64)>;
+
+/// Signatures of which a slot's curve is made up.
+fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
+    let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
+    slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
+}
+
+/// A law with numbers to start from.
+struct Candidate {
+    model: Model,
+    x: Vec<f64>,
+}
+
+/// What has to be explained, along the runs of a fitted model.
+pub(super) struct Shown<'a> {
+    problem: &'a Problem<'a>,
+    /// The model along whose runs signals are injected.
+    along: &'a Fit,
+    /// The model that laws are added to.
+    from: Fit,
+    /// What is measured by the numbers of `from`, and what these can imitate.
+    slopes: DMatrix<f64>,
+    basis: DMatrix<f64>,
+    /// What has to be explained, less what the numbers can imitate.
+    left: DVector<f64>,
+}
+
+impl<'a> Shown<'a> {
+    /// What a fit leaves. `None` where it cannot be simulated.
+    pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
+        let known = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)?;
+        let basis = known.slopes.clone().qr().q();
+        let left = orthogonal(&basis, &known.residual);
+        Some(Self { problem, along: fit, from: fit.clone(), slopes: known.slopes, basis, left })
+    }
+
+    /// What the last effect of a fit does, by its size. `None` where the model cannot be simulated, or the size is not fitted.
+    pub fn last_effect(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
+        let last = fit.model.effects.len().checked_sub(1)?;
+        let without = Fit { x: problem.start_without(fit, last), model: fit.model.without(last), ..fit.clone() };
+        let size = problem.case.parameters.len() + fit.model.places().iter().position(|p| *p == (last, 0))?;
+        let known = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)?;
+        let scale = problem.numbers(&fit.model)[size].scale;
+        let does = known.slopes.column(size) * (fit.x[size] / scale);
+        let own = fit.x.len() - without.x.len();
+        let slopes = known.slopes.remove_columns(fit.x.len() - own, own);
+        let basis = slopes.clone().qr().q();
+        let left = orthogonal(&basis, &does);
+        Some(Self { problem, along: fit, from: without, slopes, basis, left })
+    }
+
+    /// Keeps of what has to be explained the part that curves over a slot's variable can. Differences hold more than signals along one run
+    /// have: what comes of other bounces where cables go slack, and what a law does between two samples.
+    pub fn keep(&mut self, all: &[Slot], own: &Slot, more: More) {
+        let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &of_curve(own, more)).into_iter().collect();
+        let Some(signatures) = signatures else { return };
+        let sizes = sizes(&signatures, &self.left);
+        self.left = signatures.iter().zip(sizes).fold(DVector::zeros(self.left.len()), |sum, (s, size)| sum + s * size);
+    }
+
+    /// Sum of squares of what has to be explained.
+    pub fn whole(&self) -> f64 {
+        self.left.norm_squared()
+    }
+
+    /// Joint refits with a law at each of these slots in its most promising shapes, at most so many of each; cheapest first.
+    pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
+        self.refitted(&self.shapes(all, best, most), GOING_ON)
+    }
+
+    /// The same with a curve at each of these slots; none goes on, for a curve is no answer.
+    pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
+        let plain: Vec<&Slot> =
+            best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
+        let wanted: Vec<Wanted> = plain.iter().flat_map(|slot| of_curve(slot, None)).collect();
+        let mut signatures = self.signatures(all, &wanted).into_iter();
+        let candidates: Vec<Candidate> = plain
+            .iter()
+            .filter_map(|slot| {
+                let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(slot.basis().count()).collect();
+                let own: Vec<DVector<f64>> = own.into_iter().collect::<Option<_>>()?;
+                let sizes = sizes(&own, &self.left);
+                let mut own = curve(self.problem.case, slot)?;
+                own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.typical);
+                Some(self.with(&own))
+            })
+            .collect();
+        self.refitted(&candidates, 0)
+    }
+
+    /// Rough fits, of which so many that are best after a few steps go on.
+    fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
+        let problem = self.problem;
+        let begin = |candidate: &Candidate| {
+            let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
+            let own = problem.rows(model, start, known..start.len(), Sides::One)?.slopes;
+            let mut slopes = self.slopes.clone().resize_horizontally(start.len(), 0.0);
+            slopes.columns_mut(known, own.ncols()).copy_from(&own);
+            Some(problem.go_on(problem.begin(model, start, slopes)?, FIRST_STEPS))
+        };
+        let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
+        underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let finish = |(place, fit): (usize, Underway)| {
+            problem.end(if place < going_on { problem.go_on(fit, MORE_STEPS) } else { fit })
+        };
+        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        fits
+    }
+
+    /// How much of it a curve over each slot's variable could explain, of one shape more where that is given with its scale; the best first.
+    pub fn locate(&self, all: &[Slot], more: More) -> Vec<Located> {
+        let wanted: Vec<Vec<Wanted>> = all.iter().map(|slot| of_curve(slot, more)).collect();
+        let signatures = self.signatures(all, &wanted.concat());
+        let mut signatures = signatures.iter();
+        let gains = all.iter().zip(&wanted).map(|(slot, own)| {
+            let own: Vec<&Option<DVector<f64>>> = signatures.by_ref().take(own.len()).collect();
+            let own: Vec<&DVector<f64>> = own.into_iter().flatten().collect();
+            Located { slot: slot.clone(), gain: explained(&own, &self.left) }
+        });
+        let mut located: Vec<Located> = gains.collect();
+        located.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        located
+    }
+
+    /// The most promising shapes of these slots, at most so many of each, ready to be refitted.
+    fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
+        let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
+        let wanted: Vec<Wanted> = best
+            .iter()
+            .flat_map(|&slot| slot.shapes().iter().map(move |shape| (slot, shape)))
+            .flat_map(|(slot, shape)| scales(shape).iter().map(move |s| Wanted { slot, shape, scale: s * slot.scale }))
+            .collect();
+        let signatures = self.signatures(all, &wanted);
+        let mut promised: Vec<(f64, f64, Wanted)> = wanted
+            .iter()
+            .zip(signatures)
+            .filter_map(|(w, signature)| {
+                let signature = signature?;
+                let length = signature.norm().max(f64::MIN_POSITIVE);
+                let amplitude = signature.dot(&self.left) / length;
+                Some((amplitude * amplitude, amplitude / length * w.slot.typical, *w))
+            })
+            .collect();
+        promised.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut taken: Vec<Wanted> = Vec::new();
+        let mut candidates = Vec::new();
+        for (_, size, w) in promised {
+            let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
+            let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
+            if taken.iter().any(|t| is_same(&t)) || of_slot >= most {
+                continue;
+            }
+            taken.push(w);
+            candidates.extend(self.candidate(&w, size));
+        }
+        candidates
+    }
+
+    fn candidate(&self, w: &Wanted, size: f64) -> Option<Candidate> {
+        let mut own = variant(self.problem.case, w.slot, w.shape, w.scale / w.slot.scale)?;
+        let range = own.placed.spec().parameters[0].range;
+        own.values[0] = size.clamp(range.min, range.max);
+        Some(self.with(&own))
+    }
+
+    /// A law with its numbers beside the model that laws are added to.
+    fn with(&self, own: &Variant) -> Candidate {
+        let model = self.from.model.plus(&own.placed, &own.values);
+        let mut x = self.from.x.clone();
+        x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));
+        Candidate { model, x }
+    }
+
+    /// Derivatives of what is measured to the size of each law at zero, without what the calibration imitates. A law on all of
+    /// several equal elements shows what those on each show together.
+    fn signatures(&self, all: &[Slot], wanted: &[Wanted]) -> Vec<Option<DVector<f64>>> {
+        let mut single: Vec<Wanted> = Vec::new();
+        let members: Vec<Vec<usize>> = wanted
+            .iter()
+            .map(|w| {
+                let own = parts(all, w.slot).map(|slot| Wanted { slot, ..*w });
+                own.map(|part| {
+                    let known = single.iter().position(|s| *s == part);
+                    known.unwrap_or_else(|| {
+                        single.push(part);
+                        single.len() - 1
+                    })
+                })
+                .collect()
+            })
+            .collect();
+        let of_runs: Vec<Vec<Option<Vec<f64>>>> =
+            self.problem.runs.par_iter().enumerate().map(|(r, run)| self.in_run(r, run, &single)).collect();
+        let whole = |i: usize| -> Option<DVector<f64>> {
+            let mut entries = Vec::with_capacity(self.left.len());
+            for run in &of_runs {
+                entries.extend_from_slice(run[i].as_ref()?);
+            }
+            Some(DVector::from_vec(entries))
+        };
+        let signatures: Vec<Option<DVector<f64>>> = (0..single.len()).into_par_iter().map(whole).collect();
+        let sum = |parts: &Vec<usize>| -> Option<DVector<f64>> {
+            let mut sum = DVector::zeros(self.left.len());
+            for &i in parts {
+                sum += signatures[i].as_ref()?;
+            }
+            Some(orthogonal(&self.basis, &sum))
+        };
+        members.par_iter().map(sum).collect()
+    }
+
+    /// The part of each signature that stands in one run.
+    fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
+        let problem = self.problem;
+        let setting = self.along.model.setting(problem.case, run, &self.along.x);
+        let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
+        let mut ports: Vec<&Slot> = Vec::new();
+        for w in wanted {
+            if ports.iter().all(|p| p.injected != w.slot.injected) {
+                ports.push(w.slot);
+            }
+        }
+        let of_ports = ports.into_par_iter().map(|port| {
+            let own: Vec<usize> = (0..wanted.len()).filter(|&i| wanted[i].slot.injected == port.injected).collect();
+            let step = INJECTED * port.typical;
+            let signal = |&i: &usize| -> Vec<f64> {
+                let w = &wanted[i];
+                w.slot.series[r].iter().map(|x| step * (w.shape.at)(x / w.scale)).collect()
+            };
+            let signals: Vec<Vec<f64>> = own.iter().map(signal).collect();
+            let changes = run.twin.injected(&run.drive, &setting, &port.injected.with(&[0.0]), &signals);
+            let number = number(port.typical);
+            let weighted = changes.into_iter().map(|change| {
+                let change = change?;
+                let channels = problem.case.channels.iter().enumerate();
+                let each = channels.flat_map(|(c, channel)| {
+                    let slope: Vec<f64> = change[channel.output][run.lead_in..].iter().map(|x| x / step).collect();
+                    problem.weighted_slope(run, c, &slope, &number).collect::<Vec<f64>>()
+                });
+                Some(each.collect())
+            });
+            own.into_iter().zip(weighted.collect::<Vec<_>>()).collect::<Vec<_>>()
+        });
+        for (i, signature) in of_ports.collect::<Vec<_>>().into_iter().flatten() {
+            found[i] = signature;
+        }
+        found
+    }
+}
+
+/// The slots of single elements that a slot is made up of: itself, or those of its port on every element.
+fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> {
+    let is_part = move |other: &&Slot| {
+        let is_same =
+            (other.port, &other.variable, other.reading.word()) == (slot.port, &slot.variable, slot.reading.word());
+        is_same && other.reading.is_like(&slot.reading) && other.address != slot.address
+    };
+    let is_whole = crate::laws::Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
+    let others: Vec<&Slot> = if is_whole { all.iter().filter(is_part).collect() } else { Vec::new() };
+    if others.is_empty() { vec![slot].into_iter() } else { others.into_iter() }
+}
+
+fn number(scale: f64) -> Number {
+    Number { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: INJECTED, prior: 0.0, prior_weight: 0.0 }
+}

@@ -1,0 +1,123 @@
+//! The law that nobody listed.
+//!
+//! Every slot of the grammar (a port and a variable) is screened first: small signals of several shapes are injected at its port,
+//! and what a curve made up of them could explain says how well the slot does, whatever the law's shape. Around the best slots all
+//! shapes are screened, the best are refitted jointly with the calibration.
+
+use rayon::prelude::*;
+
+use super::shown::{Located, Shown};
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::grammar::{Reach, Slot, slots};
+
+/// Slots of which the best shape is refitted, at most so many at ports of one kind; slots around which all shapes are.
+const SLOTS: usize = 12;
+const SLOTS_OF_PORT: usize = 3;
+const WIDENED: usize = 4;
+/// Mere numbers that are refitted beside them.
+const NUMBERS: usize = 4;
+/// Shapes of one slot that are refitted there, and refits that are fitted to the end.
+const SHAPES_OF_SLOT: usize = 6;
+const FINISHED: usize = 6;
+
+/// What the grammar makes of a fit's misfit.
+pub(in crate::diagnose) struct Proposals {
+    /// All slots, the best first.
+    pub located: Vec<Located>,
+    /// Refits with one law more, cheapest first; the last effect of each is the law.
+    pub fits: Vec<Fit>,
+}
+
+impl Proposals {
+    /// The best of them fitted again to a problem with other weights or steps.
+    pub fn again(self, problem: &Problem) -> Self {
+        let best = &self.fits[..self.fits.len().min(FINISHED)];
+        let again = best.par_iter().filter_map(|f| problem.fit(&f.model, &f.x));
+        let mut fits: Vec<Fit> = again.collect();
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        Self { fits, ..self }
+    }
+}
+
+/// Screens all slots at a fit and refits the best laws beside it. `None` where the fit cannot be simulated.
+pub(in crate::diagnose) fn propose(
+    problem: &Problem,
+    from: &Fit,
+    reach: Reach,
+    say: &dyn Fn(String),
+) -> Option<Proposals> {
+    let all = slots(problem.case, from, reach);
+    if all.is_empty() {
+        return None;
+    }
+    let shown = Shown::misfit(problem, from)?;
+    let located = shown.locate(&all, None);
+    say(format!("{} slots screened, the best {} on {}", located.len(), address(&located), variable(&located)));
+    let best = several_ports(&located);
+    let mut fits = shown.refits(&all, &best, 1);
+    let curves = shown.curves(&all, &best);
+    let wide = worth_widening(&best, fits.iter().chain(&curves));
+    say(format!(
+        "shapes of {} at {}",
+        wide.first().map_or("", |s| &s.variable),
+        wide.first().map_or("", |s| &s.address)
+    ));
+    fits.extend(shown.refits(&all, &wide, SHAPES_OF_SLOT));
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits.dedup_by(|a, b| a.model.effects == b.model.effects);
+    let count = fits.len().min(FINISHED);
+    let finished: Vec<Option<Fit>> = fits[..count].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
+    for (fit, finished) in fits.iter_mut().zip(finished) {
+        if let Some(finished) = finished.filter(|f| f.cost < fit.cost) {
+            *fit = finished;
+        }
+    }
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    Some(Proposals { located, fits })
+}
+
+/// The slots whose laws, a shape or a curve, leave least.
+fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) -> Vec<&'a Slot> {
+    let mut fits: Vec<&Fit> = fits.collect();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut wide: Vec<&Slot> = Vec::new();
+    for fit in fits {
+        let own = best.iter().copied().find(|slot| is_law_of(fit, slot));
+        let own = own.filter(|slot| !slot.is_constant() && !wide.contains(slot));
+        wide.extend(own.filter(|_| wide.len() < WIDENED));
+    }
+    wide
+}
+
+/// The best slots, few of them at ports of one kind, and the best mere numbers.
+fn several_ports(located: &[Located]) -> Vec<&Slot> {
+    let mut best: Vec<&Slot> = Vec::new();
+    for Located { slot, .. } in located.iter().filter(|l| !l.slot.is_constant()) {
+        let of_port = best.iter().filter(|b| b.port == slot.port).count();
+        if of_port < SLOTS_OF_PORT && best.len() < SLOTS {
+            best.push(slot);
+        }
+    }
+    best.extend(located.iter().map(|l| &l.slot).filter(|slot| slot.is_constant()).take(NUMBERS));
+    best
+}
+
+/// Whether the last effect of a fit is a law of this slot.
+pub(super) fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
+    let Some(written) = fit.model.effects.last().and_then(|e| e.spec().unlisted()) else { return false };
+    let law = &written.law;
+    let variables = law.variables();
+    let is_over = match slot.is_constant() {
+        true => variables.is_empty(),
+        false => variables.iter().any(|v| v.name() == slot.variable),
+    };
+    law.name == slot.name() && is_over
+}
+
+fn address(located: &[Located]) -> &str {
+    located.first().map_or("none", |l| &l.slot.address)
+}
+
+fn variable(located: &[Located]) -> &str {
+    located.first().map_or("nothing", |l| &l.slot.variable)
+}

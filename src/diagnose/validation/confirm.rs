@@ -1,0 +1,181 @@
+//! Step 7, the consequences: what does not hold on sealed runs is taken back, and the full scene has the last word.
+
+use super::{consistency, prove};
+use crate::diagnose::case::Step;
+use crate::diagnose::diagnosis::Proof;
+use crate::diagnose::error::DiagnoseError;
+use crate::diagnose::fit::{Fit, Problem, Variant};
+use crate::diagnose::full::{FullRun, agreement, play_full};
+use crate::diagnose::search::{self, Found, foretells};
+use crate::diagnose::verdict::{self, Confirmed, misfit};
+use rayon::prelude::*;
+
+/// What the held-out runs say to what the open ones have found. They choose nothing: where they gain nothing, the answer stays, as a part
+/// of the truth.
+pub(in crate::diagnose) fn confirm(
+    sealed: &Problem,
+    found: &Found,
+    proof: &Proof,
+    warnings: &mut Vec<String>,
+) -> Confirmed {
+    let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
+    let is_asked = !found.best.model.effects.is_empty() && !sealed.case.is_without(Step::CrossValidation);
+    if !is_asked || !gains_nothing {
+        return Confirmed::Yes;
+    }
+    let title = found.best.model.title();
+    if let Some(sensor) = missing_sensor(sealed, found) {
+        warnings.push(format!("the sealed runs lack {sensor}, which shows what {title} changes: it is unproven there"));
+        return Confirmed::Yes;
+    }
+    warnings.push(format!("{title} explains open runs, but not the sealed ones"));
+    Confirmed::InPart
+}
+
+/// Distance between baseline and best on the sealed runs, standard errors, below which these can say nothing.
+const SHOWN: f64 = 5.0;
+
+/// A channel of the open runs that the sealed ones lack, where what they have shows no difference.
+fn missing_sensor<'a>(sealed: &Problem<'a>, found: &Found) -> Option<&'a str> {
+    let case = sealed.case;
+    let has = |is_sealed: bool, c: usize| {
+        let runs = case.runs.iter().filter(|r| r.is_sealed == is_sealed);
+        runs.flat_map(|r| &r.measured[c]).any(|v| v.is_finite())
+    };
+    let lacking = (0..case.channels.len()).find(|c| has(false, *c) && !has(true, *c))?;
+    let residual = |fit: &Fit| sealed.weighted_residual(&fit.model, &fit.x);
+    let apart = (residual(&found.baseline)? - residual(&found.best)?).norm();
+    (apart < SHOWN).then_some(case.channels[lacking].column.as_str())
+}
+
+/// Takes back what the fast model cannot follow on every run, sealed ones included.
+pub(in crate::diagnose) fn take_back_unplayable(
+    whole: &Problem,
+    mut found: Found,
+    warnings: &mut Vec<String>,
+) -> Found {
+    let has_effects = !found.best.model.effects.is_empty();
+    if has_effects && whole.cost_at(&found.best.model, &found.best.x).is_none() {
+        let title = found.best.model.title();
+        warnings.push(format!("{title} fitted the open runs but cannot be simulated on all, and was dropped"));
+        found.best = found.baseline.clone();
+        found.rivals.clear();
+    }
+    found
+}
+
+/// Takes back one by one the effects without which open runs that no fit has seen are predicted as well: they only filled in for the
+/// others' laws.
+pub(in crate::diagnose) fn prune(
+    open: &Problem,
+    mut found: Found,
+    variants: &[Variant],
+    say: &dyn Fn(String),
+) -> Found {
+    // Of a single run one half says little of the other: it may have gone on, to where nothing was before.
+    if open.case.is_without(Step::CrossValidation) || open.runs.len() < 2 {
+        return found;
+    }
+    while found.best.model.effects.len() > 1 {
+        let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
+        let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
+        let is_idle = |fewer: &Fit| !foretells(open, fewer, &found.best);
+        let idle = fewer.into_iter().flatten().filter(is_idle).min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let Some(fewer) = idle else { break };
+        say(format!("{} predicts runs left out as well", fewer.model.title()));
+        found = search::settled(open, found, fewer, variants, say);
+    }
+    found
+}
+
+/// Takes back the effects that a run by itself contradicts: they stand in for something else. Where the rest does not
+/// explain the recordings either, all stays as the nearest known, which says no more than that.
+pub(in crate::diagnose) fn take_back_contradicted(
+    whole: &Problem,
+    open: &Problem,
+    found: Found,
+    variants: &[Variant],
+    warnings: &mut Vec<String>,
+) -> (Found, Confirmed) {
+    let explains = |found: &Found| {
+        let is_left = !found.best.model.effects.is_empty();
+        is_left && misfit(whole, found).is_some_and(|(_, excess)| !verdict::is_unknown(found, excess))
+    };
+    if whole.case.is_without(Step::CrossValidation) || !explains(&found) {
+        return (found, Confirmed::Yes);
+    }
+    let mut fewer = found.clone();
+    while let Some((effect, how)) = consistency::contradiction(whole.case, &fewer.best, whole.noise) {
+        let title = fewer.best.model.effects[effect].title();
+        warnings.push(format!("{title} {how}: it stands in for something else"));
+        let start = open.start_without(&fewer.best, effect);
+        match open.fit(&fewer.best.model.without(effect), &start).filter(|f| !f.model.effects.is_empty()) {
+            Some(fit) => fewer = search::settled(open, fewer, fit, variants, &|_| {}),
+            None => return (found, Confirmed::InPart),
+        }
+    }
+    let stands = fewer.best.model == found.best.model || explains(&fewer);
+    if stands { (fewer, Confirmed::Yes) } else { (found, Confirmed::InPart) }
+}
+
+/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof; where it
+/// cannot be played, that is said, and the fast model's stand.
+///
+/// Whether the full scene can be played at all.
+pub fn check_on_full_scene(
+    sealed: &Problem,
+    found: &Found,
+    proof: &mut Proof,
+    seed: u64,
+    warnings: &mut Vec<String>,
+) -> bool {
+    let compared = compare_with_full_scene(sealed, found, proof, seed, warnings);
+    if let Err(e) = &compared {
+        proof.full_scene.agrees = false;
+        warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
+    }
+    compared.is_ok()
+}
+
+fn compare_with_full_scene(
+    sealed: &Problem,
+    found: &Found,
+    proof: &mut Proof,
+    seed: u64,
+    warnings: &mut Vec<String>,
+) -> Result<(), DiagnoseError> {
+    let case = sealed.case;
+    let corrected = play_full(case, &found.best, sealed.noise)?;
+    let agreement = agreement(case, &corrected);
+    if !agreement.agrees {
+        let residuals = |runs: &[FullRun]| -> Vec<Vec<Vec<f64>>> {
+            let played = runs.iter().filter(|r| r.is_sealed);
+            sealed.runs.iter().zip(played).map(|(run, full)| sealed.subtract(run, &full.values)).collect()
+        };
+        let baseline = play_full(case, &found.baseline, sealed.noise)?;
+        let renewed = prove::compare(sealed, &residuals(&baseline), &residuals(&corrected), seed);
+        *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
+        let differ: Vec<String> =
+            agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
+        let named = if found.best.model.effects.is_empty() { "that nothing is missing" } else { "what is named" };
+        warnings.push(format!(
+            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene, {named} rests on \
+             the fast model",
+            differ.join(", ")
+        ));
+    }
+    proof.full_scene = agreement;
+    Ok(())
+}
+
+/// Wrong effects that are put through the same door, at most.
+const PLACEBOS: usize = 5;
+
+/// What the rivals that lost would have gained on the sealed runs.
+pub fn placebos(sealed: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
+    let gained = |rival: &Fit| -> Option<(String, f64)> {
+        let proof = prove::prove(sealed, &found.baseline, rival, seed)?;
+        Some((rival.model.title(), proof.gap_closed))
+    };
+    found.rivals.iter().flatten().take(PLACEBOS).filter_map(gained).collect()
+}

@@ -1,0 +1,176 @@
+//! Do no harm: what predicts worse than the calibrated scene does not leave the program.
+
+use super::prove;
+use crate::diagnose::case::{Case, CaseRun, Noise, Sealed, Step};
+use crate::diagnose::diagnosis::Proof;
+use crate::diagnose::fit::{Fit, Problem, simulate};
+use crate::diagnose::full::play_full;
+use crate::diagnose::grammar::Reach;
+use crate::diagnose::search::Found;
+use crate::diagnose::unknown::{equally_good, propose};
+
+/// What was found, if it does no harm. Else, where cables go slack, another fit that explains the open runs as well, laws that nobody
+/// listed included: that which is nearest to what was left out of them. The held-out runs choose nothing; they refuse, the second time
+/// for good: the answer is then located, not modelled. `proof` becomes that of what is left.
+pub(in crate::diagnose) fn without(
+    case: &Case,
+    noise: &[Noise],
+    mut found: Found,
+    proof: &mut Proof,
+    seed: u64,
+    (warnings, say): (&mut Vec<String>, &dyn Fn(String)),
+) -> Found {
+    if found.best.model.effects.is_empty() || !is_harmful(case, noise, &found.baseline, &found.best, proof) {
+        return found;
+    }
+    warnings.push(format!(
+        "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
+        found.best.model.title()
+    ));
+    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
+    let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
+    if let Some(other) = other {
+        let renewed = prove::prove(&sealed, &other.baseline, &other.best, seed);
+        if let Some(renewed) = renewed.filter(|p| !is_harmful(case, noise, &other.baseline, &other.best, p)) {
+            *proof = renewed;
+            return other;
+        }
+    }
+    withhold(&mut found, proof);
+    found
+}
+
+/// Takes what was found out of the answer: it is located, not modelled.
+fn withhold(found: &mut Found, proof: &mut Proof) {
+    let known = found.clone();
+    found.best = found.baseline.clone();
+    found.rivals.clear();
+    found.forms.clear();
+    found.withheld = Some(Box::new(known));
+    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
+    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
+}
+
+/// The same where the full scene cannot be played with what was found, and can without it: nobody could run that scene.toml.
+pub(in crate::diagnose) fn without_unplayable(
+    case: &Case,
+    noise: &[Noise],
+    found: &mut Found,
+    proof: &mut Proof,
+    warnings: &mut Vec<String>,
+) {
+    if found.best.model.effects.is_empty() || play_full(case, &found.baseline, noise).is_err() {
+        return;
+    }
+    warnings.push(format!(
+        "the full scene cannot be played with {}: it is not put into scene.toml",
+        found.best.model.title()
+    ));
+    withhold(found, proof);
+}
+
+/// Of the fits that explain the open runs as well as what was found, that which is nearest to what was left out of them; none where that
+/// is what was found.
+fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Option<Found> {
+    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let distance = |fit: &Fit| left_out(&open, fit).unwrap_or(f64::INFINITY);
+    let mut least = distance(&found.best);
+    let mut nearest = None;
+    for (place, fit) in as_good(found) {
+        if distance(&fit) < least {
+            least = distance(&fit);
+            nearest = Some((place, fit));
+        }
+    }
+    let mut laws = laws(&open, found, say);
+    laws.retain(|fit| distance(fit) < least - AS_GOOD);
+    if let Some((best, forms)) = equally_good(&open, &laws, found.baseline.cost) {
+        return Some(Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found.clone() });
+    }
+    let (place, fit) = nearest?;
+    let mut other = found.clone();
+    exchange(&mut other, place, fit);
+    Some(other)
+}
+
+/// Laws that explain the open runs as well as what was found, where that is a single effect; cheapest first.
+fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
+    if open.case.is_without(Step::OpenSet) || found.best.model.effects.len() > 1 {
+        return Vec::new();
+    }
+    let mut fits = propose(open, &found.baseline, Reach::Plain, say).map_or_else(Vec::new, |p| p.fits);
+    fits.retain(|fit| fit.cost <= found.best.cost + AS_GOOD);
+    fits
+}
+
+/// Where another fit stands beside the answer.
+#[derive(Clone, Copy)]
+enum Place {
+    Form(usize),
+    /// Of the last effect.
+    Rival(usize),
+}
+
+/// Chi² within which another fit explains the open runs as well: odds of one to twenty.
+const AS_GOOD: f64 = 6.0;
+
+fn as_good(found: &Found) -> Vec<(Place, Fit)> {
+    let near = found.best.cost + AS_GOOD;
+    let forms = found.forms.iter().enumerate().map(|(i, fit)| (Place::Form(i), fit));
+    let rivals = found.rivals.last().into_iter().flatten().enumerate().map(|(i, fit)| (Place::Rival(i), fit));
+    forms.chain(rivals).filter(|(_, fit)| fit.cost <= near).map(|(place, fit)| (place, fit.clone())).collect()
+}
+
+/// Puts another fit in the place of the best, and the best in its place.
+fn exchange(found: &mut Found, other: Place, own: Fit) {
+    let was = std::mem::replace(&mut found.best, own);
+    match other {
+        Place::Form(i) => found.forms[i] = was,
+        Place::Rival(i) => {
+            found.rivals_against = found.best.cost;
+            if let Some(rivals) = found.rivals.last_mut() {
+                rivals[i] = was;
+            }
+        }
+    }
+}
+
+/// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it loses where samples
+/// are left out of the fit: there next to nothing holds a joint, and a small wrong force drives it anywhere.
+fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &Proof) -> bool {
+    if proof.gap_closed < 0.0 && proof.gain_ci95[1] < 0.0 {
+        return true;
+    }
+    if !case.goes_slack() {
+        return false;
+    }
+    let Some([gained, lost]) = gain_and_loss(case, noise, baseline, fit) else { return true };
+    lost > 0.0 && lost > gained
+}
+
+/// Chi² that a fit gains on the held-out runs, and that it loses where samples of any run are left out; `None` where it cannot be
+/// simulated.
+fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Option<[f64; 2]> {
+    let [sealed, whole] = [Sealed::Sealed, Sealed::Both].map(|runs| Problem { case, runs: case.subset(runs), noise });
+    let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x);
+    Some([cost(baseline)? - cost(fit)?, left_out(&whole, fit)? - left_out(&whole, baseline)?])
+}
+
+/// Sum of squares of what a fit leaves at the samples that are left out of its runs; `None` where it cannot be simulated.
+fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
+    let each = problem.runs.iter().map(|run| at_left_out(problem.case, run, problem.noise, fit));
+    each.sum()
+}
+
+/// Sum of squares of what a fit leaves at the samples of a run that are left out, in the units of [`Fit::cost`].
+fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option<f64> {
+    if run.unheld.iter().all(Vec::is_empty) {
+        return Some(0.0);
+    }
+    let simulated = simulate(case, run, &fit.model, &fit.x)?;
+    let channels = run.unheld.iter().zip(&simulated).zip(noise);
+    let of_channel = channels.map(|((samples, values), noise)| -> f64 {
+        samples.iter().map(|(i, measured)| ((measured - values[*i]) / noise.scale()).powi(2)).sum()
+    });
+    Some(of_channel.sum())
+}

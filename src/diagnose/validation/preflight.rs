@@ -1,0 +1,208 @@
+//! Step 0: whether the recordings can carry a diagnosis.
+
+use crate::diagnose::case::{Case, CaseRun};
+use crate::diagnose::fit::{Model, Problem};
+use crate::recording::figures::{correlation, spread};
+use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
+use crate::scene::Scene;
+use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
+
+/// Fewer samples than this say nothing.
+const LEAST_SAMPLES: usize = 200;
+/// Share of samples at one end value that makes a channel saturated.
+const SATURATED_SHARE: f64 = 0.2;
+
+/// Reasons why nothing can be said, and things the reader should know.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preflight {
+    pub unusable: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+/// Looks at the recordings alone and at how the uncalibrated scene compares in scale.
+///
+/// # Errors
+/// A law of the scene that has no value somewhere on the way.
+pub(in crate::diagnose) fn preflight(case: &Case, problem: &Problem) -> Result<Preflight, SystemError> {
+    let mut found = Preflight::default();
+    let samples = problem.samples();
+    if samples < LEAST_SAMPLES {
+        found.unusable.push(format!("only {samples} samples: record at least some ten seconds at 50 Hz"));
+    }
+    inputs(case, &mut found);
+    channels(case, &mut found);
+    // A scene that nothing drives stands still: its spread says nothing of units.
+    if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
+        scales(case, problem, &mut found)?;
+    }
+    Ok(found)
+}
+
+fn inputs(case: &Case, found: &mut Preflight) {
+    // Time alone drives a scene without inputs.
+    if case.scene.file.input.is_empty() {
+        return;
+    }
+    // The way to where a recording begins was not recorded.
+    let recorded = |run: &CaseRun, input: usize| ends(&run.drive.inputs[input][run.lead_in..]);
+    let moves = |run: &CaseRun| {
+        (0..run.drive.inputs.len()).any(|i| {
+            let (low, high) = recorded(run, i);
+            high > low
+        })
+    };
+    if !case.runs.iter().any(moves) {
+        found.unusable.push("no input ever moves: record a programme that uses most of the stroke".to_owned());
+    }
+    for (i, input) in case.scene.file.input.iter().enumerate() {
+        let stroke = case.runs.iter().map(|r| recorded(r, i)).fold(0.0f64, |m, (l, h)| m.max(h - l));
+        let stray = |r: &CaseRun| !strays(&r.drive.inputs[i][r.lead_in..]).is_empty();
+        if let Some(run) = case.runs.iter().find(|r| stray(r)) {
+            found.unusable.push(format!(
+                "{}: samples of {} lie far outside all others; leave cells empty where nothing was measured",
+                run.file, input.channel
+            ));
+        }
+        let is_plunger = input.channel.contains("plunger");
+        if is_plunger && stroke > 0.2 {
+            found.unusable.push(format!(
+                "{} moves by {stroke:.2} m, farther than a syringe is long: say in its [[channel]] which unit the numbers have (unit = \"um\")",
+                input.channel
+            ));
+        } else if is_plunger && stroke > 0.0 && stroke < 2e-5 {
+            found.unusable.push(format!(
+                "{} moves by {:.4} mm only: a wrong unit, or too quiet a programme",
+                input.channel,
+                stroke * 1e3
+            ));
+        }
+    }
+}
+
+fn channels(case: &Case, found: &mut Preflight) {
+    for (c, channel) in case.channels.iter().enumerate() {
+        let values: Vec<f64> =
+            case.runs.iter().flat_map(|r| r.measured[c].iter().copied()).filter(|v| v.is_finite()).collect();
+        let (low, high) = ends(&values);
+        if values.is_empty() {
+            found.unusable.push(format!(
+                "{}: no value was recorded in any run; record it in one, or take the channel out of recordings.toml",
+                channel.column
+            ));
+        } else if high <= low {
+            found.unusable.push(format!("{}: constant at {low}; the sensor was off or saturated", channel.column));
+        } else {
+            let at = |end: f64| values.iter().filter(|v| **v == end).count() as f64 / values.len() as f64;
+            if at(low).max(at(high)) > SATURATED_SHARE {
+                found.warnings.push(format!(
+                    "{}: {:.0} % of its samples stand at one end value: saturated?",
+                    channel.column,
+                    100.0 * at(low).max(at(high))
+                ));
+            }
+        }
+    }
+}
+
+/// How long a recording counts as beginning, s, and how far from the scene it may begin, in deviations of its noise and
+/// as a share of its spread.
+const BEGINNING_S: f64 = 0.3;
+const BEGINS_OFF: f64 = 10.0;
+const BEGINS_OFF_SHARE: f64 = 0.05;
+
+/// How far from the scene a channel begins, in the same way in every run that begins at zero. What only grows in the first moments is
+/// motion, and where the scene itself begins further away from zero (a muscle under tension) its parameters decide on it.
+fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
+    let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
+    let offsets: Vec<f64> = at_zero
+        .filter_map(|(run, residual)| {
+            let until = run.times_s().first()? + BEGINNING_S;
+            let values = run.measured[channel].iter().zip(&residual[channel]);
+            let early = run.times_s().iter().zip(values).take_while(|(t, _)| **t <= until);
+            let known: Vec<(f64, f64)> = early.map(|(_, (m, r))| (*m, *r)).filter(|(_, r)| r.is_finite()).collect();
+            let (measured, first) = *known.first()?;
+            let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
+            let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
+            Some(if is_zero { mean } else { 0.0 })
+        })
+        .collect();
+    let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
+    offsets.iter().all(|o| (o - mean).abs() < 0.2 * mean.abs()).then_some(mean).filter(|m| m.is_finite())
+}
+
+/// A channel whose spread is below so many deviations of its noise shows its noise: it says nothing of units.
+const NOISE_ALONE: f64 = 3.0;
+
+/// Compares each channel's spread with that of the scene as it stands.
+fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), SystemError> {
+    let model = Model::baseline();
+    let start = problem.start(&model, None);
+    let Some(residuals) = problem.residuals(&model, &start) else {
+        refuse_faulty_law(case)?;
+        found.unusable.push("the scene cannot follow the recorded inputs: it diverges".to_owned());
+        return Ok(());
+    };
+    for (c, channel) in case.channels.iter().enumerate() {
+        let mut measured = Vec::new();
+        let mut simulated = Vec::new();
+        for (run, residual) in problem.runs.iter().zip(&residuals) {
+            for (m, r) in run.measured[c].iter().zip(&residual[c]).filter(|(m, r)| m.is_finite() && r.is_finite()) {
+                measured.push(*m);
+                simulated.push(m - r);
+            }
+        }
+        let noise = problem.runs.iter().filter_map(|r| noise_sd(r.times_s(), &r.measured[c])).fold(0.0, f64::max);
+        if spread(&measured) < NOISE_ALONE * noise {
+            continue;
+        }
+        let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);
+        let correlation = correlation(&measured, &simulated);
+        let column = &channel.column;
+        let by_size = unit_by_size(column, ratio);
+        if let Some(BySize::Wrong(words)) = by_size {
+            found.unusable.push(words);
+        } else if correlation < -0.8 {
+            found.unusable.push(format!("{column}: runs against the scene: sign or channel swapped?"));
+        } else if correlation < 0.3 {
+            found
+                .warnings
+                .push(format!("{column}: hardly follows the scene (correlation {correlation:.2}): channels swapped?"));
+        } else {
+            let least_off = (BEGINS_OFF * noise).max(BEGINS_OFF_SHARE * spread(&simulated));
+            let off = begins_off(problem, &residuals, c).filter(|off| off.abs() > least_off);
+            if let Some(BySize::Odd(words)) = by_size {
+                found.warnings.push(words);
+            }
+            found.warnings.extend(off.map(|off| other_zero(column, off)));
+        }
+    }
+    Ok(())
+}
+
+/// Where a law of the scene has no value, it is the law that is wrong and not the recordings: the full scene tells which, and when.
+fn refuse_faulty_law(case: &Case) -> Result<(), SystemError> {
+    let at_fault = case.runs.iter().filter(|run| !run.scene.laws.is_empty()).find_map(|run| played(run).err());
+    at_fault.filter(|error| matches!(error, SystemError::Law { .. })).map_or(Ok(()), Err)
+}
+
+fn played(run: &CaseRun) -> Result<(), SystemError> {
+    let mut simulation = Simulation::new(Scene::clone(&run.scene))?;
+    for (input, values) in run.scene.file.input.iter().zip(&run.drive.inputs) {
+        if let Some(line) = PiecewiseLinear::new(run.times_s(), values) {
+            simulation.set_input(&input.channel, InputSource::Recorded(line));
+        }
+    }
+    record(&mut simulation, &Schedule::at(run.times_s().to_vec())).map(drop)
+}
+
+fn other_zero(column: &str, off: f64) -> String {
+    let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
+    format!(
+        "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
+         absolute pressure), subtract it"
+    )
+}
+
+fn ends(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)))
+}

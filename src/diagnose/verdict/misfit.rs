@@ -1,0 +1,30 @@
+//! How much of what a model leaves is more than noise.
+
+use crate::diagnose::case::noise::structured_excess;
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::search::Found;
+
+/// Residuals by run, channel and time.
+pub type Residuals = Vec<Vec<Vec<f64>>>;
+
+/// Misfit of baseline and best, per sample, and the standard error of such a number.
+#[derive(Clone, Copy, Debug)]
+pub struct Excess {
+    pub baseline: f64,
+    pub best: f64,
+    pub error: f64,
+}
+
+/// Residuals with what was found, and how much of baseline and best is more than noise.
+pub(in crate::diagnose) fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
+    let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
+    let after = whole.residuals(&found.best.model, &found.best.x)?;
+    let (baseline, error) = structured_excess(&before, whole.noise);
+    let (best, _) = structured_excess(&after, whole.noise);
+    Some((after, Excess { baseline, best, error }))
+}
+
+/// Misfit per sample that a fit leaves, and its standard error; `None` where it cannot be simulated.
+pub(in crate::diagnose) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f64)> {
+    Some(structured_excess(&problem.residuals(&fit.model, &fit.x)?, problem.noise))
+}

@@ -1,0 +1,12 @@
+//! Step 5: which of what was found is named, with what probability and in which words, and whether more than noise is left.
+//!
+//! May import `search`, `fit`, `case` and `diagnosis`.
+
+mod known_as;
+pub(super) mod misfit;
+mod named;
+mod written;
+
+pub(super) use misfit::{Excess, Residuals, misfit};
+pub(super) use named::{Confirmed, Open, is_loud, is_said, is_unknown, lost, named, open, unit, verdict};
+pub(super) use written::curve;

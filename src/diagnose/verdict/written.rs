@@ -1,0 +1,191 @@
+//! Laws of an answer in words and numbers: where they act, what they read, what else would do, their curve.
+
+use crate::effects::WrittenLaw;
+use crate::laws::{Law, Symbol};
+
+use super::known_as;
+use crate::diagnose::case::Case;
+use crate::diagnose::diagnosis::{Curve, Form, NamedEffect};
+use crate::diagnose::fit::{Fit, Placed};
+
+/// Points of a curve.
+const POINTS: usize = 101;
+
+/// Law of an effect, if it is one that was written down.
+fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
+    placed.spec().unlisted()
+}
+
+/// Says of an effect where it acts and on what it depends; of a written law also its text with the numbers of the fit.
+pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
+    effect.port = port(placed);
+    if let Some(own) = written(placed) {
+        effect.element = own.law.address.element();
+        effect.acts = own.law.acts.word().to_owned();
+        effect.variables = own.law.variables().iter().map(|v| v.name()).collect();
+        effect.law = with_numbers(&own.law, &own.values(&values(fit, at)));
+        effect.known_as = known_as(own, &values(fit, at));
+        return;
+    }
+    effect.acts = placed.spec().acts.word().to_owned();
+    effect.variables.clone_from(&placed.spec().variables);
+}
+
+/// The port that an effect acts at, as answers have it.
+pub fn port(placed: &Placed) -> String {
+    if let Some(own) = written(placed) {
+        return own.law.address.to_string();
+    }
+    let port = &placed.spec().port;
+    match (&placed.channel, port.split_once('.')) {
+        (Some(channel), _) => format!("{port}.{channel}"),
+        (None, Some((element, term))) if placed.element.is_numbered && placed.element.kind.name() == element => {
+            format!("{}.{term}", placed.element)
+        }
+        _ => port.clone(),
+    }
+}
+
+/// All numbers of an effect of a fit.
+fn values(fit: &Fit, effect: usize) -> Vec<f64> {
+    let calibration = fit.x.len() - fit.model.effect_numbers();
+    fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
+}
+
+/// A law's expression with numbers in place of its parameters.
+fn with_numbers(law: &Law, values: &[f64]) -> String {
+    let mut text = String::new();
+    let mut word = String::new();
+    for c in law.expression.chars().chain([' ']) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        match law.parameter(&word) {
+            Some(p) => push_number(&mut text, values[p]),
+            None => text += &word,
+        }
+        word.clear();
+        text.push(c);
+    }
+    text.trim_end().to_owned()
+}
+
+/// Adds a number with six significant digits; after a plus a negative one becomes a difference.
+fn push_number(text: &mut String, value: f64) {
+    let is_difference = value < 0.0 && text.ends_with("+ ");
+    if is_difference {
+        text.truncate(text.len() - 2);
+        text.push_str("- ");
+    }
+    let value = if is_difference { -value } else { value };
+    // What was written with six digits is read as a number.
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    *text += &match rounded.abs() {
+        size if size == 0.0 || (1e-3..1e6).contains(&size) => format!("{rounded}"),
+        _ => format!("{rounded:e}"),
+    };
+}
+
+/// The other laws that explain as much, with what their chi² is higher by, in units of `unit`.
+pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
+    let form = |fit: &Fit| {
+        let at = fit.model.effects.len().checked_sub(1)?;
+        let own = written(&fit.model.effects[at])?;
+        Some(Form {
+            port: own.law.address.to_string(),
+            acts: own.law.acts.word().to_owned(),
+            law: with_numbers(&own.law, &own.values(&values(fit, at))),
+            known_as: known_as(own, &values(fit, at)),
+            score_difference: (fit.cost - against) / unit,
+        })
+    };
+    fits.iter().filter_map(form).collect()
+}
+
+/// A written law over its variable, as far as the runs visited it; its band is that of its own numbers.
+pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
+    let own = written(&fit.model.effects[at])?;
+    let [variable] = own.law.variables()[..] else { return None };
+    let visited = case.runs.iter().filter_map(|run| {
+        let setting = fit.model.setting(case, run, &fit.x);
+        run.twin.visited(&run.drive, &setting, std::slice::from_ref(&own.law))
+    });
+    let (low, high) = visited
+        .flatten()
+        .flatten()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if low >= high || !own.law.states.is_empty() {
+        return None;
+    }
+    let x: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect();
+    let best = values(fit, at);
+    let over = |numbers: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, numbers, x)).collect() };
+    let y = over(&best);
+    let half = band(fit, at, &best, &y, &over);
+    let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
+    let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
+    Some(Curve { variable: variable.name(), x, y, low, high })
+}
+
+/// What a law is called by those who know it.
+fn known_as(own: &WrittenLaw, numbers: &[f64]) -> Option<String> {
+    known_as::known_as(&own.law, &own.values(numbers), &|x| value(own, numbers, x)).map(str::to_owned)
+}
+
+/// Value of a law at its variable, with the numbers of an effect.
+fn value(own: &WrittenLaw, numbers: &[f64], x: f64) -> f64 {
+    let values = own.values(numbers);
+    let read = |symbol: &Symbol| match symbol {
+        Symbol::Parameter(p) => values[*p],
+        Symbol::Constant(c) => *c,
+        Symbol::Variable(_) | Symbol::State(_) => x,
+    };
+    let by_symbol: Vec<f64> = own.law.symbols.iter().map(read).collect();
+    own.law.programs.value.value(&by_symbol)
+}
+
+/// Half of the 95 % band of a curve, from the covariance of the law's fitted numbers.
+fn band(fit: &Fit, at: usize, best: &[f64], y: &[f64], over: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let own = fit.model.places().into_iter().enumerate().filter(|(_, (effect, _))| *effect == at);
+    let fitted: Vec<(usize, usize)> = own.map(|(k, (_, i))| (calibration + k, i)).collect();
+    let slopes: Vec<Vec<f64>> = fitted
+        .iter()
+        .map(|&(_, i)| {
+            let step = 1e-4 * best[i].abs().max(f64::MIN_POSITIVE);
+            let mut moved = best.to_vec();
+            moved[i] += step;
+            over(&moved).iter().zip(y).map(|(a, b)| (a - b) / step).collect()
+        })
+        .collect();
+    let variance = |k: usize| -> f64 {
+        let pairs = fitted.iter().enumerate().flat_map(|(a, &(row, _))| {
+            let slopes = &slopes;
+            fitted
+                .iter()
+                .enumerate()
+                .map(move |(b, &(column, _))| slopes[a][k] * slopes[b][k] * fit.covariance[(row, column)])
+        });
+        pairs.sum()
+    };
+    (0..y.len()).map(|k| 1.96 * variance(k).max(0.0).sqrt()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::{LawTable, Surroundings};
+
+    #[test]
+    fn a_law_is_written_with_its_numbers() {
+        let table: LawTable = toml::from_str(
+            "name = 'x'\nport = 'muscle.wall'\nscales = '1 + a * exp(-abs(time_s/scale_s))'\n\
+             parameter.a = { value = 1.0 }\nparameter.scale_s = { value = 1.0 }",
+        )
+        .expect("TOML");
+        let law = table.law(&Surroundings::default()).expect("a law");
+        assert_eq!(with_numbers(&law, &[0.5, 20.0]), "1 + 0.5 * exp(-abs(time_s/20))");
+        assert_eq!(with_numbers(&law, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
+    }
+}
