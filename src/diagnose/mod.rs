@@ -126,16 +126,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
-    let mut effects = verdict::named(&found, &complete, left);
-    add_curves(&case, &complete, &mut effects);
-    let sizes = consistency::sizes_by_run(&case, &complete, &noise);
-    let contradicted = consistency::report(sizes, &complete, &mut effects, &mut warnings);
-    let is_open_set = !case.is_without(Step::OpenSet);
-    let is_in_part = confirmed == Confirmed::InPart || found.withheld.is_some();
-    let verdict = match is_open_set && is_in_part {
-        true => Verdict::UnknownPhysics,
-        false => verdict::verdict(&found, &effects, excess, is_open_set),
-    };
+    let (effects, contradicted) = named(&case, (&found, &complete, left), &noise, &mut warnings);
+    let verdict = judged(&case, (&found, &effects), confirmed, excess);
     let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
         warnings.push(SEALED_ALONE.to_owned());
@@ -189,6 +181,35 @@ fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experime
         return experiment::confirm(whole, &found.best, found.rivals.iter().flatten());
     }
     experiment::settle(whole, &found.best, &open)
+}
+
+/// The effects of the answer with their curves and their sizes by run, and the numbers in which runs contradict each other; `left` as in
+/// [`next_experiment`].
+fn named(
+    case: &Case,
+    (found, complete, left): (&Found, &Fit, f64),
+    noise: &[Noise],
+    warnings: &mut Vec<String>,
+) -> (Vec<NamedEffect>, Vec<String>) {
+    let mut effects = verdict::named(found, complete, left);
+    add_curves(case, complete, &mut effects);
+    let sizes = consistency::sizes_by_run(case, complete, noise);
+    let contradicted = consistency::report(sizes, complete, &mut effects, warnings);
+    (effects, contradicted)
+}
+
+/// The verdict: what is explained in part, or known and withheld, is unknown physics.
+fn judged(
+    case: &Case,
+    (found, effects): (&Found, &[NamedEffect]),
+    confirmed: Confirmed,
+    excess: verdict::Excess,
+) -> Verdict {
+    let is_open_set = !case.is_without(Step::OpenSet);
+    if is_open_set && (confirmed == Confirmed::InPart || found.withheld.is_some()) {
+        return Verdict::UnknownPhysics;
+    }
+    verdict::verdict(found, effects, excess, is_open_set)
 }
 
 /// Gives every effect that the complete fit has the curve of its law.

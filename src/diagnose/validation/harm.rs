@@ -174,3 +174,44 @@ fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option
     });
     Some(of_channel.sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::made;
+    use crate::diagnose::diagnosis::ChannelProof;
+    use crate::diagnose::fit::Model;
+    use crate::diagnose::grammar;
+    use crate::diagnose::search::Begun;
+    use crate::scene::Override;
+
+    /// A law that has no value after two seconds: the scene.toml that holds it could not be run.
+    #[test]
+    fn what_the_full_scene_cannot_be_played_with_is_known_and_withheld() {
+        let law = "law.worn={port=\"muscle.pull\", adds=\"size_n*ln(1 - time_s/2)\", candidate=true, parameter={size_n={value=0.1}}}";
+        let own = [Override::parse(law).expect("a law")];
+        let case = made::recorded_for("muscle_bench", [&[], &own], &["plunger_mm"], &["elongation_mm"]);
+        let noise = [Noise::white(0.01)];
+        let open = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let calibrated = Model::baseline();
+        let baseline = open.fit(&calibrated, &open.start(&calibrated, None)).expect("played");
+        let mut found = Begun::with_one(&open, baseline.clone(), &[], &|_| {}).found();
+        let channel = ChannelProof { rmse_baseline: 0.2, rmse_corrected: 0.1, noise_sd: 0.01 };
+        let mut proof = Proof { gap_closed: 0.5, ..Proof::default() };
+        proof.channels.insert("elongation_mm".to_owned(), channel);
+        let mut warnings = Vec::new();
+
+        without_unplayable(&case, &noise, &mut found, &mut proof, &mut warnings);
+        assert!(found.withheld.is_none() && warnings.is_empty(), "the calibration alone does no harm: {warnings:?}");
+
+        let worn = grammar::candidate(&case, &case.scene.candidates[0]);
+        let model = calibrated.plus(&worn.placed, &[0.1]);
+        found.best = Fit { model: model.clone(), x: [baseline.x.as_slice(), &[0.1]].concat(), ..baseline.clone() };
+        without_unplayable(&case, &noise, &mut found, &mut proof, &mut warnings);
+        assert_eq!(found.withheld.as_ref().map(|known| known.best.model.title()), Some(model.title()));
+        assert!(found.best.model.effects.is_empty() && found.best.x == baseline.x);
+        assert_eq!((proof.gap_closed, proof.channels["elongation_mm"].rmse_corrected), (0.0, 0.2));
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert!(warning.starts_with("the full scene cannot be played with worn in muscle"), "{warning}");
+    }
+}
