@@ -188,7 +188,8 @@ mod tests {
     /// A law that has no value after two seconds: the scene.toml that holds it could not be run.
     #[test]
     fn what_the_full_scene_cannot_be_played_with_is_known_and_withheld() {
-        let law = "law.worn={port=\"muscle.pull\", adds=\"size_n*ln(1 - time_s/2)\", candidate=true, parameter={size_n={value=0.1}}}";
+        let law = "law.worn={port=\"muscle.pull\", adds=\"size_n*ln(1 - time_s/end_s)\", candidate=true, \
+            parameter={size_n={value=0.1}, end_s={value=2.0}}}";
         let own = [Override::parse(law).expect("a law")];
         let case = made::recorded_for("muscle_bench", [&[], &own], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.01)];
@@ -205,8 +206,9 @@ mod tests {
         assert!(found.withheld.is_none() && warnings.is_empty(), "the calibration alone does no harm: {warnings:?}");
 
         let worn = grammar::candidate(&case, &case.scene.candidates[0]);
-        let model = calibrated.plus(&worn.placed, &[0.1]);
-        found.best = Fit { model: model.clone(), x: [baseline.x.as_slice(), &[0.1]].concat(), ..baseline.clone() };
+        let model = calibrated.plus(&worn.placed, &worn.values);
+        found.best =
+            Fit { model: model.clone(), x: [baseline.x.as_slice(), &worn.values].concat(), ..baseline.clone() };
         without_unplayable(&case, &noise, &mut found, &mut proof, &mut warnings);
         assert_eq!(found.withheld.as_ref().map(|known| known.best.model.title()), Some(model.title()));
         assert!(found.best.model.effects.is_empty() && found.best.x == baseline.x);
