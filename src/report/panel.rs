@@ -1,9 +1,8 @@
 //! One plot: lines and bands over a pair of axes. Every figure is made of these.
 
 use super::axis::Axis;
-use super::decimate::decimate;
+use super::kit::decimate;
 use super::svg::{Anchor, GREY, Rect, Svg, cut_to, text_width};
-use super::thin::{TOLERANCE_PX, thin};
 
 const TITLE_SIZE: f64 = 12.0;
 const TEXT_SIZE: f64 = 11.0;
@@ -13,7 +12,10 @@ const Y_LABEL_ROOM: f64 = 24.0;
 const RIGHT_MARGIN: f64 = 14.0;
 const LINE_HEIGHT: f64 = 16.0;
 const TICK_ROOM: f64 = 18.0;
-const POINTS_PER_LINE: usize = 1500;
+const POINTS_PER_LINE: usize = 500;
+/// Size of a dot, px.
+const DOT: f64 = 5.0;
+const MOST_DOTS: usize = 2000;
 const GRID: &str = "#e4e4e4";
 
 /// A line over x.
@@ -42,7 +44,18 @@ pub struct Band {
     pub high: f64,
 }
 
-/// A plot with titles, axes, lines and bands.
+/// An upright line at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Its name in the legend; empty: not in the legend.
+    pub label: String,
+    /// Its colour, as SVG writes it.
+    pub colour: &'static str,
+    /// Where, in units of x.
+    pub at: f64,
+}
+
+/// A plot with titles, axes, lines, points, bands and marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
     /// Lines of title, the first one larger; may be empty.
@@ -55,22 +68,28 @@ pub struct Panel {
     pub behind: Vec<Series>,
     /// Drawn in this order.
     pub series: Vec<Series>,
+    /// Drawn last, a dot at each point.
+    pub points: Vec<Series>,
     /// Drawn below the lines.
     pub bands: Vec<Band>,
+    /// Drawn below the lines.
+    pub marks: Vec<Mark>,
 }
 
 impl Panel {
     /// What has a name in the legend, with its colour and opacity.
     pub(super) fn legend(&self) -> Vec<(&str, &'static str, f64)> {
-        let lines = self.lines().map(|(s, _)| (s.label.as_str(), s.colour, 1.0));
+        let lines = self.all().map(|s| (s.label.as_str(), s.colour, 1.0));
+        let marks = self.marks.iter().map(|m| (m.label.as_str(), m.colour, 1.0));
         let bands = self.bands.iter().map(|b| (b.label.as_str(), b.colour, 0.25));
-        lines.chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
+        lines.chain(marks).chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
     }
 
     /// Draws title, axes and lines within a rectangle.
     pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
         let (plot, y_axis) = self.plot_area(outer);
-        let x_axis = Axis::over(self.lines().flat_map(|(s, _)| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
+        let x_axis =
+            Axis::over(self.all().flat_map(|s| s.x.iter().copied()), self.x_margin(), (plot.width / 70.0) as usize);
         self.draw_text(svg, outer, plot);
         draw_x_ticks(svg, plot, &x_axis);
         draw_y_ticks(svg, plot, &y_axis);
@@ -83,11 +102,17 @@ impl Panel {
             let rect = Rect { y: top, height: bottom - top, ..plot };
             svg.fill(rect, band.colour, 0.25);
         }
+        for mark in &self.marks {
+            svg.line((at(mark.at, 0.0).0, plot.y), (at(mark.at, 0.0).0, plot.bottom()), mark.colour, 1.5);
+        }
         for (series, width) in self.lines() {
             for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
                 let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&thin(&points, TOLERANCE_PX), series.colour, width);
+                svg.polyline(&points, series.colour, width);
             }
+        }
+        for (series, x, y) in self.points.iter().flat_map(dots) {
+            svg.polyline(&[at(x, y)], series.colour, DOT);
         }
         svg.frame(plot, GREY);
     }
@@ -97,8 +122,17 @@ impl Panel {
         self.behind.iter().map(|s| (s, 3.6)).chain(self.series.iter().map(|s| (s, 1.2)))
     }
 
+    fn all(&self) -> impl Iterator<Item = &Series> {
+        self.lines().map(|(s, _)| s).chain(&self.points)
+    }
+
+    /// Dots are not cut by the frame.
+    fn x_margin(&self) -> f64 {
+        if self.points.is_empty() { 0.0 } else { 0.02 }
+    }
+
     fn y_values(&self) -> impl Iterator<Item = f64> {
-        let lines = self.lines().flat_map(|(s, _)| s.y.iter().copied());
+        let lines = self.all().flat_map(|s| s.y.iter().copied());
         lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
     }
 
@@ -130,6 +164,13 @@ impl Panel {
         let label = cut_to(&self.y_label, TEXT_SIZE, plot.height + 24.0);
         svg.text_up((outer.x + 12.0, middle_y), TEXT_SIZE, &label);
     }
+}
+
+/// Where the dots of a series are: evenly fewer of very many, which would be a blot.
+fn dots(series: &Series) -> impl Iterator<Item = (&Series, f64, f64)> {
+    let every = series.x.len().div_ceil(MOST_DOTS).max(1);
+    let there = series.x.iter().zip(&series.y).filter(|(x, y)| x.is_finite() && y.is_finite());
+    there.step_by(every).map(move |(x, y)| (series, *x, *y))
 }
 
 fn draw_x_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::kit::escaped;
+
 /// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 pub const BLUE: &str = "#0072b2";
 /// See [`BLUE`].
@@ -14,6 +16,22 @@ pub const ORANGE: &str = "#e69f00";
 pub const PURPLE: &str = "#cc79a7";
 /// For what stands back: residuals, axes.
 pub const GREY: &str = "#444444";
+/// For what is only compared with: other models, what was tried.
+pub const SILVER: &str = "#bdbdbd";
+/// Measured lines are broad and pale: the simulated ones lie on them and must not hide them.
+pub const MEASURED: &str = "#8fc4e8";
+
+/// What the style of a page calls them: it has others of the same name in the dark.
+pub(super) const COLOUR_NAMES: [(&str, &str); 8] = [
+    (BLUE, "blue"),
+    (VERMILION, "vermilion"),
+    (GREEN, "green"),
+    (ORANGE, "orange"),
+    (PURPLE, "purple"),
+    (GREY, "grey"),
+    (SILVER, "silver"),
+    (MEASURED, "measured"),
+];
 
 /// Width of a letter over the font size, on the wide side: room is reserved by it.
 const LETTER_WIDTH: f64 = 0.6;
@@ -152,23 +170,6 @@ impl Svg {
     }
 }
 
-/// Text as SVG and HTML take it.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // Neither format allows other control characters.
-            control if control.is_control() => out.push(' '),
-            other => out.push(other),
-        }
-    }
-    out
-}
-
 /// Width that a text needs at most, roughly, px.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * LETTER_WIDTH * size
@@ -190,8 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_escaped_and_cut() {
-        assert_eq!(escaped("a<b & \"c\"\n"), "a&lt;b &amp; &quot;c&quot; ");
+    fn text_is_cut() {
         assert_eq!(cut_to("abcdefghij", 10.0, 30.0), "abcd…");
         assert_eq!(cut_to("abc", 10.0, 30.0), "abc");
     }
