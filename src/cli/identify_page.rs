@@ -1,7 +1,7 @@
 //! The page of an identification: loop, history, residual, parameters, warnings.
 
 use smam::identify::loops::{Identification, LoopRun};
-use smam::report::{BLUE, HtmlPage, Line, MEASURED, Panel, Plot, Series, TimeSeries, quantity, to_place};
+use smam::report::{HtmlPage, Line, MEASURED, Panel, Plot, Series, TimeSeries, VERMILION, quantity, to_place};
 
 use super::identify::{Loops, unseen};
 
@@ -98,7 +98,7 @@ fn figures(page: &mut HtmlPage, found: &Identification, run: &LoopRun) {
         x_label: "plunger (mm)".to_owned(),
         y_label: "elongation (mm)".to_owned(),
         behind: vec![over_input("measured", MEASURED, &run.output_mm)],
-        series: vec![over_input(found.form.name(), BLUE, &model)],
+        series: vec![over_input(found.form.name(), VERMILION, &model)],
         ..Panel::default()
     };
     let line = |label: &str, colour, values: &[f64]| Line { label: label.to_owned(), colour, values: values.to_vec() };
@@ -108,7 +108,7 @@ fn figures(page: &mut HtmlPage, found: &Identification, run: &LoopRun) {
         y_label: "elongation (mm)".to_owned(),
         unit: "mm".to_owned(),
         time_s: run.time_s.clone(),
-        lines: vec![line("measured", MEASURED, &run.output_mm), line(found.form.name(), BLUE, &model)],
+        lines: vec![line("measured", MEASURED, &run.output_mm), line(found.form.name(), VERMILION, &model)],
         noise_sd: found.noise_mm,
     };
     page.grid(|page| {

@@ -24,6 +24,7 @@ pub fn exploration(plan: &Plan, table: &Table, best: &[usize]) -> Exploration {
             label: if scale.symbol.is_empty() { v.key.clone() } else { format!("{} ({})", v.key, scale.symbol) },
             factor: scale.factor,
             values,
+            marks: v.mark.iter().map(|m| (m.label.clone(), m.at / scale.factor)).collect(),
         }
     };
     let measure =
@@ -35,11 +36,19 @@ pub fn exploration(plan: &Plan, table: &Table, best: &[usize]) -> Exploration {
         keys: file.vary.iter().map(key).collect(),
         measures: file.measure.iter().map(measure).collect(),
         index: ran.iter().map(|&i| table.rows[i].index).collect(),
+        objectives: objectives(plan),
         best: best.iter().filter_map(place).collect(),
         faint: ran.iter().enumerate().filter(|(_, row)| !is_sound(plan, &table.rows[**row])).map(|(i, _)| i).collect(),
         is_grid: file.sampling == SamplingSpec::Grid,
         table: "table.csv".to_owned(),
     }
+}
+
+/// The first two objectives, as numbers of measures.
+fn objectives(plan: &Plan) -> Option<[usize; 2]> {
+    let [one, other, ..] = plan.file.objective.as_slice() else { return None };
+    let place = |name: &str| plan.file.measure.iter().position(|m| m.name == name);
+    Some([place(&one.measure)?, place(&other.measure)?])
 }
 
 /// What all points have in common.

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use smam::report::{HtmlPage, Plot, figure_svg};
+use smam::report::{HtmlPage, figure_svg};
 use smam::sweep::{Goal, MeasureSpec, Plan, SamplingSpec, Sensitivity, Table, best, sensitivity};
 
 use super::CliError;
@@ -40,10 +40,6 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         best_points(&mut page, plan, table, &best);
     }
     if let Some(panel) = front_panel(plan, table, &best) {
-        page.figure(
-            Plot::from(&panel),
-            "The best points: within the limits, and beaten by no other in all objectives.",
-        );
         write(&folder.join("front.svg"), &figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0))?;
     }
     if let Some(found) = sensitivity(plan, table) {
@@ -55,7 +51,11 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         page.panels(&panels, "A gap is a point that failed.");
     }
     page.heading("Explore the points");
-    page.figure(exploration(plan, table, &best), "");
+    let caption = match best.is_empty() {
+        true => "",
+        false => "Best (★): within the limits, and beaten by no other in all objectives.",
+    };
+    page.figure(exploration(plan, table, &best), caption);
     page.heading("Extremes");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
     write(&folder.join("sweep.svg"), &figure_svg(&panels, SIZE.0, SIZE.1))?;

@@ -1,9 +1,9 @@
 //! Runs and channels, measured and simulated: what `smam compare` and a diagnosis show of a recording.
 
 use super::axis::three_digits;
+use super::colour::MEASURED;
 use super::kit::{Choice, Line, TimeSeries};
 use super::quantity::with;
-use super::svg::MEASURED;
 use crate::recording::parse_column;
 
 /// One run.

@@ -4,10 +4,10 @@ use crate::diagnose::{Curve, NamedEffect};
 use crate::recording::parse_column;
 
 use super::axis::three_digits;
+use super::colour::BLUE;
 use super::formula::Formula;
 use super::kit::{Area, HtmlPage, Plot};
 use super::panel::{Panel, Series};
-use super::svg::BLUE;
 
 /// Adds a part for each law of an answer.
 pub(super) fn laws(page: &mut HtmlPage, effects: &[NamedEffect]) {

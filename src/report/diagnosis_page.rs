@@ -6,13 +6,13 @@ use crate::recording::parse_column;
 use super::HtmlPage;
 use super::axis::three_digits;
 use super::channel_figure::{ComparedChannel, ComparedRun, choices};
+use super::colour::{BLUE, VERMILION};
 use super::diagnosis_law::laws;
 use super::diagnosis_next::next;
 use super::diagnosis_sure::certainty;
 use super::diagnosis_where::{location, run_name};
 use super::diagnosis_words::{capital, estimate, is_good, last_name, smallest_words};
 use super::quantity::with;
-use super::svg::{BLUE, VERMILION};
 use super::symbols::greek;
 
 /// One self-contained page, readable by a person who was not there.
@@ -21,7 +21,8 @@ pub fn diagnosis_page(outcome: &Outcome) -> HtmlPage {
     let names: Vec<&str> = d.recordings.iter().map(|folder| last_name(folder)).collect();
     let mut page = HtmlPage::new(&format!("Diagnosis of {}", names.join(", ")));
     page.small(&format!("recordings: {}; scene: {}", d.recordings.join(", "), d.scene));
-    page.verdict(&capital(&d.verdict.to_string().replace('_', " ")), &d.summary, is_good(d.verdict));
+    let verdict = format!("{}.", capital(&d.verdict.to_string().replace('_', " ")));
+    page.verdict(&verdict, &d.summary, is_good(d.verdict));
     curves(&mut page, outcome);
     location(&mut page, outcome);
     what(&mut page, outcome);

@@ -2,9 +2,9 @@
 
 use crate::diagnose::{ChannelProof, NamedEffect, Outcome};
 
+use super::colour::{BLUE, VERMILION};
 use super::diagnosis_words::estimate;
 use super::kit::{Bar, BarPanel, HtmlPage};
-use super::svg::{BLUE, VERMILION};
 
 /// Adds the section.
 pub(super) fn certainty(page: &mut HtmlPage, outcome: &Outcome) {

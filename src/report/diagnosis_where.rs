@@ -4,9 +4,9 @@ use crate::diagnose::{CaseRun, Direction, Outcome};
 use crate::recording::parse_column;
 
 use super::axis::three_digits;
+use super::colour::VERMILION;
 use super::diagnosis_words::region_words;
 use super::kit::{Bar, BarPanel, HeatMap, HtmlPage, Lane, Window};
-use super::svg::VERMILION;
 
 /// Adds the section.
 pub(super) fn location(page: &mut HtmlPage, outcome: &Outcome) {

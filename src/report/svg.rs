@@ -4,41 +4,12 @@ use std::fmt::Write as _;
 
 use super::kit::escaped;
 
-/// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
-pub const BLUE: &str = "#0072b2";
-/// See [`BLUE`].
-pub const VERMILION: &str = "#d55e00";
-/// See [`BLUE`].
-pub const GREEN: &str = "#009e73";
-/// See [`BLUE`].
-pub const ORANGE: &str = "#e69f00";
-/// See [`BLUE`].
-pub const PURPLE: &str = "#cc79a7";
-/// For what stands back: residuals, axes.
-pub const GREY: &str = "#444444";
-/// For what is only compared with: other models, what was tried.
-pub const SILVER: &str = "#bdbdbd";
-/// Measured lines are broad and pale: the simulated ones lie on them and must not hide them.
-pub const MEASURED: &str = "#8fc4e8";
-
-/// What the style of a page calls them: it has others of the same name in the dark.
-pub(super) const COLOUR_NAMES: [(&str, &str); 8] = [
-    (BLUE, "blue"),
-    (VERMILION, "vermilion"),
-    (GREEN, "green"),
-    (ORANGE, "orange"),
-    (PURPLE, "purple"),
-    (GREY, "grey"),
-    (SILVER, "silver"),
-    (MEASURED, "measured"),
-];
-
 /// Width of a letter over the font size, on the wide side: room is reserved by it.
 const LETTER_WIDTH: f64 = 0.6;
 
 /// A rectangle on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
+pub(super) struct Rect {
     /// Left edge, px.
     pub x: f64,
     /// Upper edge, px.
@@ -199,7 +170,7 @@ mod tests {
     #[test]
     fn file_is_closed_and_sized() {
         let mut svg = Svg::new(20.0, 10.0);
-        svg.polyline(&[(1.0, 2.0)], BLUE, 1.0);
+        svg.polyline(&[(1.0, 2.0)], "#000000", 1.0);
         let text = svg.finish();
         assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
         assert!(text.contains(r#"viewBox="0 0 20 10""#));

@@ -60,6 +60,6 @@ def pages(smam, folder):
         (folder / "sweep_1" / "sweep.html", [explore.cursor_reads, *points]),
         (folder / "sweep_2" / "sweep.html", [explore.cursor_reads, explore.map_reads, *points]),
         (folder / "sweep_3" / "sweep.html", [explore.cursor_reads, explore.keys_change, *points]),
-        (folder / "identification" / "identify.html", [explore.cursor_reads, explore.zoom_and_back, explore.lines_off_and_on]),
+        (folder / "identification" / "identify.html", [explore.cursor_reads, functools.partial(explore.zoom_and_back, which=1), explore.lines_off_and_on]),
         (folder / "reproduction" / "reproduce.html", [explore.cursor_reads, explore.zoom_and_back, explore.lines_off_and_on]),
     ]

@@ -19,6 +19,8 @@ pub struct Key {
     pub factor: f64,
     /// In the scene's units, with all digits: they go into commands.
     pub values: Vec<f64>,
+    /// Values to be marked, in the unit shown, and what they are.
+    pub marks: Vec<(String, f64)>,
 }
 
 /// What was measured.
@@ -41,6 +43,9 @@ pub struct Exploration {
     pub measures: Vec<Measure>,
     /// Numbers of the points.
     pub index: Vec<u64>,
+    /// Measures (by their number) that are to be greatest or least, where there are two.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub objectives: Option<[usize; 2]>,
     /// Rows that no other beats.
     pub best: Vec<usize>,
     /// Rows that do not count.

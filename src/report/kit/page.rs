@@ -265,7 +265,7 @@ mod tests {
         assert!(text.contains("<p>a &amp; b, see <code>smam run</code></p>"));
         assert!(text.contains("<p class=\"first good\"><strong>adequate</strong> nothing &lt;is&gt; missing</p>"));
         // Without a figure the plotting library is not in it.
-        assert!(!text.contains("uPlot") && text.contains("default-src 'none'"));
+        assert!(!text.contains("Permission is hereby granted") && text.contains("default-src 'none'"));
         assert!(text.ends_with("</html>\n"));
     }
 

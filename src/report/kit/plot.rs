@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use super::decimate::decimate;
 use super::rounding::rounded;
 use super::text::csv_cell;
-use crate::report::svg::COLOUR_NAMES;
+use crate::report::colour::COLOUR_NAMES;
 use crate::report::{Panel, Series};
 
 /// Points of a line that a page holds at most; see [`MOST_KEPT`].

@@ -19,6 +19,7 @@ pub(super) const SCRIPT: &str = concat!(
     include_str!("script/map.js"),
     include_str!("script/parallel.js"),
     include_str!("script/point_table.js"),
+    include_str!("script/point_plots.js"),
     include_str!("script/exploration.js"),
     include_str!("script/start.js"),
     "})();\n"

@@ -48,11 +48,11 @@ function drawMap(place, points, measure, pick) {
   const { low, high } = shares(measure.values);
   const scale = element("span", { class: "scale" }, digits(low, 4), element("i"), digits(high, 4));
   place.querySelector(".tools").prepend(scale);
-  const reach = values => { const half = halfStep(values); return (_, a, b) => [a - half, b + half]; };
+  const cells = values => { const half = halfStep(values); return (_, a, b) => [a - half, b + half]; };
   const traces = [{ x, y, colour: "heat", style: "points" }];
   const plot = scatterInto(around.plot(figure.y_label), 320, figure, traces, (trace, i) => {
     around.read(trace === null ? "" : [reading(figure.x_label, x[i]), reading(figure.y_label, y[i]), reading(measure.label, measure.values[i])].join(" · "));
-  }, { painters: [cellPainter(x, y, measure.values)], ranges: [reach(x), reach(y)] });
-  onPick(plot, (_, i) => pick(i));
+  }, { painters: [cellPainter(x, y, measure.values)], ranges: [cells(x), cells(y)], reach: Infinity });
+  onPick(plot, (_, i) => pick(i), Infinity);
   around.onWhole(() => plot.setData(plot.data));
 }

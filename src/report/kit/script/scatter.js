@@ -47,9 +47,9 @@ function paintPoints(ctx, xs, ys, at) {
 const REACH = 40;
 
 /** Number of the trace, and of its point, that is nearest to the cursor. */
-function nearestPoint(plot) {
+function nearestPoint(plot, reach = REACH) {
   const { left, top } = plot.cursor;
-  let best = { trace: null, point: null, square: REACH * REACH };
+  let best = { trace: null, point: null, square: reach * reach };
   for (let k = 1; k < plot.data.length && left >= 0; k++) {
     const [xs, ys] = plot.data[k];
     for (let i = 0; plot.series[k].show && i < xs.length; i++) {
@@ -62,8 +62,8 @@ function nearestPoint(plot) {
   return best;
 }
 
-/** A scatter plot of traces; `onRead(trace, point)` hears what the cursor is at; painters and ranges may be others. */
-function scatterInto(host, height, figure, traces, onRead, { painters = traces.map(painter), ranges } = {}) {
+/** A scatter plot of traces; `onRead(trace, point)` hears what the cursor is at; painters, ranges and its reach may be others. */
+function scatterInto(host, height, figure, traces, onRead, { painters = traces.map(painter), ranges, reach } = {}) {
   let hit = { trace: null, point: null };
   const facets = [{ scale: "x", auto: true }, { scale: "y", auto: true }];
   const range = (_, low, high) => padded(low, high, 0.04);
@@ -77,7 +77,7 @@ function scatterInto(host, height, figure, traces, onRead, { painters = traces.m
       drag: { x: true, y: true, uni: 20 },
       points: { size: 9, fill: (u, i) => colour(traces[i - 1].colour) },
       dataIdx: (u, i) => {
-        if (i === 1) hit = nearestPoint(u);
+        if (i === 1) hit = nearestPoint(u, reach);
         return hit.trace === i ? hit.point : null;
       },
     },
