@@ -33,7 +33,9 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 
 function fit() {
   repainted.forEach(paint => paint());
-  drawn.forEach((host, plot) => plot.setSize({ width: Math.max(host.clientWidth, 160), height: plot.height }));
+  // Two figures to a sheet.
+  const share = root.classList.contains("paper") ? 0.72 : 1;
+  drawn.forEach(({ host, height }, plot) => plot.setSize({ width: Math.max(host.clientWidth, 160), height: Math.round(share * height) }));
 }
 
 addEventListener("beforeprint", () => {

@@ -1,7 +1,7 @@
 // Colours and axes, which follow the page's style: light, dark, on paper.
 
 const root = document.documentElement;
-/** All plots that were drawn, with the element that holds each. */
+/** All plots that were drawn, with the element that holds each and its height there. */
 const drawn = new Map();
 
 const colour = name => (name.startsWith("#") ? name : getComputedStyle(root).getPropertyValue(`--${name}`).trim());
@@ -42,7 +42,7 @@ function padded(low, high, share) {
 function plotInto(host, height, options, data) {
   const size = () => ({ width: Math.max(host.clientWidth, 160), height });
   const plot = new uPlot({ ...size(), legend: { show: false }, ...options }, data, host);
-  drawn.set(plot, host);
+  drawn.set(plot, { host, height });
   new ResizeObserver(() => host.clientWidth > 0 && host.clientWidth !== plot.width && plot.setSize(size())).observe(host);
   onTouch(plot);
   return plot;
