@@ -136,7 +136,7 @@ fn page(
         page.paragraph("Fitted to the runs that are not held out:");
         page.table(&["parameter", "value", "95 % interval"], &fitted_rows(report));
     }
-    page.chooser(&choices(figures));
+    page.chooser(&choices(figures), 0);
     page.heading("Errors");
     let rows: Vec<Vec<String>> =
         runs.iter().zip(fits).flat_map(|(run, fits)| fits.iter().map(|fit| error_row(&title(&run.run), fit))).collect();

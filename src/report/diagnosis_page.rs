@@ -48,7 +48,18 @@ fn curves(page: &mut HtmlPage, outcome: &Outcome) {
     let runs = outcome.case.runs.iter().enumerate();
     let compared: Vec<ComparedRun> =
         runs.map(|(i, run)| compared(outcome, run, &before[i], with_after.then_some(&after[i]))).collect();
-    page.chooser(&choices(&compared));
+    page.chooser(&choices(&compared), furthest_off(outcome, before));
+}
+
+/// Of the figures of all runs and channels, the one in which the calibrated scene is furthest off for its noise.
+fn furthest_off(outcome: &Outcome, residuals: &[Vec<Vec<f64>>]) -> usize {
+    let over_noise = |(channel, residuals): (usize, &Vec<f64>)| {
+        let finite: Vec<f64> = residuals.iter().copied().filter(|r| r.is_finite()).collect();
+        let mean = finite.iter().map(|r| r * r).sum::<f64>() / finite.len() as f64;
+        (!finite.is_empty()).then(|| mean / outcome.noise[channel].sd.powi(2))
+    };
+    let all = residuals.iter().flat_map(|run| run.iter().enumerate().filter_map(over_noise));
+    all.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
 }
 
 fn compared(outcome: &Outcome, run: &CaseRun, before: &[Vec<f64>], after: Option<&Vec<Vec<f64>>>) -> ComparedRun {

@@ -94,21 +94,23 @@ def lines_off_and_on(watched):
 
 def chooser(watched):
     page = watched.page
-    before = shown_figure(page).get_attribute("data-figure")
-    for axis in ("run", "channel"):
-        page.locator(f".chooser [data-axis={axis}]").last.click()
-        page.wait_for_timeout(150)
-    after = shown_figure(page).get_attribute("data-figure")
-    watched.expect(before != after, "another run and channel show the same figure")
+    shown = []
+    for end in ("first", "last"):
+        for axis in ("run", "channel"):
+            getattr(page.locator(f".chooser [data-axis={axis}]"), end).click()
+            page.wait_for_timeout(150)
+        shown.append(shown_figure(page).get_attribute("data-figure"))
+    watched.expect(shown[0] != shown[1], "another run and channel show the same figure")
     watched.expect(page.locator(".chooser figure:not([hidden])").count() == 1, "the chooser shows more than one figure")
     cursor_reads(watched)
-    for axis in ("run", "channel"):
-        page.locator(f".chooser [data-axis={axis}]").first.click()
 
 
 def csv_is_what_was_recorded(watched, recorded):
-    """The first figure's CSV holds the run's samples as they were recorded."""
+    """The CSV of the first run and channel holds the samples as they were recorded."""
     page = watched.page
+    for axis in ("run", "channel"):
+        page.locator(f".chooser [data-axis={axis}]").first.click()
+    page.wait_for_timeout(150)
     with page.expect_download() as download:
         shown_figure(page).get_by_role("link", name="CSV").click()
     with open(download.value.path(), newline="") as lines:

@@ -126,16 +126,17 @@ impl HtmlPage {
         self
     }
 
-    /// Adds figures of which the reader sees one, by a press on its run and its channel.
-    pub fn chooser(&mut self, choices: &[Choice]) -> &mut Self {
+    /// Adds figures of which the reader sees one, by a press on its run and its channel; the figure of number `shown` first.
+    pub fn chooser(&mut self, choices: &[Choice], shown: usize) -> &mut Self {
+        let Some(first) = choices.get(shown).or(choices.first()) else { return self };
         let (runs, channels) = (names(choices, |c| &c.run), names(choices, |c| &c.channel));
         self.body.push_str("<div class=\"chooser\">\n");
-        self.body.push_str(&buttons("run", &runs));
-        self.body.push_str(&buttons("channel", &channels));
-        for (i, choice) in choices.iter().enumerate() {
+        self.body.push_str(&buttons("run", &runs, &first.run));
+        self.body.push_str(&buttons("channel", &channels, &first.channel));
+        for choice in choices {
             let place = |all: &[&str], name: &str| all.iter().position(|n| *n == name).unwrap_or(0);
             let (run, channel) = (place(&runs, &choice.run), place(&channels, &choice.channel));
-            let hidden = if i == 0 { "" } else { " hidden" };
+            let hidden = if std::ptr::eq(choice, first) { "" } else { " hidden" };
             let more = format!(" data-run=\"{run}\" data-channel=\"{channel}\"{hidden}");
             self.embed(&choice.figure, &choice.caption, &more);
         }
@@ -226,11 +227,11 @@ fn names<'a>(choices: &'a [Choice], name: impl Fn(&'a Choice) -> &'a String) -> 
     found
 }
 
-fn buttons(axis: &str, names: &[&str]) -> String {
+fn buttons(axis: &str, names: &[&str], pressed: &str) -> String {
     let button = |(i, name): (usize, &&str)| {
         format!(
             "<button data-axis=\"{axis}\" data-value=\"{i}\" aria-pressed=\"{}\">{}</button>",
-            i == 0,
+            *name == pressed,
             escaped(name)
         )
     };
@@ -307,11 +308,16 @@ mod tests {
             figure: Plot::from(&curve(run)).into(),
         };
         let mut page = HtmlPage::new("");
-        page.chooser(&[choice("a\"b", "x"), choice("a\"b", "y"), choice("c", "y")]);
+        page.chooser(&[choice("a\"b", "x"), choice("a\"b", "y"), choice("c", "y")], 0);
         let text = page.finish();
         assert!(text.contains(r#"data-axis="run" data-value="0" aria-pressed="true">a&quot;b<"#));
         assert!(text.contains(r#"data-figure="0" data-run="0" data-channel="0"><"#));
         assert!(text.contains(r#"data-figure="2" data-run="1" data-channel="1" hidden><"#));
+        let mut page = HtmlPage::new("");
+        page.chooser(&[choice("a", "x"), choice("a", "y")], 1);
+        let text = page.finish();
+        assert!(text.contains(r#"data-run="0" data-channel="0" hidden><"#));
+        assert!(text.contains(r#"data-axis="channel" data-value="1" aria-pressed="true">y<"#));
     }
 
     #[test]

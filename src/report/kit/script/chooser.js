@@ -1,7 +1,8 @@
 // One figure of many, by its run and its channel.
 
 function makeChooser(chooser) {
-  const state = { run: "0", channel: "0" };
+  const state = {};
+  chooser.querySelectorAll("[aria-pressed=true][data-axis]").forEach(({ dataset }) => { state[dataset.axis] = dataset.value; });
   const all = [...chooser.querySelectorAll("figure")];
   const show = change => {
     Object.assign(state, change);
