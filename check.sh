@@ -128,6 +128,20 @@ else
     echo "skipped: the viewer's library or pillow could not be installed"
 fi
 
+say "the HTML pages, explored in a browser"
+browser=$target/browser
+if [ ! -x "$browser/bin/python" ]; then
+    { python3 -m venv "$browser" && "$browser/bin/python" -m pip install --quiet --disable-pip-version-check playwright==1.65.2; } || rm -rf "$browser"
+fi
+if [ -x "$browser/bin/python" ]; then
+    where_it_can SMAM_REQUIRE_BROWSER "$browser/bin/python" -B tests/pages/check.py --smam "$smam"
+elif [ -n "${SMAM_REQUIRE_BROWSER:-}" ]; then
+    echo "playwright could not be installed" >&2
+    exit 1
+else
+    echo "skipped: playwright could not be installed (no python3 venv, or no network)"
+fi
+
 say "the Python wheel"
 where_it_can SMAM_REQUIRE_PYTHON python/test.sh
 

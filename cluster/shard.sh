@@ -43,7 +43,7 @@ while [ -z "$stopped" ]; do
     attempt "$@"
     if [ "$status" -eq 0 ]; then
         touch "$folder/done"
-        rm -f "$folder"/{table,best,sensitivity}.csv "$folder"/table.parquet "$folder"/sensitivity.{json,svg} \
+        rm -f "$folder"/{table,best,sensitivity}.csv "$folder"/table.parquet "$folder"/sensitivity.json \
             "$folder"/sweep.{html,svg} "$folder"/front.svg
         exit 0
     fi

@@ -239,7 +239,7 @@ fn compare_writes_figures_and_picture() {
     recorded(here.path());
     let output = smam(&["compare", "rig", "--out", "result"], here.path());
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert_eq!(listing(&here.path().join("result")), ["compare.json", "compare.svg"]);
+    assert_eq!(listing(&here.path().join("result")), ["compare.html", "compare.json"]);
     let json = std::fs::read_to_string(here.path().join("result/compare.json")).expect("written");
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     for channel in ["elongation_mm", "pressure_kpa"] {

@@ -29,7 +29,8 @@ fn the_papers_main_numbers_hold() {
     let output = reproduce(&["3", "4b", "4cd", "8"], folder.path());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = std::fs::read_to_string(folder.path().join("out/reproduce/reproduce.html")).expect("written");
-    assert!(page.contains("<svg") && page.contains("printed model"));
+    assert!(page.contains("data-figure=\"0\"") && page.contains("printed model"));
+    assert!(folder.path().join("out/reproduce/4b.svg").is_file());
     let rows = rows(folder.path());
     assert!((ours(&rows, "mean speed at 0.1 Hz, printed model") - 5.34).abs() < 0.05);
     assert!((ours(&rows, "mean speed at 0.2 Hz, first principles") - 10.75).abs() < 0.2);

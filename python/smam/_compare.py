@@ -24,8 +24,8 @@ class Comparison:
     """By run and channel, in the channel's unit: ``rmse``, ``noise_sd``, ``range``, and the number of ``samples``."""
     fitted: dict[str, float]
     """Numbers of the scene that were fitted to the runs, SI."""
-    picture: Path
-    """Measured over simulated with what is left, as SVG."""
+    page: Path
+    """Measured over simulated with what is left, as a page for a browser."""
     raw: dict[str, Any] = field(repr=False)
     """All of compare.json."""
 
@@ -52,4 +52,4 @@ def compare(
     rows = {(run, channel): fit for run, fits in raw["runs"].items() for channel, fit in fits.items()}
     channels = pd.DataFrame(list(rows.values()), columns=["rmse", "noise_sd", "range", "samples"])
     channels.index = pd.MultiIndex.from_tuples(list(rows), names=["run", "channel"])
-    return Comparison(channels, dict(raw.get("fitted", {})), written / "compare.svg", raw)
+    return Comparison(channels, dict(raw.get("fitted", {})), written / "compare.html", raw)

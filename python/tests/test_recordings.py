@@ -91,7 +91,7 @@ def test_measured_beside_simulated() -> None:
     assert beside.channels.loc[("sine.csv", "elongation_mm"), "rmse"] > 0.03
     mended = smam.compare("leaky", set={"effect": [LEAK]}, out="mended")
     assert mended.channels.loc[("sine.csv", "elongation_mm"), "rmse"] == pytest.approx(0.02, rel=0.15)
-    assert mended.picture.read_text(encoding="utf-8").startswith("<svg")
+    assert mended.page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
 
 
 def test_a_loop_is_identified() -> None:

@@ -11,12 +11,12 @@ use smam::recording::{
     BySize, ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels, motion_ratio,
     unit_by_size,
 };
-use smam::report::{ComparedChannel, ComparedRun, compare_svg};
+use smam::report::{ComparedChannel, ComparedRun, HtmlPage, VERMILION, choices, quantity};
 use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
 use super::changes::Changes;
-use super::files::{make_folder, write};
+use super::files::{make_folder, write, write_page};
 use super::import::recordings;
 
 /// Arguments of `smam compare`.
@@ -35,7 +35,7 @@ pub struct CompareArguments {
     /// Compare this file instead of the declared runs; looked for in DIR, then as a path
     #[arg(long, value_name = "FILE.csv")]
     run: Option<String>,
-    /// Where to write compare.svg and compare.json [default: out/compare_DIR]
+    /// Where to write compare.html and compare.json [default: out/compare_DIR]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -70,13 +70,12 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .collect::<Result<_, _>>()?;
     shown.iter().zip(&simulated).for_each(|(run, is)| warn_of_units(run, is, &set));
     let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
-    let picture = compare_svg(&heading, &remark(&report), &figure(&shown, &simulated, &fits));
-    write(&out.join("compare.svg"), &picture)?;
+    write_page(&out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
     let pooled = pool(fits.iter());
     let json = to_json(&scene, &shown, &fits, &pooled, &report);
     write(&out.join("compare.json"), &format!("{json:#}\n"))?;
     print_table(&shown, &fits);
-    eprintln!("picture: {}    figures: {}", out.join("compare.svg").display(), out.join("compare.json").display());
+    eprintln!("page: {}    figures: {}", out.join("compare.html").display(), out.join("compare.json").display());
     Ok(ExitCode::SUCCESS)
 }
 
@@ -122,10 +121,53 @@ fn set_name(dir: &Path) -> String {
     name.unwrap_or_else(|| "recordings".to_owned())
 }
 
-/// What was fitted, in a line for the picture.
-fn remark(report: &FitReport) -> String {
-    let fitted: Vec<String> = report.parameters.iter().map(|p| format!("{} = {:.4e}", p.key, p.value)).collect();
-    if fitted.is_empty() { "nothing fitted".to_owned() } else { format!("fitted: {}", fitted.join(", ")) }
+/// Curves of each run and channel, errors, and what was fitted.
+fn page(
+    heading: &str,
+    report: &FitReport,
+    figures: &[ComparedRun],
+    runs: &[RecordedRun],
+    fits: &[Vec<ChannelFit>],
+) -> HtmlPage {
+    let mut page = HtmlPage::new(heading);
+    if report.parameters.is_empty() {
+        page.paragraph("Nothing was fitted.");
+    } else {
+        page.paragraph("Fitted to the runs that are not held out:");
+        page.table(&["parameter", "value", "95 % interval"], &fitted_rows(report));
+    }
+    page.chooser(&choices(figures), 0);
+    page.heading("Errors");
+    let rows: Vec<Vec<String>> =
+        runs.iter().zip(fits).flat_map(|(run, fits)| fits.iter().map(|fit| error_row(&title(&run.run), fit))).collect();
+    page.table(&["run", "channel", "RMSE", "noise sd", "RMSE / noise", "range", "samples"], &rows);
+    page
+}
+
+fn fitted_rows(report: &FitReport) -> Vec<Vec<String>> {
+    let row = |p: &smam::identify::FittedParameter| {
+        let shown = |value: f64| quantity(&p.key, None, value);
+        let interval = match p.ci95 {
+            Some([low, high]) => format!("{} to {}", shown(low), shown(high)),
+            None => "the runs do not show it".to_owned(),
+        };
+        vec![calibration_key(&p.key).into_owned(), shown(p.value), interval]
+    };
+    report.parameters.iter().map(row).collect()
+}
+
+fn error_row(run: &str, fit: &ChannelFit) -> Vec<String> {
+    let or_dash = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| quantity("", None, v));
+    let number = |value: f64| quantity("", None, value);
+    vec![
+        run.to_owned(),
+        fit.column.clone(),
+        number(fit.rmse),
+        or_dash(fit.noise_sd),
+        or_dash(fit.rmse_over_noise()),
+        number(fit.range),
+        fit.count.to_string(),
+    ]
 }
 
 fn say_fit(report: &FitReport) {
@@ -154,9 +196,8 @@ fn figure(runs: &[RecordedRun], simulated: &[Recording], fits: &[Vec<ChannelFit>
                 Some(ComparedChannel {
                     column: fit.column.clone(),
                     measured: run.recording.find(&fit.column)?.values.clone(),
-                    simulated: is.find(&fit.column)?.values.clone(),
+                    simulated: vec![("simulated", VERMILION, is.find(&fit.column)?.values.clone())],
                     noise_sd: fit.noise_sd,
-                    rmse: fit.rmse,
                 })
             })
             .collect(),

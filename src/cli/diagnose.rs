@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
-use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose as run_diagnosis, write_answer_with};
-use smam::report::diagnosis_page;
+use smam::diagnose::{Case, Diagnosis, Options, Outcome, Step, Verdict, diagnose as run_diagnosis, write_answer_with};
+use smam::report::{FIGURES, diagnosis_page};
 
 use super::CliError;
 use super::changes::Changes;
 use super::diagnose_view::Shown;
-use super::files::{is_same_file, take_folder};
+use super::files::{is_same_file, make_folder, remove_stale, take_folder};
 use super::import::recordings;
 
 /// Arguments of `smam diagnose`.
@@ -110,13 +110,25 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     if arguments.timings {
         progress("done".to_owned());
     }
-    let page = diagnosis_page(&outcome);
-    write_answer_with(&outcome, &[("report.html", page.as_str())], &out)?;
+    write_all(&outcome, &out)?;
     print_diagnosis(&outcome.diagnosis);
     eprintln!("written: {}", out.display());
     shown.show(&outcome, &out)?;
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
     Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// Writes the answer with its page, and beside the page the samples of long runs.
+fn write_all(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
+    let page = diagnosis_page(outcome);
+    let text = page.finish();
+    if !page.files().is_empty() {
+        make_folder(&out.join(FIGURES))?;
+    }
+    let beside = page.files().iter().map(|(path, text)| (path.as_str(), text.as_str()));
+    let more: Vec<(&str, &str)> = beside.chain([("report.html", text.as_str())]).collect();
+    write_answer_with(outcome, &more, out)?;
+    remove_stale(out, &page)
 }
 
 /// An answer holds a scene.toml and a baseline.toml: they must not take the place of the scene that is diagnosed.

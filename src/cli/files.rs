@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use smam::files::{Held, hold_folder, write_whole};
+use smam::report::{FIGURES, HtmlPage};
 
 use super::CliError;
 
@@ -27,6 +28,25 @@ pub fn take_folder(path: &Path) -> Result<Held, CliError> {
 /// Writes a file that appears under its name whole or not at all; its folder is made.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     write_whole(path, text).map_err(|source| CliError::Write { file: path.to_owned(), source })
+}
+
+/// Writes a page, and beside it the files of what it shows in part; those of a former page go.
+pub fn write_page(folder: &Path, name: &str, page: &HtmlPage) -> Result<(), CliError> {
+    page.files().iter().try_for_each(|(path, text)| write(&folder.join(path), text))?;
+    write(&folder.join(name), &page.finish())?;
+    remove_stale(folder, page)
+}
+
+/// Takes away files of former figures, which this page does not name.
+pub fn remove_stale(folder: &Path, page: &HtmlPage) -> Result<(), CliError> {
+    let Ok(entries) = std::fs::read_dir(folder.join(FIGURES)) else { return Ok(()) };
+    for file in entries.flatten().map(|entry| entry.path()) {
+        let is_ours = page.files().iter().any(|(path, _)| folder.join(path) == file);
+        if !is_ours && file.extension().is_some_and(|e| e == "csv") {
+            std::fs::remove_file(&file).map_err(|source| CliError::Write { file, source })?;
+        }
+    }
+    Ok(())
 }
 
 /// Whether two paths lead to one file that is there.

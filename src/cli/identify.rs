@@ -13,7 +13,7 @@ use smam::identify::loops::{
 use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 
 use super::CliError;
-use super::files::{take_folder, write};
+use super::files::{take_folder, write, write_page};
 use super::identify_page::page;
 
 /// Arguments of `smam identify`.
@@ -82,7 +82,7 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
     let answers: Vec<Value> = found.iter().map(|f| answer(f, &loops)).collect();
     let whole = json!({ "format": 1, "recordings": loops.name, "seed": arguments.seed, "identified": answers });
     write(&out.join("identify.json"), &format!("{whole:#}\n"))?;
-    write(&out.join("identify.html"), &page(&found, &loops))?;
+    write_page(&out, "identify.html", &page(&found, &loops))?;
     for identification in &found {
         say(identification, &loops);
         let file = out.join(format!("{}.toml", identification.form.name()));

@@ -1,14 +1,12 @@
 //! The page of an identification: loop, history, residual, parameters, warnings.
 
 use smam::identify::loops::{Identification, LoopRun};
-use smam::report::{BLUE, GREY, HtmlPage, ORANGE, Panel, Series, VERMILION, figure_svg, quantity, to_place};
+use smam::report::{HtmlPage, Line, MEASURED, Panel, Plot, Series, TimeSeries, VERMILION, quantity, to_place};
 
 use super::identify::{Loops, unseen};
 
-const SIZE: (f64, f64) = (860.0, 300.0);
-
 /// The whole page.
-pub fn page(found: &[Identification], loops: &Loops) -> String {
+pub fn page(found: &[Identification], loops: &Loops) -> HtmlPage {
     let mut page = HtmlPage::new(&format!("Hysteresis models of {}", loops.name));
     if let Some(best) = best(found, loops) {
         page.verdict(best.form.name(), &verdict(best, found.len(), loops), false);
@@ -24,7 +22,7 @@ pub fn page(found: &[Identification], loops: &Loops) -> String {
     for identification in found {
         one(&mut page, identification, loops);
     }
-    page.finish()
+    page
 }
 
 /// The model with the least error on runs that it has not seen; without such runs, on those it was fitted to.
@@ -79,42 +77,44 @@ fn one(page: &mut HtmlPage, found: &Identification, loops: &Loops) {
     });
     let runs = loops.fit.iter().map(|r| (r, "fitted")).chain(loops.holdout.iter().map(|r| (r, "not seen by the fit")));
     for (run, part) in runs {
-        let svg = figure_svg(&panels(found, run), SIZE.0, SIZE.1);
-        page.figure(&svg, &format!("{}, {part}: measured (broad) and model; history; model minus measured.", run.name));
+        page.subheading(&format!("{}, {part}", run.name));
+        figures(page, found, run);
     }
     page.paragraph(&how_certain(found));
     let header: Vec<&str> = std::iter::once("correlation").chain(found.free.iter().map(String::as_str)).collect();
     page.table(&header, &correlations(found));
 }
 
-fn panels(found: &Identification, run: &LoopRun) -> Vec<Panel> {
+/// The loop, and beside it the run over time with what is left.
+fn figures(page: &mut HtmlPage, found: &Identification, run: &LoopRun) {
     let model = found.model.follow(&run.time_s, &run.input_mm);
-    let residual: Vec<f64> = model.iter().zip(&run.output_mm).map(|(y, m)| y - m).collect();
-    let line = |label: &str, colour, x: &[f64], y: &[f64]| Series {
+    let over_input = |label: &str, colour, y: &[f64]| Series {
         label: label.to_owned(),
         colour,
-        x: x.to_vec(),
+        x: run.input_mm.clone(),
         y: y.to_vec(),
     };
-    let panel = |title: &str, x_label: &str, y_label: &str, behind, series| Panel {
-        title: vec![title.to_owned()],
-        x_label: x_label.to_owned(),
-        y_label: y_label.to_owned(),
-        behind,
-        series,
+    let hysteresis = Panel {
+        x_label: "plunger (mm)".to_owned(),
+        y_label: "elongation (mm)".to_owned(),
+        behind: vec![over_input("measured", MEASURED, &run.output_mm)],
+        series: vec![over_input(found.form.name(), VERMILION, &model)],
         ..Panel::default()
     };
-    let pair =
-        |x: &[f64]| (vec![line("measured", ORANGE, x, &run.output_mm)], vec![line(found.form.name(), BLUE, x, &model)]);
-    let (loop_behind, loop_model) = pair(&run.input_mm);
-    let (time_behind, time_model) = pair(&run.time_s);
-    let off = vec![line("model - measured", VERMILION, &run.time_s, &residual)];
-    let zero = vec![line("", GREY, &[run.time_s[0], run.time_s[run.time_s.len() - 1]], &[0.0, 0.0])];
-    vec![
-        panel("Loop", "plunger (mm)", "elongation (mm)", loop_behind, loop_model),
-        panel("History", "time (s)", "elongation (mm)", time_behind, time_model),
-        panel("Residual", "time (s)", "elongation (mm)", Vec::new(), [zero, off].concat()),
-    ]
+    let line = |label: &str, colour, values: &[f64]| Line { label: label.to_owned(), colour, values: values.to_vec() };
+    let history = TimeSeries {
+        name: format!("{} {}", found.form.name(), run.name),
+        run: run.name.clone(),
+        y_label: "elongation (mm)".to_owned(),
+        unit: "mm".to_owned(),
+        time_s: run.time_s.clone(),
+        lines: vec![line("measured", MEASURED, &run.output_mm), line(found.form.name(), VERMILION, &model)],
+        noise_sd: found.noise_mm,
+    };
+    page.grid(|page| {
+        page.figure(Plot::from(&hysteresis), "");
+        page.figure(history, "");
+    });
 }
 
 fn parameters(found: &Identification) -> Vec<Vec<String>> {

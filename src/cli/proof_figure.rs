@@ -1,18 +1,22 @@
 //! The picture of a proof: probabilities that hold, and what is seen and named at which misfit.
 
 use smam::proof::{Row, Share, detection, naming, reliability};
-use smam::report::{BLUE, ORANGE, Panel, Series, figure_svg};
+use smam::report::{BLUE, ORANGE, Panel, SILVER, Series, figure_svg};
 
-const GREY: &str = "#bdbdbd";
 const SIZE: (f64, f64) = (640.0, 300.0);
 
 /// Two panels as SVG.
 pub fn proof_svg(rows: &[Row]) -> String {
-    figure_svg(&[reliability_panel(rows), misfit_panel(rows)], SIZE.0, SIZE.1)
+    figure_svg(&proof_panels(rows), SIZE.0, SIZE.1)
+}
+
+/// The same, for a page.
+pub fn proof_panels(rows: &[Row]) -> [Panel; 2] {
+    [reliability_panel(rows), misfit_panel(rows)]
 }
 
 fn reliability_panel(rows: &[Row]) -> Panel {
-    let diagonal = line("as often as said", GREY, vec![0.0, 1.0], vec![0.0, 1.0]);
+    let diagonal = line("as often as said", SILVER, vec![0.0, 1.0], vec![0.0, 1.0]);
     let at = |share: &Share| share.mean;
     Panel {
         title: vec!["Probability given to an effect, and how often it was there".to_owned()],

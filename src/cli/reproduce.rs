@@ -6,10 +6,14 @@ use std::process::ExitCode;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use smam::report::figure_svg;
 use smam::reproduce::{FIGURES, Figure, Made, ReproduceError, Standing, cells, json, page};
 
 use super::CliError;
-use super::files::{take_folder, write};
+use super::files::{take_folder, write, write_page};
+
+/// Of the pictures, px.
+const SIZE: (f64, f64) = (720.0, 300.0);
 
 /// Arguments of `smam reproduce`.
 #[derive(Args)]
@@ -20,7 +24,7 @@ pub struct ReproduceArguments {
     /// Figures, for example 4a 5; all of them if none is named
     #[arg(value_name = "FIG")]
     figures: Vec<String>,
-    /// Folder for reproduce.html and reproduce.json
+    /// Folder for reproduce.html, reproduce.json and a picture of each figure
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     out: PathBuf,
 }
@@ -50,7 +54,11 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, CliError> {
     let text = serde_json::to_string_pretty(&json(&made))
         .map_err(|source| CliError::Write { file: arguments.out.join("reproduce.json"), source: source.into() })?;
     write(&arguments.out.join("reproduce.json"), &text)?;
-    write(&arguments.out.join("reproduce.html"), &page(&made))?;
+    write_page(&arguments.out, "reproduce.html", &page(&made))?;
+    for (figure, chapter) in made.iter().filter(|(_, chapter)| !chapter.panels.is_empty()) {
+        let svg = figure_svg(&chapter.panels, SIZE.0, SIZE.1);
+        write(&arguments.out.join(format!("{}.svg", figure.name)), &svg)?;
+    }
     say!("{}", arguments.out.join("reproduce.html").display());
     Ok(ExitCode::SUCCESS)
 }

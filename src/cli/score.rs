@@ -7,10 +7,12 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
+use smam::report::HtmlPage;
 
 use super::CliError;
-use super::files::write;
-use super::proof_figure::proof_svg;
+use super::files::{write, write_page};
+use super::markdown_page::add_markdown;
+use super::proof_figure::{proof_panels, proof_svg};
 
 /// Arguments of `smam score`.
 #[derive(Args)]
@@ -28,7 +30,7 @@ pub struct ScoreArguments {
     /// Opened cases, as rows.jsonl holds them, in the place of cases and answers: those of another method, say
     #[arg(long, value_name = "FILE")]
     rows: Option<PathBuf>,
-    /// Where to write rows.jsonl, score.json and table.md
+    /// Where to write rows.jsonl, score.json, score.html and table.md
     #[arg(long, value_name = "DIR", default_value = "out/score")]
     out: PathBuf,
 }
@@ -119,13 +121,22 @@ pub fn read_rows(path: &Path, remedy: &str) -> Result<Vec<Row>, CliError> {
     if rows.is_empty() { Err(refuse("it holds no row".to_owned())) } else { Ok(rows) }
 }
 
-/// Writes rows, figures, picture and table, and prints the table.
+/// The picture to explore, and the tables.
+fn html_page(rows: &[Row], tables: &str) -> HtmlPage {
+    let mut page = HtmlPage::new(&format!("Score of {} cases", rows.len()));
+    page.panels(&proof_panels(rows), "Lines through the shares; bars: 95 % interval.");
+    add_markdown(&mut page, tables);
+    page
+}
+
+/// Writes rows, figures, pictures, page and table, and prints the table.
 pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
     let figures = metrics(rows);
     write_rows(rows, &out.join("rows.jsonl"))?;
     write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(not_json)?))?;
     let page = page(rows, &figures);
     write(&out.join("table.md"), &page)?;
+    write_page(out, "score.html", &html_page(rows, &page))?;
     write(&out.join("proof.svg"), &proof_svg(rows))?;
     super::print_text(&page)
 }

@@ -2,11 +2,12 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use smam::report::{HtmlPage, bars_svg, figure_svg};
-use smam::sweep::{Goal, MeasureSpec, Plan, Sensitivity, Table, best, sensitivity};
+use smam::report::{HtmlPage, figure_svg};
+use smam::sweep::{Goal, MeasureSpec, Plan, SamplingSpec, Sensitivity, Table, best, sensitivity};
 
 use super::CliError;
-use super::files::write;
+use super::files::{write, write_page as file_page};
+use super::sweep_exploration::exploration;
 use super::sweep_panels::{bars, broken, front_panel, panels, scale_of, short};
 use super::sweep_trouble::{is_sound, said_of_trouble};
 
@@ -39,21 +40,31 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
         best_points(&mut page, plan, table, &best);
     }
     if let Some(panel) = front_panel(plan, table, &best) {
-        let svg = figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0);
-        page.figure(&svg, "The best points: within the limits, and beaten by no other in all objectives.");
-        write(&folder.join("front.svg"), &svg)?;
+        write(&folder.join("front.svg"), &figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0))?;
     }
     if let Some(found) = sensitivity(plan, table) {
-        let svg = bars_svg(&bars(plan, &found));
-        influences(&mut page, &found, &svg);
-        write(&folder.join("sensitivity.svg"), &svg)?;
+        influences(&mut page, plan, &found);
     }
-    let svg = figure_svg(&panels(plan, table, &best), SIZE.0, SIZE.1);
-    page.figure(&svg, "Each measure over the first key. A gap is a point that failed.");
+    let panels = panels(plan, table, &best);
+    if is_grid_of_lines(plan) {
+        page.heading("Measures over the first key");
+        page.panels(&panels, "A gap is a point that failed.");
+    }
+    page.heading("Explore the points");
+    let caption = match best.is_empty() {
+        true => "",
+        false => "Best (★): within the limits, and beaten by no other in all objectives.",
+    };
+    page.figure(exploration(plan, table, &best), caption);
     page.heading("Extremes");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
-    write(&folder.join("sweep.svg"), &svg)?;
-    write(&folder.join("sweep.html"), &page.finish())
+    write(&folder.join("sweep.svg"), &figure_svg(&panels, SIZE.0, SIZE.1))?;
+    file_page(folder, "sweep.html", &page)
+}
+
+/// Whether lines over the first key show the whole sweep.
+fn is_grid_of_lines(plan: &Plan) -> bool {
+    plan.file.sampling == SamplingSpec::Grid && plan.file.vary.len() <= 2
 }
 
 /// What was measured and what was varied: `range_mm, peak_kpa of muscle_bench over bore_m`.
@@ -78,7 +89,7 @@ fn digits(value: f64) -> String {
 }
 
 /// A path without `.` and the `..` that can be resolved in it.
-fn plain(path: &str) -> String {
+pub fn plain(path: &str) -> String {
     let mut shown = PathBuf::new();
     for part in Path::new(path).components() {
         match part {
@@ -115,9 +126,11 @@ fn best_points(page: &mut HtmlPage, plan: &Plan, table: &Table, best: &[usize]) 
     page.table(&header, &rows);
 }
 
-fn influences(page: &mut HtmlPage, found: &Sensitivity, svg: &str) {
+fn influences(page: &mut HtmlPage, plan: &Plan, found: &Sensitivity) {
     page.heading("What the measures depend on");
-    page.figure(svg, "Whiskers: 95 % of 500 bootstrap rounds.");
+    for panel in bars(plan, found) {
+        page.bars(&panel, "Lines: 95 % of 500 bootstrap rounds.");
+    }
     let names: Vec<&str> = found.names.iter().flat_map(|name| [*name, "95 %"]).collect();
     let header = [&["measure", "key", "samples"][..], &names].concat();
     let row = |i: &smam::sweep::Influence| {

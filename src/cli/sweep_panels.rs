@@ -1,17 +1,18 @@
 //! The pictures of a sweep's page.
 
 use smam::recording::parse_column;
-use smam::report::{BLUE, Bar, BarPanel, GREEN, ORANGE, PURPLE, Panel, Scale, Series, VERMILION, quantity};
-use smam::sweep::{LimitSpec, Mark, MeasureSpec, ObjectiveSpec, Plan, SamplingSpec, Sensitivity, Table, excess};
+use smam::report::{
+    BLUE, Bar, BarPanel, GREEN, GREY, Mark, ORANGE, PURPLE, Panel, SILVER, Scale, Series, VERMILION, quantity,
+};
+use smam::sweep::{LimitSpec, MeasureSpec, ObjectiveSpec, Plan, SamplingSpec, Sensitivity, Table, excess};
 use smam::system::Concern;
 
 use super::sweep_trouble::in_trouble;
 
 /// Lines of one panel; more values of a second key are thinned to so many.
-const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, "#404040"];
+const COLOURS: [&str; 6] = [BLUE, ORANGE, GREEN, PURPLE, VERMILION, GREY];
 /// Strips where a limit is broken.
 const BEYOND: [&str; 4] = [VERMILION, ORANGE, PURPLE, BLUE];
-const TRIED: &str = "#bdbdbd";
 
 /// Each measure over the first key.
 pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
@@ -21,18 +22,20 @@ pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
     let x: Vec<f64> = si.iter().map(|v| v / scale.factor).collect();
     let panel = |m: &MeasureSpec| {
         let y = table.column(&m.name).unwrap_or_default();
-        let mut behind = if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() };
-        behind.extend(first.mark.iter().map(|mark| upright(mark, mark.at / scale.factor, "#9e9e9e", &y)));
+        let mut marks: Vec<Mark> =
+            first.mark.iter().map(|m| mark(m.label.clone(), SILVER, m.at / scale.factor)).collect();
         if let ([best], true) = (best, is_line(plan)) {
-            let mark = Mark { at: si[*best], label: format!("best: {}", scale.short(si[*best])) };
-            behind.push(upright(&mark, x[*best], GREEN, &y));
+            marks.push(mark(format!("best: {}", scale.short(si[*best])), GREEN, x[*best]));
         }
+        let [series, points] = lines_or_points(plan, table, &x, &y);
         Panel {
             title: [Some(m.name.clone()), Some(m.of.clone()), constant(&y)].into_iter().flatten().collect(),
             x_label: key_label(&first.key, &scale),
             y_label: measure_label(&m.name),
-            behind,
-            series: lines(plan, table, &x, &y),
+            behind: if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() },
+            series,
+            points,
+            marks,
             ..Panel::default()
         }
     };
@@ -51,7 +54,7 @@ fn key_label(key: &str, scale: &Scale) -> String {
 }
 
 /// `peak_kpa` as `peak (kPa)`.
-fn measure_label(name: &str) -> String {
+pub fn measure_label(name: &str) -> String {
     parse_column(name).map_or_else(|_| name.to_owned(), |n| n.axis_label())
 }
 
@@ -72,16 +75,12 @@ pub fn front_panel(plan: &Plan, table: &Table, best: &[usize]) -> Option<Panel> 
     let mut order = best.to_vec();
     order.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
     let pick = |from: &[f64]| order.iter().map(|&i| from[i]).collect::<Vec<f64>>();
-    let reaches = (reach(&x), reach(&y));
-    let mut front = crosses(&pick(&x), &pick(&y), reaches);
-    (front.label, front.colour) = ("best".to_owned(), VERMILION);
-    let mut tried = crosses(&x, &y, reaches);
-    (tried.label, tried.colour) = ("all points".to_owned(), TRIED);
+    let front = line("best".to_owned(), VERMILION, pick(&x), pick(&y));
     Some(Panel {
         title: vec![format!("{} and {}", one.measure, other.measure)],
         x_label: measure_label(&one.measure),
         y_label: measure_label(&other.measure),
-        series: vec![tried, front],
+        points: vec![line("all points".to_owned(), SILVER, x, y), front],
         ..Panel::default()
     })
 }
@@ -105,6 +104,7 @@ pub fn bars(plan: &Plan, found: &Sensitivity) -> Vec<BarPanel> {
             label: label.to_owned(),
             legend: legend.iter().map(|(name, colour)| ((*name).to_owned(), *colour)).collect(),
             groups: own.map(|i| (i.key.clone(), bars(i))).collect(),
+            is_logarithmic: false,
         }
     };
     plan.file.measure.iter().map(of_measure).collect()
@@ -154,12 +154,13 @@ fn stretches(x: &[f64], chosen: &[bool]) -> Vec<f64> {
     own.flat_map(|i| [middle(i, i.saturating_sub(1)), middle(i, i + 1), f64::NAN]).collect()
 }
 
-/// Lines over the first key of a grid, one for each value of the second; crosses for samples.
-fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
+/// Lines over the first key of a grid, one for each value of the second; points for samples.
+fn lines_or_points(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> [Vec<Series>; 2] {
+    let all = vec![line(String::new(), BLUE, x.to_vec(), y.to_vec())];
     if plan.file.sampling != SamplingSpec::Grid || plan.file.vary.len() > 2 {
-        return vec![crosses(x, y, (reach(x), reach(y)))];
+        return [Vec::new(), all];
     }
-    let Some(second) = plan.file.vary.get(1) else { return vec![line(String::new(), BLUE, x.to_vec(), y.to_vec())] };
+    let Some(second) = plan.file.vary.get(1) else { return [all, Vec::new()] };
     let of_second = table.column(&second.key).unwrap_or_default();
     let scale = scale_of(&second.key, &of_second);
     let mut values = of_second.clone();
@@ -167,23 +168,18 @@ fn lines(plan: &Plan, table: &Table, x: &[f64], y: &[f64]) -> Vec<Series> {
     values.dedup();
     let every = values.len().div_ceil(COLOURS.len()).max(1);
     let shown = values.into_iter().step_by(every).zip(COLOURS);
-    shown
+    let lines = shown
         .map(|(value, colour)| {
             let own: Vec<usize> = (0..x.len()).filter(|i| of_second[*i] == value).collect();
             let pick = |from: &[f64]| own.iter().map(|&i| from[i]).collect();
             line(format!("{} = {}", short(&second.key), scale.short(value)), colour, pick(x), pick(y))
         })
-        .collect()
+        .collect();
+    [lines, Vec::new()]
 }
 
-/// A marked value as an upright line at its place on the axis, over what a measure reaches.
-fn upright(mark: &Mark, at: f64, colour: &'static str, y: &[f64]) -> Series {
-    let finite = || y.iter().copied().filter(|v| v.is_finite());
-    if finite().next().is_none() {
-        return line(mark.label.clone(), colour, Vec::new(), Vec::new());
-    }
-    let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
-    line(mark.label.clone(), colour, vec![at; 2], vec![low, high])
+fn mark(label: String, colour: &'static str, at: f64) -> Mark {
+    Mark { label, colour, at }
 }
 
 /// Last words of a key.
@@ -198,21 +194,6 @@ fn line(label: String, colour: &'static str, x: Vec<f64>, y: Vec<f64>) -> Series
 fn reach(values: &[f64]) -> f64 {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     (finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
-}
-
-/// Crosses of one panel at most: more are a blot, and a page of a million is beyond a browser.
-const CROSSES: usize = 5000;
-
-/// A small cross at every point (evenly thinned beyond [`CROSSES`]), of a size with what the axes reach.
-fn crosses(x: &[f64], y: &[f64], reach: (f64, f64)) -> Series {
-    let (dx, dy) = (0.004 * reach.0, 0.012 * reach.1);
-    let (mut along, mut up) = (Vec::new(), Vec::new());
-    let every = x.len().div_ceil(CROSSES).max(1);
-    for (x, y) in x.iter().zip(y).filter(|(_, y)| y.is_finite()).step_by(every) {
-        along.extend([x - dx, x + dx, f64::NAN, *x, *x, f64::NAN]);
-        up.extend([*y, *y, f64::NAN, y - dy, y + dy, f64::NAN]);
-    }
-    line(String::new(), BLUE, along, up)
 }
 
 #[cfg(test)]

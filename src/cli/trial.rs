@@ -10,10 +10,12 @@ use clap::Args;
 use rayon::prelude::*;
 use smam::effects::names;
 use smam::nearest::did_you_mean;
+use smam::report::HtmlPage;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in};
 
 use super::CliError;
-use super::files::{take_folder, write};
+use super::files::{take_folder, write, write_page};
+use super::markdown_page::add_markdown;
 
 /// The stock scenes that together can have every effect of the catalogue.
 const SCENES: [&str; 6] =
@@ -40,7 +42,7 @@ pub struct TrialArguments {
     /// Of everything that is drawn
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Where rows (trial.jsonl, kept from an earlier run) and table (trial.md) go
+    /// Where rows (trial.jsonl, kept from an earlier run) and table (trial.md, trial.html) go
     #[arg(long, value_name = "DIR", default_value = "out/trial")]
     out: PathBuf,
     /// Keep the recordings of each case too, in a folder of its name under DIR
@@ -85,7 +87,11 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     let all = read_rows(&path)?;
     let mut rows: Vec<Row> = cases.iter().filter_map(|c| row_of(c, &all)).cloned().collect();
     rows.sort_by(|a, b| a.scene.cmp(&b.scene));
-    write(&arguments.out.join("trial.md"), &table(&rows))?;
+    let text = table(&rows);
+    write(&arguments.out.join("trial.md"), &text)?;
+    let mut page = HtmlPage::new(&format!("Trial of {} cases", rows.len()));
+    add_markdown(&mut page, &text);
+    write_page(&arguments.out, "trial.html", &page)?;
     let wrong = rows.iter().filter(|r| r.judgement == Judgement::Wrong).count();
     let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
     say!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());

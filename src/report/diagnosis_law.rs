@@ -1,34 +1,41 @@
-//! A law that nobody listed, as the page of a diagnosis shows it: text, name, curve, and what would do as well.
+//! A law outside the catalogue, as the page of a diagnosis shows it: symbols, name, curve, and what would do as well.
 
 use crate::diagnose::{Curve, NamedEffect};
+use crate::recording::parse_column;
 
-use super::HtmlPage;
 use super::axis::three_digits;
-use super::panel::{Panel, Series, figure_svg};
-use super::svg::{BLUE, GREY};
+use super::colour::BLUE;
+use super::formula::Formula;
+use super::kit::{Area, HtmlPage, Plot};
+use super::panel::{Panel, Series};
 
-const WIDTH: f64 = 640.0;
-const HEIGHT: f64 = 280.0;
-
-/// Adds a section for each law of an answer.
+/// Adds a part for each law of an answer.
 pub(super) fn laws(page: &mut HtmlPage, effects: &[NamedEffect]) {
     for effect in effects.iter().filter(|e| e.hypothetical || !e.forms.is_empty()) {
         if effect.hypothetical {
-            page.heading(&format!("The law at {}", effect.port));
-            let name = effect.known_as.as_ref().map_or_else(String::new, |n| format!(" It reads as {n}."));
-            let acts = if effect.acts == "scales" { "times" } else { "plus" };
-            page.paragraph(&format!(
-                "{} {acts} `{}`.{name} scene.toml holds it as a [[law]] table.",
-                effect.port, effect.law
-            ));
+            law(page, effect);
         }
         if let Some(curve) = &effect.curve {
-            let caption =
-                "The law over its variable, as far as the runs visited it; grey: 95 % of its numbers' uncertainty.";
-            page.figure(&curve_svg(curve, effect), caption);
+            let caption = "The law over its variable, as far as the runs visited it, in SI units.";
+            page.figure(plot(curve, effect), caption);
         }
         forms(page, effect);
     }
+}
+
+fn law(page: &mut HtmlPage, effect: &NamedEffect) {
+    page.subheading(&format!("The law at {}", effect.port));
+    let formula = Formula::of(&effect.law);
+    page.law(&match effect.acts.as_str() {
+        "scales" => format!("{} × ({})", effect.port, formula.text),
+        _ => format!("{} + {}", effect.port, formula.text),
+    });
+    let name = effect.known_as.as_ref().map_or_else(String::new, |n| format!(" It reads as {n}."));
+    let letters = if formula.letters.is_empty() { String::new() } else { format!("; {}", formula.legend()) };
+    page.paragraph(&format!(
+        "SI units{letters}.{name} In `scene.toml` it is a `[[law]]` table that {} `{}`.",
+        effect.acts, effect.law
+    ));
 }
 
 fn forms(page: &mut HtmlPage, effect: &NamedEffect) {
@@ -38,24 +45,30 @@ fn forms(page: &mut HtmlPage, effect: &NamedEffect) {
     page.paragraph(&format!("What explains these recordings as well as {} at {}:", effect.name, effect.port));
     let rows = effect.forms.iter().map(|form| {
         let name = form.known_as.clone().unwrap_or_default();
-        vec![form.port.clone(), form.acts.clone(), form.law.clone(), name, three_digits(form.score_difference)]
+        let law = Formula::of(&form.law).text;
+        vec![form.port.clone(), form.acts.clone(), law, name, three_digits(form.score_difference)]
     });
     page.table(&["port", "acts", "law", "known as", "chi² above, in units of what is left"], &rows.collect::<Vec<_>>());
 }
 
 /// The curve with its band.
-fn curve_svg(curve: &Curve, effect: &NamedEffect) -> String {
-    let line =
-        |label: &str, colour, y: &[f64]| Series { label: label.to_owned(), colour, x: curve.x.clone(), y: y.to_vec() };
+fn plot(curve: &Curve, effect: &NamedEffect) -> Plot {
+    let law = Series { label: "law".to_owned(), colour: BLUE, x: curve.x.clone(), y: curve.y.clone() };
     let panel = Panel {
-        title: vec![format!("{} {} {}", effect.port, effect.acts, effect.law)],
-        x_label: curve.variable.clone(),
-        y_label: if effect.acts == "scales" { "factor".to_owned() } else { "added, SI".to_owned() },
-        behind: Vec::new(),
-        series: vec![line("95 %", GREY, &curve.low), line("", GREY, &curve.high), line("law", BLUE, &curve.y)],
-        bands: Vec::new(),
+        title: vec![format!("{} {}", effect.port, effect.acts)],
+        x_label: parse_column(&curve.variable).map_or_else(|_| curve.variable.clone(), |name| name.axis_label()),
+        y_label: if effect.acts == "scales" { "factor".to_owned() } else { "added (SI)".to_owned() },
+        series: vec![law],
+        ..Panel::default()
     };
-    figure_svg(&[panel], WIDTH, HEIGHT)
+    let band = Area {
+        label: "95 % interval".to_owned(),
+        colour: BLUE,
+        x: curve.x.clone(),
+        low: curve.low.clone(),
+        high: curve.high.clone(),
+    };
+    Plot::from(&panel).with_area(band)
 }
 
 #[cfg(test)]
@@ -85,7 +98,9 @@ mod tests {
         let mut page = HtmlPage::new("x");
         laws(&mut page, &[effect]);
         let text = page.finish();
-        for shown in ["breakaway friction", "muscle.friction times", "speed_m_s", ">1.25<", "muscle.pull"] {
+        let printed = "muscle.friction × (1 + 0.4\u{a0}exp(-|v/0.002|))";
+        for shown in ["breakaway friction", printed, "v: <code>speed_m_s", ">1.25<", "muscle.pull", r#""low":[1.3,1]"#]
+        {
             assert!(text.contains(shown), "{shown} in {text}");
         }
         // What the catalogue names without rivals has no section.

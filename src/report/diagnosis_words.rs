@@ -58,7 +58,7 @@ pub(super) fn sensor_words(next: &NextExperiment) -> Option<String> {
     })
 }
 
-fn capital(text: &str) -> String {
+pub(super) fn capital(text: &str) -> String {
     // A key at the beginning stays as it is written.
     let is_key = text.split(' ').next().is_some_and(|word| word.contains('_'));
     let mut letters = text.chars();

@@ -1,9 +1,11 @@
 //! The picture of `smam effects NAME`: what an effect does to each scene that can have it.
 
 use super::axis::three_digits;
-use super::panel::{Panel, Series, draw_legend};
+use super::colour::{BLUE, ORANGE, SILVER};
+use super::panel::{Panel, Series};
+use super::panel_svg::draw_legend;
 use super::quantity::with;
-use super::svg::{Anchor, BLUE, ORANGE, Rect, Svg, cut_to};
+use super::svg::{Anchor, Rect, Svg, cut_to};
 use crate::recording::parse_column;
 
 const CELL_WIDTH: f64 = 450.0;
@@ -19,7 +21,7 @@ const LARGE: f64 = 16.0;
 const SMALL: f64 = 11.5;
 
 /// What the stock scene does, behind the coloured lines.
-const STOCK: &str = "#bdbdbd";
+const STOCK: &str = SILVER;
 /// The effect at its typical size and at twice that.
 const COLOURS: [&str; 2] = [BLUE, ORANGE];
 

@@ -1,20 +1,4 @@
-//! One plot: lines and bands over a pair of axes. Every figure is made of these.
-
-use super::axis::Axis;
-use super::decimate::decimate;
-use super::svg::{Anchor, GREY, Rect, Svg, cut_to, text_width};
-use super::thin::{TOLERANCE_PX, thin};
-
-const TITLE_SIZE: f64 = 12.0;
-const TEXT_SIZE: f64 = 11.0;
-/// Room for the y label and ticks of five letters; longer ones take more.
-const LEFT_MARGIN: f64 = 66.0;
-const Y_LABEL_ROOM: f64 = 24.0;
-const RIGHT_MARGIN: f64 = 14.0;
-const LINE_HEIGHT: f64 = 16.0;
-const TICK_ROOM: f64 = 18.0;
-const POINTS_PER_LINE: usize = 1500;
-const GRID: &str = "#e4e4e4";
+//! One plot: lines, points, bands and marks over a pair of axes. Every figure is made of these.
 
 /// A line over x.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +26,18 @@ pub struct Band {
     pub high: f64,
 }
 
-/// A plot with titles, axes, lines and bands.
+/// An upright line at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Its name in the legend; empty: not in the legend.
+    pub label: String,
+    /// Its colour, as SVG writes it.
+    pub colour: &'static str,
+    /// Where, in units of x.
+    pub at: f64,
+}
+
+/// A plot with titles, axes, lines, points, bands and marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
     /// Lines of title, the first one larger; may be empty.
@@ -55,198 +50,25 @@ pub struct Panel {
     pub behind: Vec<Series>,
     /// Drawn in this order.
     pub series: Vec<Series>,
+    /// Drawn last, a dot at each point.
+    pub points: Vec<Series>,
     /// Drawn below the lines.
     pub bands: Vec<Band>,
+    /// Drawn below the lines.
+    pub marks: Vec<Mark>,
 }
 
 impl Panel {
     /// What has a name in the legend, with its colour and opacity.
     pub(super) fn legend(&self) -> Vec<(&str, &'static str, f64)> {
-        let lines = self.lines().map(|(s, _)| (s.label.as_str(), s.colour, 1.0));
+        let lines = self.all().map(|s| (s.label.as_str(), s.colour, 1.0));
+        let marks = self.marks.iter().map(|m| (m.label.as_str(), m.colour, 1.0));
         let bands = self.bands.iter().map(|b| (b.label.as_str(), b.colour, 0.25));
-        lines.chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
+        lines.chain(marks).chain(bands).filter(|(label, ..)| !label.is_empty()).collect()
     }
 
-    /// Draws title, axes and lines within a rectangle.
-    pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
-        let (plot, y_axis) = self.plot_area(outer);
-        let x_axis = Axis::over(self.lines().flat_map(|(s, _)| s.x.iter().copied()), 0.0, (plot.width / 70.0) as usize);
-        self.draw_text(svg, outer, plot);
-        draw_x_ticks(svg, plot, &x_axis);
-        draw_y_ticks(svg, plot, &y_axis);
-        let at = |x: f64, y: f64| {
-            let right = plot.x + x_axis.share(x) * plot.width;
-            (right, plot.bottom() - y_axis.share(y) * plot.height)
-        };
-        for band in &self.bands {
-            let (top, bottom) = (at(0.0, band.high).1, at(0.0, band.low).1);
-            let rect = Rect { y: top, height: bottom - top, ..plot };
-            svg.fill(rect, band.colour, 0.25);
-        }
-        for (series, width) in self.lines() {
-            for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
-                let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&thin(&points, TOLERANCE_PX), series.colour, width);
-            }
-        }
-        svg.frame(plot, GREY);
-    }
-
-    /// Every line with its width, px, in the order of drawing.
-    fn lines(&self) -> impl Iterator<Item = (&Series, f64)> {
-        self.behind.iter().map(|s| (s, 3.6)).chain(self.series.iter().map(|s| (s, 1.2)))
-    }
-
-    fn y_values(&self) -> impl Iterator<Item = f64> {
-        let lines = self.lines().flat_map(|(s, _)| s.y.iter().copied());
-        lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
-    }
-
-    /// The plot within the panel, and its y axis: how long the ticks are decides what room is left of them.
-    fn plot_area(&self, outer: Rect) -> (Rect, Axis) {
-        let above = LINE_HEIGHT * self.title.len() as f64 + 8.0;
-        let label_room = if self.x_label.is_empty() { 0.0 } else { LINE_HEIGHT };
-        let height = outer.height - above - TICK_ROOM - label_room;
-        let y_axis = Axis::over(self.y_values(), 0.05, (height / 32.0) as usize);
-        let widest = y_axis.ticks().iter().map(|(_, text)| text_width(text, TEXT_SIZE)).fold(0.0, f64::max);
-        let left = LEFT_MARGIN.max(widest + Y_LABEL_ROOM);
-        let plot = Rect { x: outer.x + left, y: outer.y + above, width: outer.width - left - RIGHT_MARGIN, height };
-        (plot, y_axis)
-    }
-
-    fn draw_text(&self, svg: &mut Svg, outer: Rect, plot: Rect) {
-        for (index, line) in self.title.iter().enumerate() {
-            let y = outer.y + LINE_HEIGHT * (index as f64 + 1.0) - 2.0;
-            let size = if index == 0 { TITLE_SIZE } else { TEXT_SIZE };
-            let text = cut_to(line, size, plot.width);
-            svg.text((plot.x, y), Anchor::Start, size, &text);
-        }
-        let middle_x = plot.x + plot.width / 2.0;
-        if !self.x_label.is_empty() {
-            let y = plot.bottom() + TICK_ROOM + LINE_HEIGHT - 4.0;
-            svg.text((middle_x, y), Anchor::Middle, TEXT_SIZE, &self.x_label);
-        }
-        let middle_y = plot.y + plot.height / 2.0;
-        let label = cut_to(&self.y_label, TEXT_SIZE, plot.height + 24.0);
-        svg.text_up((outer.x + 12.0, middle_y), TEXT_SIZE, &label);
-    }
-}
-
-fn draw_x_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
-    for (value, text) in axis.ticks() {
-        let x = plot.x + axis.share(value) * plot.width;
-        svg.line((x, plot.y), (x, plot.bottom()), GRID, 1.0);
-        // At an end the text stays within the panel.
-        let half = text_width(&text, TEXT_SIZE) / 2.0;
-        let centre = x.min(plot.right() + RIGHT_MARGIN - half);
-        let y = plot.bottom() + 14.0;
-        svg.text((centre, y), Anchor::Middle, TEXT_SIZE, &text);
-    }
-}
-
-fn draw_y_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
-    for (value, text) in axis.ticks() {
-        let y = plot.bottom() - axis.share(value) * plot.height;
-        svg.line((plot.x, y), (plot.right(), y), GRID, 1.0);
-        svg.text((plot.x - 5.0, y + 4.0), Anchor::End, TEXT_SIZE, &text);
-    }
-}
-
-/// Draws a legend from a point (px) to the right, in a new row where the next entry would pass `right`; returns the
-/// height of all rows after the first.
-pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), right: f64, entries: &[(&str, &'static str, f64)]) -> f64 {
-    let (mut x, mut y) = at;
-    for (label, colour, opacity) in entries {
-        let width = 28.0 + text_width(label, TEXT_SIZE);
-        if x > at.0 && x + width > right {
-            (x, y) = (at.0, y + LINE_HEIGHT);
-        }
-        let is_line = *opacity >= 1.0;
-        let height = if is_line { 3.0 } else { 12.0 };
-        let swatch = Rect { x, y: y - 4.0 - height / 2.0, width: 22.0, height };
-        svg.fill(swatch, colour, *opacity);
-        svg.text((x + 28.0, y), Anchor::Start, TEXT_SIZE, label);
-        x += width + 20.0;
-    }
-    y - at.1
-}
-
-/// A figure of panels below each other, each with its legend under its title.
-///
-/// `width` and `panel_height` in pixels; 640 by 300 is legible on a page.
-///
-/// ```
-/// use smam::report::{BLUE, Panel, Series, figure_svg};
-///
-/// let loading = Series { label: "loading".to_owned(), colour: BLUE, x: vec![0.0, 3.0], y: vec![0.0, 26.9] };
-/// let panel = Panel {
-///     x_label: "plunger (mm)".to_owned(),
-///     y_label: "elongation (mm)".to_owned(),
-///     series: vec![loading],
-///     ..Panel::default()
-/// };
-/// let svg = figure_svg(&[panel], 640.0, 300.0);
-/// assert!([">plunger (mm)<", ">elongation (mm)<", ">loading<"].iter().all(|text| svg.contains(text)));
-/// // Nothing is fetched.
-/// assert!(!svg.contains("href"));
-/// ```
-pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
-    const GAP: f64 = 10.0;
-    const LEGEND_HEIGHT: f64 = 20.0;
-    let mut svg = Svg::new(width, GAP);
-    let mut y = GAP;
-    for panel in panels {
-        let legend_at = (LEFT_MARGIN, y + panel_height + 12.0);
-        let more_rows = draw_legend(&mut svg, legend_at, width - RIGHT_MARGIN, &panel.legend());
-        panel.draw(&mut svg, Rect { x: 0.0, y, width, height: panel_height });
-        y += panel_height + LEGEND_HEIGHT + more_rows + GAP;
-    }
-    svg.resize(width, y);
-    svg.finish()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::BLUE;
-
-    #[test]
-    fn a_long_legend_takes_another_row() {
-        let mut svg = Svg::new(200.0, 100.0);
-        let entries = [("first line", BLUE, 1.0), ("second line", BLUE, 1.0), ("third line", BLUE, 1.0)];
-        assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 1000.0, &entries), 0.0);
-        assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 150.0, &entries), 2.0 * LINE_HEIGHT);
-    }
-
-    #[test]
-    fn long_ticks_stand_clear_of_the_label() {
-        let with = |y: Vec<f64>| Panel {
-            series: vec![Series { label: String::new(), colour: BLUE, x: vec![0.0, 1.0], y }],
-            ..Panel::default()
-        };
-        let left = |y: Vec<f64>| with(y).plot_area(Rect { x: 0.0, y: 0.0, width: 600.0, height: 300.0 }).0.x;
-        assert_eq!(left(vec![0.0, 1.0]), LEFT_MARGIN);
-        assert!(left(vec![0.123_456_78, 0.123_456_9]) > LEFT_MARGIN + 10.0);
-    }
-
-    #[test]
-    fn figure_names_axes_and_lines_and_cuts_at_missing_points() {
-        let panel = Panel {
-            title: vec!["Force & stroke".to_owned()],
-            x_label: "stroke (mm)".to_owned(),
-            y_label: "force (N)".to_owned(),
-            series: vec![Series {
-                label: "measured".to_owned(),
-                colour: BLUE,
-                x: vec![0.0, 1.0, 2.0, 3.0],
-                y: vec![1.0, f64::NAN, 2.0, 3.0],
-            }],
-            ..Panel::default()
-        };
-        let svg = figure_svg(&[panel], 640.0, 300.0);
-        for text in ["Force &amp; stroke", ">stroke (mm)<", ">force (N)<", ">measured<"] {
-            assert!(svg.contains(text), "{text}");
-        }
-        assert_eq!(svg.matches("<polyline").count(), 2);
+    /// Lines and points, in the order of drawing.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Series> {
+        self.behind.iter().chain(&self.series).chain(&self.points)
     }
 }

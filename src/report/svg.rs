@@ -2,25 +2,14 @@
 
 use std::fmt::Write as _;
 
-/// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
-pub const BLUE: &str = "#0072b2";
-/// See [`BLUE`].
-pub const VERMILION: &str = "#d55e00";
-/// See [`BLUE`].
-pub const GREEN: &str = "#009e73";
-/// See [`BLUE`].
-pub const ORANGE: &str = "#e69f00";
-/// See [`BLUE`].
-pub const PURPLE: &str = "#cc79a7";
-/// For what stands back: residuals, axes.
-pub const GREY: &str = "#444444";
+use super::kit::escaped;
 
 /// Width of a letter over the font size, on the wide side: room is reserved by it.
 const LETTER_WIDTH: f64 = 0.6;
 
 /// A rectangle on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
+pub(super) struct Rect {
     /// Left edge, px.
     pub x: f64,
     /// Upper edge, px.
@@ -152,23 +141,6 @@ impl Svg {
     }
 }
 
-/// Text as SVG and HTML take it.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // Neither format allows other control characters.
-            control if control.is_control() => out.push(' '),
-            other => out.push(other),
-        }
-    }
-    out
-}
-
 /// Width that a text needs at most, roughly, px.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * LETTER_WIDTH * size
@@ -190,8 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_escaped_and_cut() {
-        assert_eq!(escaped("a<b & \"c\"\n"), "a&lt;b &amp; &quot;c&quot; ");
+    fn text_is_cut() {
         assert_eq!(cut_to("abcdefghij", 10.0, 30.0), "abcd…");
         assert_eq!(cut_to("abc", 10.0, 30.0), "abc");
     }
@@ -199,7 +170,7 @@ mod tests {
     #[test]
     fn file_is_closed_and_sized() {
         let mut svg = Svg::new(20.0, 10.0);
-        svg.polyline(&[(1.0, 2.0)], BLUE, 1.0);
+        svg.polyline(&[(1.0, 2.0)], "#000000", 1.0);
         let text = svg.finish();
         assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
         assert!(text.contains(r#"viewBox="0 0 20 10""#));

@@ -2,18 +2,16 @@
 
 use serde_json::{Value, json};
 
-use crate::report::{HtmlPage, figure_svg};
+use crate::report::HtmlPage;
 
 use super::chapter::YES_NO;
 use super::{Chapter, Figure, Row, Standing};
-
-const SIZE: (f64, f64) = (720.0, 300.0);
 
 /// A figure of the paper with what was made of it.
 pub type Made = (&'static Figure, Chapter);
 
 /// One HTML page: the table of all numbers, then each figure.
-pub fn page(made: &[Made]) -> String {
+pub fn page(made: &[Made]) -> HtmlPage {
     let mut page = HtmlPage::new("Thai et al. 2021, made again");
     let (judged, text) = tally(made);
     page.verdict(&judged, &text, count(made, Standing::NotMet) == 0);
@@ -31,10 +29,10 @@ pub fn page(made: &[Made]) -> String {
             page.paragraph(text);
         });
         if !chapter.panels.is_empty() {
-            page.figure(&figure_svg(&chapter.panels, SIZE.0, SIZE.1), figure.title);
+            page.panels(&chapter.panels, "");
         }
     }
-    page.finish()
+    page
 }
 
 fn count(made: &[Made], standing: Standing) -> usize {
@@ -129,7 +127,7 @@ mod tests {
             Row::compared("width", "mm", 4.0, 6.0, 1.0, "far"),
             Row::given("bore", "mm", 4.5, "scene"),
         ];
-        let text = page(&[(figure, Chapter { rows, ..Chapter::default() })]);
+        let text = page(&[(figure, Chapter { rows, ..Chapter::default() })]).finish();
         assert!(text.contains("<strong>1 of 2 met</strong> of the numbers that can be judged; 1 not met. 1 given"));
         assert!(text.contains("<td class=\"l\">not met</td><td class=\"l\">width</td><td>4.000 mm</td>"), "{text}");
         assert!(text.contains("<td>+0.5000 mm</td>"), "{text}");

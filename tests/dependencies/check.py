@@ -6,6 +6,7 @@
 Licences   Those of all packages in Cargo.lock can be kept with the licences in licences.py.
 Sources    Everything comes from crates.io; nothing from git, nothing from a folder but our own.
 Page       docs/dependencies.md has every direct dependency and no other, with the licence, the folders and the counts that are true.
+Vendored   Files of others in the tree are unchanged, by their hashes, and have their licence beside them.
 Pins       Crates whose format or numerics change between minor releases are pinned exactly; the viewer's version is the same everywhere.
 Unsafe     None in our own code, and Cargo.toml forbids it.
 Advisories By cargo-audit or cargo-deny with a database, where they are installed.
@@ -24,6 +25,7 @@ from pathlib import Path
 import licences
 import network
 import tree
+import vendored
 
 TOP = tree.TOP
 PAGE = TOP / "docs" / "dependencies.md"
@@ -141,6 +143,7 @@ def self_test():
     licences.self_test()
     tree.self_test()
     network.self_test()
+    vendored.self_test(TOP)
     assert has_unsafe("fn f() { unsafe { g() } }") and has_unsafe("let c = '\"'; unsafe { g() } // \"") and has_unsafe("unsafe impl A for B {}")
     assert not has_unsafe('// unsafe\n/* unsafe */ let a = "unsafe"; let b = r#"a "unsafe" b"#; unsafe_code(&\'a x)')
     elsewhere = {"name": "x", "version": "1", "manifest_path": "/x/Cargo.toml"}
@@ -184,6 +187,7 @@ def main():
     report.add("sources", check_sources(packages), "crates.io alone")
     sums = ", ".join(f"{number} {what}" for what, number in counts.sums().items())
     report.add("docs/dependencies.md", check_page(root, resolved, counts, PAGE.read_text(), fuzz), sums)
+    report.add("vendored", vendored.check(TOP, PAGE.read_text()), f"uPlot {vendored.VERSION}")
     report.add("pins", check_pins(root, packages), ", ".join(sorted(PINNED)))
     report.add("unsafe", check_unsafe(), "none, and forbidden")
     report.add("advisories", *check_advisories())

@@ -1,6 +1,21 @@
 //! Text on its way into a page.
 
-use super::svg::escaped;
+/// Text as SVG and HTML take it.
+pub(in crate::report) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            // Neither format allows other control characters.
+            control if control.is_control() => out.push(' '),
+            other => out.push(other),
+        }
+    }
+    out
+}
 
 /// Escaped, with what stands between backticks marked as code. A backtick without a second one stays.
 pub(super) fn code_marked(text: &str) -> String {
@@ -24,15 +39,23 @@ pub(super) fn looks_like_number(cell: &str) -> bool {
     matches!(cell, "-" | "–") || bare.starts_with(|c: char| c.is_ascii_digit()) || matches!(bare, "NaN" | "inf")
 }
 
-/// The width that an SVG of this module gives itself, px.
-pub(super) fn svg_width(svg: &str) -> Option<f64> {
-    let (_, rest) = svg.split_once(" width=\"")?;
-    rest.split_once('"')?.0.parse().ok()
+/// A cell of a CSV file.
+pub(super) fn csv_cell(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn text_is_escaped() {
+        assert_eq!(escaped("a<b & \"c\"\n"), "a&lt;b &amp; &quot;c&quot; ");
+        assert_eq!([csv_cell("a"), csv_cell("a,\"b\"")], ["a", "\"a,\"\"b\"\"\""]);
+    }
 
     #[test]
     fn backticks_become_code_in_pairs() {
@@ -48,11 +71,5 @@ mod tests {
         for cell in ["met", "leak in line", "fixed", "-x"] {
             assert!(!looks_like_number(cell), "{cell}");
         }
-    }
-
-    #[test]
-    fn an_svg_says_how_wide_it_is() {
-        assert_eq!(svg_width("<svg xmlns=\"x\" width=\"900\" height=\"3\">"), Some(900.0));
-        assert_eq!(svg_width("<svg></svg>"), None);
     }
 }

@@ -4,7 +4,7 @@
 ///
 /// Of every stretch of samples the lowest and the highest stay, in their order, so that no peak is
 /// lost; the ends of a piece stay too.
-pub(super) fn decimate(x: &[f64], y: &[f64], budget: usize) -> Vec<Vec<(f64, f64)>> {
+pub(in crate::report) fn decimate(x: &[f64], y: &[f64], budget: usize) -> Vec<Vec<(f64, f64)>> {
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     let stretch = (2 * points.len()).div_ceil(budget.max(2)).max(1);
     points

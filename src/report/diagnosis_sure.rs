@@ -1,0 +1,101 @@
+//! How sure an answer is, as a page of a diagnosis shows it: rivals, run by run, held-out runs.
+
+use crate::diagnose::{ChannelProof, NamedEffect, Outcome};
+
+use super::colour::{BLUE, VERMILION};
+use super::diagnosis_words::estimate;
+use super::kit::{Bar, BarPanel, HtmlPage};
+
+/// Adds the section.
+pub(super) fn certainty(page: &mut HtmlPage, outcome: &Outcome) {
+    page.heading("How sure");
+    rivals(page, outcome);
+    by_run(page, &outcome.diagnosis.effects);
+    held_out(page, outcome);
+    placebos(page, outcome);
+    full_scene(page, outcome);
+}
+
+fn rivals(page: &mut HtmlPage, outcome: &Outcome) {
+    if outcome.rivals.is_empty() {
+        return;
+    }
+    let best = outcome.corrected.as_ref().map_or(0.0, |f| f.cost);
+    let rows: Vec<Vec<String>> =
+        outcome.rivals.iter().map(|(title, cost)| vec![title.clone(), format!("{:.0}", cost - best)]).collect();
+    page.subheading("Rivals, refitted jointly, and why they lost");
+    page.paragraph(
+        "chi² is the squared misfit in units of the noise, summed over all samples: with every 2 above the answer a \
+         rival is 2.7 times less likely.",
+    );
+    page.table(&["instead", "chi² above the answer"], &rows);
+}
+
+/// The size of each effect as every run by itself would have it.
+fn by_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for e in effects {
+        let key = e.size_key();
+        let sizes = e.size_by_run.iter().map(|(file, size)| (file, estimate(key, e.channel.as_deref(), size)));
+        rows.extend(sizes.map(|(file, size)| [vec![e.name.clone(), file.clone(), key.to_owned()], size].concat()));
+    }
+    if !rows.is_empty() {
+        page.subheading("Run by run");
+        page.paragraph("The size of each effect as every run by itself would have it: one rig should give one value.");
+        page.table(&["effect", "run", "parameter", "value", "95 % interval"], &rows);
+    }
+}
+
+/// Error over noise by channel, before and after.
+fn held_out(page: &mut HtmlPage, outcome: &Outcome) {
+    let fit = &outcome.diagnosis.fit;
+    // Where nothing was found the two are one.
+    let models = if outcome.diagnosis.effects.is_empty() { 1 } else { 2 };
+    let ratios = |p: &ChannelProof| [p.rmse_baseline, p.rmse_corrected].map(|rmse| Bar::plain(rmse / p.noise_sd));
+    let legend = [("calibrated".to_owned(), VERMILION), ("corrected".to_owned(), BLUE)];
+    let panel = BarPanel {
+        title: format!("Held-out runs: {}", fit.holdout.join(", ")),
+        label: "error over the noise (logarithmic)".to_owned(),
+        legend: legend[..models].to_vec(),
+        groups: fit.channels.iter().map(|(column, p)| (column.clone(), ratios(p)[..models].to_vec())).collect(),
+        is_logarithmic: true,
+    };
+    page.bars(&panel, "These runs had no part in choosing or fitting. 1: noise only.");
+    if !outcome.diagnosis.effects.is_empty() {
+        page.paragraph(&format!(
+            "On them {:.1} % of the gap between the calibrated scene and the noise is closed, 95 % interval {:.1} to {:.1} %.",
+            100.0 * fit.gap_closed.min(1.0),
+            100.0 * fit.gain_ci95[0].min(1.0),
+            100.0 * fit.gain_ci95[1].min(1.0)
+        ));
+    }
+}
+
+fn placebos(page: &mut HtmlPage, outcome: &Outcome) {
+    let placebos = &outcome.diagnosis.fit.placebo_gap_closed;
+    if placebos.is_empty() {
+        return;
+    }
+    let rows: Vec<Vec<String>> =
+        placebos.iter().map(|(title, gap)| vec![title.clone(), format!("{:.1} %", 100.0 * gap.min(1.0))]).collect();
+    page.paragraph("What other effects would have closed of the gap on the held-out runs:");
+    page.table(&["instead", "gap closed"], &rows);
+}
+
+/// How near the fast model, on which all this rests, is to the full scene.
+fn full_scene(page: &mut HtmlPage, outcome: &Outcome) {
+    let full = &outcome.diagnosis.fit.full_scene;
+    let each: Vec<String> =
+        full.rms_difference_over_noise.iter().map(|(column, d)| format!("{column} {d:.3}")).collect();
+    if each.is_empty() {
+        return;
+    }
+    let consequence = match full.agrees {
+        true => "They agree",
+        false => "They do not agree, and the figures of the held-out runs are those of the full scene",
+    };
+    page.paragraph(&format!(
+        "The fast model against the full scene with the values found, in units of the noise: {}. {consequence}.",
+        each.join(", ")
+    ));
+}
