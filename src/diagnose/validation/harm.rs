@@ -185,11 +185,11 @@ mod tests {
     use crate::diagnose::search::Begun;
     use crate::scene::Override;
 
-    /// A law that has no value after two seconds: the scene.toml that holds it could not be run.
+    /// A muscle without area after two seconds: the scene.toml that holds this law could not be run.
     #[test]
     fn what_the_full_scene_cannot_be_played_with_is_known_and_withheld() {
-        let law = "law.worn={port=\"muscle.pull\", adds=\"size_n*ln(1 - time_s/end_s)\", candidate=true, \
-            parameter={size_n={value=0.1}, end_s={value=2.0}}}";
+        let law = "law.worn={port=\"muscle.area\", scales=\"1 - worn*time_s/end_s\", candidate=true, \
+            parameter={worn={value=1.0}, end_s={value=2.0}}}";
         let own = [Override::parse(law).expect("a law")];
         let case = made::recorded_for("muscle_bench", [&[], &own], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.01)];
