@@ -17,6 +17,7 @@ mod panel_svg;
 mod quantity;
 mod svg;
 mod symbols;
+mod thin;
 
 pub use channel_figure::{ComparedChannel, ComparedRun, choices};
 pub use colour::{BLUE, GREEN, GREY, MEASURED, ORANGE, PURPLE, SILVER, VERMILION};

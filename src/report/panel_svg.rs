@@ -5,6 +5,7 @@ use super::colour::GREY;
 use super::kit::decimate;
 use super::panel::{Panel, Series};
 use super::svg::{Anchor, Rect, Svg, cut_to, text_width};
+use super::thin::{TOLERANCE_PX, thin};
 
 const TITLE_SIZE: f64 = 12.0;
 const TEXT_SIZE: f64 = 11.0;
@@ -14,7 +15,7 @@ const Y_LABEL_ROOM: f64 = 24.0;
 const RIGHT_MARGIN: f64 = 14.0;
 const LINE_HEIGHT: f64 = 16.0;
 const TICK_ROOM: f64 = 18.0;
-const POINTS_PER_LINE: usize = 500;
+const POINTS_PER_LINE: usize = 1500;
 /// Size of a dot, px.
 const DOT: f64 = 5.0;
 const MOST_DOTS: usize = 2000;
@@ -44,7 +45,7 @@ impl Panel {
         for (series, width) in self.lines() {
             for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
                 let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&points, series.colour, width);
+                svg.polyline(&thin(&points, TOLERANCE_PX), series.colour, width);
             }
         }
         for (series, x, y) in self.points.iter().flat_map(dots) {
