@@ -262,8 +262,13 @@ fn compare_writes_figures_and_picture() {
         "{}",
         said(&output)
     );
+    // Figures of the user's own stay where they are.
+    let own = here.path().join("result/figures/own.csv");
+    std::fs::create_dir_all(own.parent().expect("a folder")).expect("made");
+    std::fs::write(&own, "t,x\n").expect("written");
     let same = smam(&["compare", "rig", "--out", "result", "--set", "friction_m0_n=0.14"], here.path());
     assert!(printed(&same).contains("      0.0000"), "its own parameters leave no difference: {}", printed(&same));
+    assert!(own.is_file());
 }
 
 #[test]

@@ -12,7 +12,7 @@ use smam::report::{FIGURES, diagnosis_page};
 use super::CliError;
 use super::changes::Changes;
 use super::diagnose_view::Shown;
-use super::files::{is_same_file, make_folder, remove_stale, take_folder};
+use super::files::{is_same_file, make_folder, take_folder};
 use super::import::recordings;
 
 /// Arguments of `smam diagnose`.
@@ -127,8 +127,7 @@ fn write_all(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
     }
     let beside = page.files().iter().map(|(path, text)| (path.as_str(), text.as_str()));
     let more: Vec<(&str, &str)> = beside.chain([("report.html", text.as_str())]).collect();
-    write_answer_with(outcome, &more, out)?;
-    remove_stale(out, &page)
+    Ok(write_answer_with(outcome, &more, out)?)
 }
 
 /// An answer holds a scene.toml and a baseline.toml: they must not take the place of the scene that is diagnosed.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use smam::files::{Held, hold_folder, write_whole};
-use smam::report::{FIGURES, HtmlPage};
+use smam::report::HtmlPage;
 
 use super::CliError;
 
@@ -30,23 +30,11 @@ pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     write_whole(path, text).map_err(|source| CliError::Write { file: path.to_owned(), source })
 }
 
-/// Writes a page, and beside it the files of what it shows in part; those of a former page go.
+/// Writes a page, and beside it the files of what it shows in part. Nothing is taken away: a folder that a user names may hold figures of
+/// their own.
 pub fn write_page(folder: &Path, name: &str, page: &HtmlPage) -> Result<(), CliError> {
     page.files().iter().try_for_each(|(path, text)| write(&folder.join(path), text))?;
-    write(&folder.join(name), &page.finish())?;
-    remove_stale(folder, page)
-}
-
-/// Takes away files of former figures, which this page does not name.
-pub fn remove_stale(folder: &Path, page: &HtmlPage) -> Result<(), CliError> {
-    let Ok(entries) = std::fs::read_dir(folder.join(FIGURES)) else { return Ok(()) };
-    for file in entries.flatten().map(|entry| entry.path()) {
-        let is_ours = page.files().iter().any(|(path, _)| folder.join(path) == file);
-        if !is_ours && file.extension().is_some_and(|e| e == "csv") {
-            std::fs::remove_file(&file).map_err(|source| CliError::Write { file, source })?;
-        }
-    }
-    Ok(())
+    write(&folder.join(name), &page.finish())
 }
 
 /// Whether two paths lead to one file that is there.

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::elsewhere::elsewhere;
+use super::forms::{Criterion, equally_good, other_forms, tie, with_elsewhere};
 use super::shown::Located;
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, Sealed, Step};
@@ -19,17 +20,6 @@ const EXPLAINED: f64 = 0.02;
 const CLEARLY: f64 = 20.0;
 /// Standard errors from which what is left is more than noise.
 const SEEN: f64 = 3.0;
-/// Laws are called equally good within so many units of chi²: odds of one to twenty.
-const SAME: f64 = 6.0;
-/// Two laws of one place whose chi² differ by no more are one.
-const SAME_LAW: f64 = 0.01;
-/// Rough fits are fitted to the end within so many times that.
-const NEARLY: f64 = 20.0;
-/// What a letter of a law costs among forms that are equally good, in units of the criterion.
-const PER_LETTER: f64 = 0.02;
-/// Forms that an answer names beside its own, at most.
-const MOST_FORMS: usize = 4;
-
 /// A model with a law, the others that are as good, and where the misfit sits.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
@@ -191,15 +181,6 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
     (found, renewed.noise)
 }
 
-/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. `before` is the chi²
-/// without it.
-fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
-    let near = fit.cost + NEARLY * tie(open, &fit, before);
-    let rough = elsewhere(open, &fit);
-    let named = other_forms(&fit, rough.iter().take_while(|f| f.cost < near));
-    named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
-}
-
 /// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
 /// them clearly better, so that the effect only stands in for a law.
 fn other_places(open: &Problem, found: &mut Found) -> bool {
@@ -220,69 +201,6 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
     let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
     found.forms = other_forms(&found.best, near);
     is_better
-}
-
-/// Chi² within which other models are as good as one; `before` is the chi² without its last effect.
-fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
-    let left = misfit::left(open, fit).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
-    SAME * verdict::unit(before - fit.cost, left)
-}
-
-/// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
-pub(in crate::diagnose) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
-    let first = fits.first()?;
-    let criterion = Criterion::of(open, [first]);
-    let tie = tie(open, first, before);
-    let mut same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
-    let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
-    same.sort_by(|a, b| price(a).total_cmp(&price(b)));
-    Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
-}
-
-/// Of fits that are as good as another, best first, those that an answer names: one on every other element first, then one at every
-/// other place, then other shapes. What the sensors cannot tell apart comes before how it may be written.
-fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
-    let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();
-    let mut named = vec![best];
-    for is_new in [is_on_another_element, is_at_another_place, is_another_law] {
-        for fit in &same {
-            let is_named = named.iter().any(|own| own.model.effects == fit.model.effects);
-            if !is_named && named.iter().all(|own| is_new(own, fit)) {
-                named.push(fit);
-            }
-        }
-    }
-    named.into_iter().skip(1).take(MOST_FORMS).cloned().collect()
-}
-
-fn is_on_another_element(own: &Fit, other: &Fit) -> bool {
-    element(own) != element(other)
-}
-
-fn is_at_another_place(own: &Fit, other: &Fit) -> bool {
-    place(own) != place(other)
-}
-
-/// Whether it is not the same law in other words: `abs(time_s)` is `time_s`.
-fn is_another_law(own: &Fit, other: &Fit) -> bool {
-    is_at_another_place(own, other) || (own.cost - other.cost).abs() > SAME_LAW
-}
-
-/// The element that the last effect of a fit acts on.
-fn element(fit: &Fit) -> Option<String> {
-    let last = fit.model.effects.last()?;
-    Some(last.spec().unlisted().map_or_else(|| last.element.to_string(), |own| own.law.address.element()))
-}
-
-/// Where the last effect of a fit acts, and on what it depends.
-fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
-    let law = &fit.model.effects.last()?.spec().unlisted()?.law;
-    Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
-}
-
-/// Length of the last effect's law as text: of forms that do the same the shorter stands.
-fn letters(fit: &Fit) -> usize {
-    fit.model.effects.last().map_or(0, |e| e.spec().equation.len())
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
@@ -377,22 +295,4 @@ fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, say: &dyn Fn(String)) -> V
     let criterion = Criterion::of(open, plain.first().into_iter().chain(wide.fits.first()));
     let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
     if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
-}
-
-/// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + numbers ln(samples)`.
-pub(super) struct Criterion {
-    pub dispersion: f64,
-    per_number: f64,
-}
-
-impl Criterion {
-    fn of<'a>(problem: &Problem, fits: impl IntoIterator<Item = &'a Fit>) -> Self {
-        let least = fits.into_iter().map(|f| f.cost).fold(f64::INFINITY, f64::min);
-        let dispersion = (least / problem.noise_cost().max(1.0)).max(1.0);
-        Self { dispersion, per_number: (problem.samples() as f64).ln() }
-    }
-
-    fn at(&self, fit: &Fit) -> f64 {
-        fit.cost / self.dispersion + fit.model.effect_numbers() as f64 * self.per_number
-    }
 }

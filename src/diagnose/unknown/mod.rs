@@ -3,10 +3,11 @@
 //! May import `verdict`, `search`, `grammar`, `fit` and `case`.
 
 mod elsewhere;
+mod forms;
 pub(super) mod hypothesis;
 mod shown;
 mod span;
 mod unlisted;
 
-pub(super) use hypothesis::equally_good;
+pub(super) use forms::{SAME, equally_good};
 pub(super) use unlisted::propose;

@@ -7,7 +7,7 @@ use crate::diagnose::fit::{Fit, Problem, simulate};
 use crate::diagnose::full::play_full;
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::Found;
-use crate::diagnose::unknown::{equally_good, propose};
+use crate::diagnose::unknown::{SAME, equally_good, propose};
 
 /// What was found, if it does no harm. Else, where cables go slack, another fit that explains the open runs as well, laws that nobody
 /// listed included: that which is nearest to what was left out of them. The held-out runs choose nothing; they refuse, the second time
@@ -83,7 +83,7 @@ fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -
         }
     }
     let mut laws = laws(&open, found, say);
-    laws.retain(|fit| distance(fit) < least - AS_GOOD);
+    laws.retain(|fit| distance(fit) < least - SAME);
     if let Some((best, forms)) = equally_good(&open, &laws, found.baseline.cost) {
         return Some(Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found.clone() });
     }
@@ -99,7 +99,7 @@ fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
         return Vec::new();
     }
     let mut fits = propose(open, &found.baseline, Reach::Plain, say).map_or_else(Vec::new, |p| p.fits);
-    fits.retain(|fit| fit.cost <= found.best.cost + AS_GOOD);
+    fits.retain(|fit| fit.cost <= found.best.cost + SAME);
     fits
 }
 
@@ -111,11 +111,8 @@ enum Place {
     Rival(usize),
 }
 
-/// Chi² within which another fit explains the open runs as well: odds of one to twenty.
-const AS_GOOD: f64 = 6.0;
-
 fn as_good(found: &Found) -> Vec<(Place, Fit)> {
-    let near = found.best.cost + AS_GOOD;
+    let near = found.best.cost + SAME;
     let forms = found.forms.iter().enumerate().map(|(i, fit)| (Place::Form(i), fit));
     let rivals = found.rivals.last().into_iter().flatten().enumerate().map(|(i, fit)| (Place::Rival(i), fit));
     forms.chain(rivals).filter(|(_, fit)| fit.cost <= near).map(|(place, fit)| (place, fit.clone())).collect()

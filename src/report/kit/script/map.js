@@ -19,24 +19,14 @@ const mixed = share => `color-mix(in oklab, ${colour("heat")} ${Math.round(100 *
 function cellPainter(x, y, values) {
   const [halfX, halfY] = [halfStep(x), halfStep(y)];
   const share = shares(values);
-  return (plot, index) => {
-    uPlot.orient(plot, index, (series, xs, ys, sx, sy, toX, toY, left, top, width, height) => {
-      const { ctx } = plot;
-      ctx.save();
-      ctx.beginPath();
-      ctx.rect(left, top, width, height);
-      ctx.clip();
-      xs.forEach((value, i) => {
-        if (values[i] === null) return;
-        const [from, to] = [toX(value - halfX, sx, width, left), toX(value + halfX, sx, width, left)];
-        const [low, high] = [toY(ys[i] - halfY, sy, height, top), toY(ys[i] + halfY, sy, height, top)];
-        ctx.fillStyle = mixed(share.of(values[i]));
-        ctx.fillRect(Math.floor(from), Math.floor(high), Math.ceil(to - from) + 1, Math.ceil(low - high) + 1);
-      });
-      ctx.restore();
+  return paintedBy((ctx, xs, ys, across, up) => {
+    xs.forEach((value, i) => {
+      if (values[i] === null) return;
+      const [from, to, low, high] = [across(value - halfX), across(value + halfX), up(ys[i] - halfY), up(ys[i] + halfY)];
+      ctx.fillStyle = mixed(share.of(values[i]));
+      ctx.fillRect(Math.floor(from), Math.floor(high), Math.ceil(to - from) + 1, Math.ceil(low - high) + 1);
     });
-    return null;
-  };
+  });
 }
 
 /** A map in a figure of its own; `pick(row)` hears of a press. */

@@ -1,22 +1,13 @@
 // Loops and points: the cursor reads the point that is nearest to it.
 
-/** Draws a trace of a scatter plot; what it returns is empty, so that it is asked at every change of a scale. */
+/** Draws a trace of a scatter plot. */
 function painter(trace) {
-  return (plot, index) => {
-    uPlot.orient(plot, index, (series, xs, ys, sx, sy, toX, toY, left, top, width, height) => {
-      const { ctx } = plot;
-      ctx.save();
-      ctx.beginPath();
-      ctx.rect(left, top, width, height);
-      ctx.clip();
-      ctx.strokeStyle = ctx.fillStyle = colour(trace.colour);
-      const at = i => [toX(xs[i], sx, width, left), toY(ys[i], sy, height, top)];
-      if (trace.style !== "points") paintLine(ctx, xs, ys, at, WIDTHS[trace.style]);
-      if (trace.style === "points" || hasDots(trace)) paintPoints(ctx, xs, ys, at);
-      ctx.restore();
-    });
-    return null;
-  };
+  return paintedBy((ctx, xs, ys, across, up) => {
+    ctx.strokeStyle = ctx.fillStyle = colour(trace.colour);
+    const at = i => [across(xs[i]), up(ys[i])];
+    if (trace.style !== "points") paintLine(ctx, xs, ys, at, WIDTHS[trace.style]);
+    if (trace.style === "points" || hasDots(trace)) paintPoints(ctx, xs, ys, at);
+  });
 }
 
 const isThere = (xs, ys, i) => xs[i] !== null && ys[i] !== null;

@@ -43,3 +43,20 @@ function reading(label, value) {
   const unit = parts && parts[2] !== "-" && parts[2] !== "1" ? ` ${parts[2]}` : "";
   return `${parts ? parts[1] : label} ${digits(value)}${unit}`;
 }
+
+/** What uPlot asks to draw a series: `draw` gets the canvas, clipped to the axes, and the ways from values to its points. What uPlot gets back is
+ * empty, so that it asks again at every change of a scale. */
+function paintedBy(draw) {
+  return (plot, index) => {
+    uPlot.orient(plot, index, (series, xs, ys, sx, sy, toX, toY, left, top, width, height) => {
+      const { ctx } = plot;
+      ctx.save();
+      ctx.beginPath();
+      ctx.rect(left, top, width, height);
+      ctx.clip();
+      draw(ctx, xs, ys, x => toX(x, sx, width, left), y => toY(y, sy, height, top));
+      ctx.restore();
+    });
+    return null;
+  };
+}
