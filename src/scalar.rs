@@ -103,6 +103,13 @@ pub trait Scalar:
     }
 
     fn abs(&self) -> Self;
+
+    /// `|x|`, with the slopes of its mean over `still` to both sides: at rest a small change goes either way.
+    fn abs_about_rest(&self, still: Self) -> Self {
+        let _ = still;
+        self.abs()
+    }
+
     fn recip(&self) -> Self;
     fn sqrt(&self) -> Self;
     fn exp(&self) -> Self;
@@ -144,6 +151,15 @@ impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
     #[inline]
     fn abs(&self) -> Self {
         T::abs(self)
+    }
+
+    #[inline]
+    fn abs_about_rest(&self, still: Self) -> Self {
+        let (x, still) = (self.value(), still.value());
+        if T::NDERIV == 0 || x.abs() >= still {
+            return T::abs(self);
+        }
+        *self * (x / still) + (x.abs() - x * x / still)
     }
 
     hand_on!(recip, sqrt, exp, exp_m1, ln, ln_1p, tanh, sin, cos);

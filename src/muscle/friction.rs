@@ -56,6 +56,9 @@ pub struct RateJacobian<D> {
     pub drate_dv: D,
 }
 
+/// Presliding lengths a second below which sensitivities take it for rest.
+const STILL_1_S: f64 = 0.02;
+
 impl<D: Scalar> Friction<D> {
     /// The law with `A = nu = n = 1`, `rho = 0`: Dahl's friction with a pressure-dependent level.
     pub fn dahl(m0_n: D, m1_n_pa: D, presliding_length_m: D) -> Self {
@@ -96,7 +99,7 @@ impl<D: Scalar> Friction<D> {
 
     /// `dz/dt`, 1/s, at `de/dt = velocity_m_s`.
     pub fn rate(&self, z: D, velocity_m_s: D) -> D {
-        let pace = velocity_m_s.abs();
+        let pace = velocity_m_s.abs_about_rest(self.presliding_length_m * STILL_1_S);
         (self.a * velocity_m_s + pace * self.pull_back(z)) / self.presliding_length_m
     }
 

@@ -5,6 +5,8 @@ mod lanes;
 use crate::hydraulics::ChainRow;
 use crate::scalar::Scalar;
 
+use super::plant::Plant;
+
 /// State of a [`super::Plant`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantState<D> {
@@ -289,6 +291,28 @@ impl<D: Scalar> PlantState<D> {
     /// Rates of the coordinates.
     pub fn w(&self) -> &[D] {
         self.parts().w()
+    }
+
+    /// All its numbers: the row, then what is remembered of each muscle.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = &D> {
+        self.row.iter().chain(&self.greatest_j).chain(&self.piston_ahead_m).chain(&self.piston_law_m)
+    }
+
+    /// The same, to be written.
+    pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut D> {
+        let remembered = self.greatest_j.iter_mut().chain(&mut self.piston_ahead_m).chain(&mut self.piston_law_m);
+        self.row.iter_mut().chain(remembered)
+    }
+
+    /// Places of those that something in the plant goes by.
+    pub(super) fn numbers_in_use(&self, plant: &Plant<D>) -> Vec<usize> {
+        let extras = || plant.muscles.iter().map(|m| &m.extras);
+        let softens = extras().map(|e| e.mullins.is_some());
+        let lags = extras().map(|e| e.backlash.is_some());
+        let is_moved = plant.laws.as_ref().is_some_and(|laws| laws.moves_pistons());
+        let moved = plant.muscles.iter().map(|_| is_moved);
+        let all = self.row.iter().map(|_| true).chain(softens).chain(lags).chain(moved);
+        all.enumerate().filter_map(|(i, used)| used.then_some(i)).collect()
     }
 
     /// Coordinates and rates to be written.

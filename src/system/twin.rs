@@ -6,6 +6,7 @@
 //! sensitivities to calibrated parameters and effects are exact.
 
 mod course;
+mod directions;
 mod inject;
 mod lump;
 mod many;
@@ -31,6 +32,7 @@ use super::state::PlantState;
 use super::{Schedule, SystemError};
 
 use course::Course;
+pub use inject::{Change, Signals};
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::{MuscleNumber, TwinParameter};
@@ -218,8 +220,7 @@ impl Twin {
         let mut course = Course::new(&mut plant, state, run);
         for k in 0..run.times_s.len() {
             if k > 0 {
-                let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
-                course.advance(&mut plant, run, k, steps);
+                course.advance(&mut plant, run, k, self.steps_in(run, k));
                 if !course.is_sound(&plant) {
                     return None;
                 }
@@ -227,6 +228,13 @@ impl Twin {
             show(k, &plant, &course.state, &course.spans);
         }
         Some(())
+    }
+
+    /// The same model with sensors as they are made.
+    fn without_laws_of_sensors(&self) -> Self {
+        let mut bare = self.clone();
+        bare.outputs.iter_mut().for_each(|output| output.laws.clear());
+        bare
     }
 
     /// The plant with its parameters and effects, at its start.

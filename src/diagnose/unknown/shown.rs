@@ -7,6 +7,8 @@ use super::span::{explained, sizes};
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Model, Number, Problem, Sides, Underway, Variant, orthogonal};
 use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
+use crate::effects::Effect;
+use crate::system::{Change, Signals};
 
 /// Scales of a shape that are tried, in those of the slot.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
@@ -14,8 +16,6 @@ const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
 const FIRST_STEPS: usize = 4;
 const GOING_ON: usize = 8;
 const MORE_STEPS: usize = 20;
-/// Share of a slot's typical size that is injected.
-const INJECTED: f64 = 2e-2;
 
 /// A slot with the share of the misfit that a curve over its variable could explain.
 #[derive(Clone, Debug)]
@@ -255,40 +255,39 @@ impl<'a> Shown<'a> {
 
     /// The part of each signature that stands in one run.
     fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
-        let problem = self.problem;
-        let setting = self.along.model.setting(problem.case, run, &self.along.x);
-        let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
-        let mut ports: Vec<&Slot> = Vec::new();
-        for w in wanted {
-            if ports.iter().all(|p| p.injected != w.slot.injected) {
-                ports.push(w.slot);
+        let setting = self.along.model.setting(self.problem.case, run, &self.along.x);
+        let mut ports: Vec<(&Slot, Vec<usize>)> = Vec::new();
+        for (i, w) in wanted.iter().enumerate() {
+            match ports.iter_mut().find(|(port, _)| port.injected == w.slot.injected) {
+                Some((_, own)) => own.push(i),
+                None => ports.push((w.slot, vec![i])),
             }
         }
-        let of_ports = ports.into_par_iter().map(|port| {
-            let own: Vec<usize> = (0..wanted.len()).filter(|&i| wanted[i].slot.injected == port.injected).collect();
-            let step = INJECTED * port.typical;
-            let signal = |&i: &usize| -> Vec<f64> {
-                let w = &wanted[i];
-                w.slot.series[r].iter().map(|x| step * (w.shape.at)(x / w.scale)).collect()
-            };
-            let signals: Vec<Vec<f64>> = own.iter().map(signal).collect();
-            let changes = run.twin.injected(&run.drive, &setting, &port.injected.with(&[0.0]), &signals);
-            let number = number(port.typical);
-            let weighted = changes.into_iter().map(|change| {
-                let change = change?;
-                let channels = problem.case.channels.iter().enumerate();
-                let each = channels.flat_map(|(c, channel)| {
-                    let slope: Vec<f64> = change[channel.output][run.lead_in..].iter().map(|x| x / step).collect();
-                    problem.weighted_slope(run, c, &slope, &number).collect::<Vec<f64>>()
-                });
-                Some(each.collect())
-            });
-            own.into_iter().zip(weighted.collect::<Vec<_>>()).collect::<Vec<_>>()
-        });
-        for (i, signature) in of_ports.collect::<Vec<_>>().into_iter().flatten() {
-            found[i] = signature;
+        let at: Vec<Effect<f64>> = ports.iter().map(|(port, _)| port.injected.with(&[0.0])).collect();
+        let signal = |&i: &usize| -> Vec<f64> {
+            let w = &wanted[i];
+            w.slot.series[r].iter().map(|x| (w.shape.at)(x / w.scale)).collect()
+        };
+        let signals =
+            ports.iter().zip(&at).map(|((_, own), at)| Signals { at, values: own.iter().map(signal).collect() });
+        let changes = run.twin.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
+        let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
+        for ((port, own), changes) in ports.iter().zip(changes) {
+            for (&i, change) in own.iter().zip(changes) {
+                found[i] = change.map(|change| self.weighted(run, &change, port.typical));
+            }
         }
         found
+    }
+
+    /// What a signal of this size changes, in units of the noise.
+    fn weighted(&self, run: &CaseRun, change: &Change, size: f64) -> Vec<f64> {
+        let number = number(size);
+        let channels = self.problem.case.channels.iter().enumerate();
+        let each = channels.flat_map(|(c, channel)| {
+            self.problem.weighted_slope(run, c, &change[channel.output][run.lead_in..], &number).collect::<Vec<f64>>()
+        });
+        each.collect()
     }
 }
 
@@ -305,5 +304,5 @@ fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> 
 }
 
 fn number(scale: f64) -> Number {
-    Number { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: INJECTED, prior: 0.0, prior_weight: 0.0 }
+    Number { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: 1.0, prior: 0.0, prior_weight: 0.0 }
 }

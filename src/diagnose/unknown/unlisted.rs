@@ -2,7 +2,7 @@
 //!
 //! Every slot of the grammar (a port and a variable) is screened first: small signals of several shapes are injected at its port,
 //! and what a curve made up of them could explain says how well the slot does, whatever the law's shape. Around the best slots all
-//! shapes are screened, the best are refitted jointly with the calibration.
+//! shapes are screened, and the mere number at the same place; the best are refitted jointly with the calibration.
 
 use rayon::prelude::*;
 
@@ -62,7 +62,10 @@ pub(in crate::diagnose) fn propose(
         wide.first().map_or("", |s| &s.variable),
         wide.first().map_or("", |s| &s.address)
     ));
-    fits.extend(shown.refits(&all, &wide, SHAPES_OF_SLOT));
+    let numbers = all.iter().filter(|slot| slot.is_constant() && !best.contains(slot));
+    let numbers = numbers.filter(|slot| wide.iter().any(|w| w.address == slot.address));
+    let more: Vec<&Slot> = wide.iter().copied().chain(numbers).collect();
+    fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
     let count = fits.len().min(FINISHED);

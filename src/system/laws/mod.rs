@@ -124,13 +124,6 @@ impl<D: Scalar> PlantLaws<D> {
         self.values[law][parameter] = value;
     }
 
-    /// Gives all parameters of the last law this value.
-    pub(super) fn set_last(&mut self, value: D) {
-        if let Some(values) = self.values.last_mut() {
-            values.fill(value);
-        }
-    }
-
     pub fn laws(&self) -> &[Law] {
         &self.laws
     }

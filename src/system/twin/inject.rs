@@ -1,78 +1,281 @@
-//! Signals injected at a port of the fast model, several at a time.
+//! Small signals at ports of the fast model: what they change of its outputs.
+//!
+//! In what is small the model is linear along its run. From sample to sample
+//!
+//! ```text
+//! dx[k] = A[k] dx[k-1] + b[k] u[k]        dy[k] = C[k] dx[k-1] + d[k] u[k]
+//! ```
+//! where `A` and `C` are the same for all signals and `b` and `d` for all at one port. Runs that carry exact derivatives yield
+//! them once ([`Directions`]); a signal then costs a product of a small matrix and a vector for each sample, whatever the model.
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::effects::Effect;
-use crate::scalar::{Lanes, Scalar, take_disagreement};
+use crate::laws::Port;
+use crate::scalar::Lanes;
 
-use super::course::Course;
+use super::directions::{Columns, Directions, TOGETHER};
+use super::output::Sensors;
 use super::{Twin, TwinRun, TwinSetting};
 
-/// Signals taken together; the first place stays without a signal.
-const TOGETHER: usize = 8;
+/// Samples that are gone through at a time, and signals.
+const BLOCK: usize = 256;
+const SIGNALS: usize = 8;
+type Eight = Lanes<SIGNALS>;
+
+/// What acts at a port: a law whose only number it is, and its values, one for each sample of the run.
+#[derive(Clone, Debug)]
+pub struct Signals<'a> {
+    pub at: &'a Effect<f64>,
+    pub values: Vec<Vec<f64>>,
+}
+
+/// What a signal changes of every output, in the unit of its column, by output and sample.
+pub type Change = Vec<Vec<f64>>;
 
 impl Twin {
-    /// What each signal changes of every output, in the unit of its column, by signal, output and sample; none where the model
-    /// diverges. A signal holds one value for each sample of the run.
+    /// What each signal changes, per unit, by port and signal; none where the model diverges.
     ///
-    /// `at` is a law whose only number is the signal, as an effect. Branches are those of the run without a signal: what comes out
-    /// is the response along them, right for small signals.
-    pub fn injected(
-        &self,
-        run: &TwinRun,
-        setting: &TwinSetting<f64>,
-        at: &Effect<f64>,
-        signals: &[Vec<f64>],
-    ) -> Vec<Option<Vec<Vec<f64>>>> {
-        let groups: Vec<_> =
-            signals.par_chunks(TOGETHER - 1).map(|group| self.inject(run, setting, at, group)).collect();
-        groups.into_iter().flatten().collect()
+    /// Branches are those of the run without signals: what comes out is the response along them.
+    pub fn injected(&self, run: &TwinRun, setting: &TwinSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
+        let mut found: Vec<Vec<Option<Change>>> = ports.iter().map(|port| vec![None; port.values.len()]).collect();
+        if self.standalone.is_some() {
+            return found;
+        }
+        let mut kinds: Vec<Option<Port>> = ports.iter().map(|port| memory(port.at)).collect();
+        kinds.sort();
+        kinds.dedup();
+        for kind in kinds {
+            let own: Vec<usize> = (0..ports.len()).filter(|&i| memory(ports[i].at) == kind).collect();
+            let alike: Vec<&Signals> = own.iter().map(|&i| &ports[i]).collect();
+            let changes = self.through(run, setting, &alike, kind.is_some());
+            own.into_iter().zip(changes).for_each(|(i, changes)| found[i] = changes);
+        }
+        found
     }
 
-    fn inject(
+    /// The same for ports whose laws give the state the same numbers, if it `remembers` them at all.
+    fn through(
         &self,
         run: &TwinRun,
         setting: &TwinSetting<f64>,
-        at: &Effect<f64>,
-        signals: &[Vec<f64>],
-    ) -> Vec<Option<Vec<Vec<f64>>>> {
-        type D = Lanes<TOGETHER>;
-        let constant = |effect: &Effect<f64>| Effect {
-            entry: effect.entry,
-            element: effect.element,
-            channel: effect.channel.clone(),
-            values: effect.values.iter().map(|&x| D::constant(x)).collect(),
-        };
-        let setting = TwinSetting {
-            parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::constant(*x))).collect(),
-            effects: setting.effects.iter().chain([at]).map(constant).collect(),
-        };
-        let (mut plant, state) = self.prepare(&setting);
-        let mut course = Course::new(&mut plant, state, run);
-        let mut room = None;
-        let mut changes = vec![vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()]; signals.len()];
-        for k in 0..run.times_s.len() {
-            if k > 0 {
-                let mean = |lane: usize| match lane.checked_sub(1).and_then(|i| signals.get(i)) {
-                    Some(signal) => 0.5 * (signal[k - 1] + signal[k]),
-                    None => 0.0,
-                };
-                if let Some(laws) = &mut plant.laws {
-                    laws.set_last(Lanes(std::array::from_fn(mean)));
+        ports: &[&Signals],
+        remembers: bool,
+    ) -> Vec<Vec<Option<Change>>> {
+        let memory = ports.first().map(|port| port.at).filter(|_| remembers);
+        let numbers = self.numbers(setting, memory);
+        let effects: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
+        let mut of_state = Directions::of_state(self, run, setting, memory, &numbers);
+        let mut of_ports = Directions::of_ports(self, run, setting, &effects, &numbers);
+        let start: Vec<Columns> = of_ports.iter_mut().map(Directions::start).collect();
+        let mut waves: Vec<Wave> = ports
+            .iter()
+            .enumerate()
+            .flat_map(|(port, own)| own.values.chunks(SIGNALS).map(move |signals| (port, signals)))
+            .map(|(port, signals)| Wave::new(port, signals, numbers.len(), &start))
+            .collect();
+        let samples = run.times_s.len();
+        for from in (1..samples).step_by(BLOCK) {
+            let block = from..samples.min(from + BLOCK);
+            let follow = |some: &mut Directions| some.follow(block.clone());
+            let columns: Vec<Columns> = of_state.par_iter_mut().chain(&mut of_ports).map(follow).collect();
+            let (state, ports) = columns.split_at(of_state.len());
+            let matrices: Vec<DMatrix<f64>> = (0..block.len()).map(|k| self.matrix(state, &numbers, k)).collect();
+            waves.par_iter_mut().for_each(|wave| wave.go_on(block.start, &matrices, ports));
+        }
+        let is_sound = of_state.iter().chain(&of_ports).all(|some| some.is_sound);
+        let shown = self.shown_by_sensors(run, setting);
+        let mut changes = waves.into_iter().flat_map(|wave| wave.changes);
+        let is_finite = |change: &Change| is_sound && change.iter().flatten().all(|x| x.is_finite());
+        let one = |change: Change| Some(shown(change)).filter(is_finite);
+        ports.iter().map(|port| changes.by_ref().take(port.values.len()).map(one).collect()).collect()
+    }
+
+    /// `[A; C]` of an interval.
+    fn matrix(&self, columns: &[Columns], numbers: &[usize], interval: usize) -> DMatrix<f64> {
+        let all = columns.iter().flat_map(|c| c.of(interval)).copied();
+        DMatrix::from_iterator(numbers.len() + self.outputs.len(), numbers.len(), all)
+    }
+
+    /// Places of the numbers that make up the state.
+    fn numbers(&self, setting: &TwinSetting<f64>, memory: Option<&Effect<f64>>) -> Vec<usize> {
+        let mut setting = setting.clone();
+        setting.effects.extend(memory.cloned());
+        let (plant, state) = self.prepare(&setting);
+        state.numbers_in_use(&plant)
+    }
+
+    /// What sensors make of a change, which they see on top of what the model shows.
+    fn shown_by_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> impl Fn(Change) -> Change {
+        let without = super::many::without_sensors(setting);
+        let has_sensors = without != *setting || self.outputs.iter().any(|o| !o.laws.is_empty());
+        let base = if has_sensors { self.without_laws_of_sensors().simulate(run, &without) } else { None };
+        move |mut change| {
+            let Some(base) = &base else { return change };
+            for ((output, change), base) in self.outputs.iter().zip(&mut change).zip(base) {
+                let [mut with, mut plain] = [(); 2].map(|()| Sensors::new(&self.outputs, setting));
+                for ((&time, change), &base) in run.times_s.iter().zip(change).zip(base) {
+                    *change = with.show(output, time, base + *change) - plain.show(output, time, base);
                 }
-                let steps = run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1]);
-                course.advance(&mut plant, run, k, steps);
             }
-            for (o, output) in self.outputs.iter().enumerate() {
-                let Lanes(shown) = output.read(&plant, &course.state, &course.spans, &mut room);
-                for (change, value) in changes.iter_mut().zip(&shown[1..]) {
-                    change[o].push(value - shown[0]);
+            change
+        }
+    }
+}
+
+/// The port whose law gives the state numbers of its own, if it does.
+fn memory(at: &Effect<f64>) -> Option<Port> {
+    let port = at.entry.unlisted()?.law.address.port;
+    matches!(port, Port::Plunger | Port::Lever).then_some(port)
+}
+
+/// Some signals at one port on their way.
+struct Wave<'a> {
+    port: usize,
+    signals: &'a [Vec<f64>],
+    /// Of each number of the state what they have changed so far.
+    state: Vec<Eight>,
+    next: Vec<Eight>,
+    changes: Vec<Change>,
+}
+
+impl<'a> Wave<'a> {
+    /// At the first sample, where the columns of the ports are `start`.
+    fn new(port: usize, signals: &'a [Vec<f64>], numbers: usize, start: &[Columns]) -> Self {
+        let samples = signals.first().map_or(0, Vec::len);
+        let outputs = column(start, 0, port).len() - numbers;
+        let changes = vec![vec![Vec::with_capacity(samples); outputs]; signals.len()];
+        let none = Lanes([0.0; SIGNALS]);
+        let mut wave = Self { port, signals, state: vec![none; numbers], next: vec![none; numbers + outputs], changes };
+        wave.act(|signal| signal[0], column(start, 0, port));
+        wave.note();
+        wave
+    }
+
+    /// What acts at the port, by what it comes to.
+    fn act(&mut self, acting: impl Fn(&[f64]) -> f64, column: &[f64]) {
+        let acting = Lanes(std::array::from_fn(|s| self.signals.get(s).map_or(0.0, |signal| acting(signal))));
+        self.next.iter_mut().zip(column).for_each(|(next, &slope)| *next = acting * slope);
+    }
+
+    /// Takes over state and outputs.
+    fn note(&mut self) {
+        let (state, outputs) = self.next.split_at(self.state.len());
+        self.state.copy_from_slice(state);
+        for (s, change) in self.changes.iter_mut().enumerate() {
+            change.iter_mut().zip(outputs).for_each(|(series, Lanes(output))| series.push(output[s]));
+        }
+    }
+
+    /// Through intervals of which the first ends at sample `from`.
+    fn go_on(&mut self, from: usize, matrices: &[DMatrix<f64>], ports: &[Columns]) {
+        for (i, matrix) in matrices.iter().enumerate() {
+            let k = from + i;
+            self.act(|signal| 0.5 * (signal[k - 1] + signal[k]), column(ports, i, self.port));
+            for (j, &number) in self.state.iter().enumerate() {
+                self.next.iter_mut().zip(&matrix.column(j)).for_each(|(next, &slope)| *next += number * slope);
+            }
+            self.note();
+        }
+    }
+}
+
+/// What acts at a port comes to this by the end of an interval.
+fn column(ports: &[Columns], interval: usize, port: usize) -> &[f64] {
+    ports[port / TOGETHER].column(interval, port % TOGETHER)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use num_dual::Dual64;
+
+    use super::*;
+    use crate::effects::{Element, EntryId, Fitted, Range};
+    use crate::laws::{Carrier, LawTable, PORTS, PortSpec, Surroundings};
+    use crate::scene::Scene;
+    use crate::system::Schedule;
+
+    const SWING_S: f64 = 1.0;
+
+    /// A law at a port whose size stands before something that swings, or before nothing.
+    fn law(spec: &PortSpec, swings: bool) -> Effect<f64> {
+        let text = if swings { "a * sin(time_s / scale_s)" } else { "a" }.to_owned();
+        let (adds, scales, unit) = match spec.adds.first() {
+            Some(unit) => (Some(text), None, unit),
+            None => (None, Some(format!("1 + {text}")), &"1"),
+        };
+        let number = |value: f64, unit: &str| crate::laws::ParameterTable {
+            value,
+            unit: Some(unit.to_owned()),
+            ..crate::laws::ParameterTable::default()
+        };
+        let all = [("a", number(0.0, unit)), ("scale_s", number(SWING_S, "s"))];
+        let parameter: BTreeMap<_, _> =
+            all.into_iter().take(1 + usize::from(swings)).map(|(name, n)| (name.to_owned(), n)).collect();
+        let port =
+            if spec.term.is_empty() { spec.element.to_owned() } else { format!("{}.{}", spec.element, spec.term) };
+        let table = LawTable { name: "small".to_owned(), port, adds, scales, parameter, ..LawTable::default() };
+        let law = table.law(&Surroundings::default()).expect("a law");
+        let range = Range { min: -1.0, max: 1.0 };
+        let numbers = law.parameters.iter().map(|p| Fitted { typical: p.value, range, is_fitted: true });
+        let entry = EntryId::write(&table, &law, 0, &numbers.collect::<Vec<_>>());
+        let values = law.parameters.iter().map(|p| p.value).collect();
+        Effect { entry, element: Element::of(entry.element, 0, 1), channel: None, values }
+    }
+
+    /// Derivatives to the size of such a law, by output and sample.
+    fn exact(twin: &Twin, run: &TwinRun, law: Effect<f64>) -> Vec<Vec<f64>> {
+        let Effect { entry, element, channel, values } = law;
+        let mut values: Vec<Dual64> = values.into_iter().map(Dual64::from).collect();
+        values[0].eps = 1.0;
+        let effects = vec![Effect { entry, element, channel, values }];
+        let series = twin.simulate(run, &TwinSetting { parameters: Vec::new(), effects }).expect("it does not diverge");
+        series.into_iter().map(|channel| channel.into_iter().map(|x| x.eps).collect()).collect()
+    }
+
+    /// Signals sent through the matrices, against derivatives to the size of a law: one that stays is met to rounding; one that
+    /// swings is held over each interval, so that what moves at once lags by half of that.
+    #[test]
+    fn a_small_signal_does_what_a_small_law_does() {
+        for name in ["muscle_bench", "antagonistic_pulley", "bending_catheter"] {
+            let scene = Scene::load(name, &[]).expect("a stock scene");
+            let twin = Twin::new(&scene).expect("a fast model");
+            let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.002));
+            let has = |spec: &&PortSpec| match spec.carrier {
+                Carrier::Muscle => true,
+                Carrier::Cable | Carrier::Joint => !scene.file.cable.is_empty(),
+                Carrier::Sensor => false,
+            };
+            let ports: Vec<&PortSpec> = PORTS.iter().filter(has).collect();
+            let at: Vec<Effect<f64>> = ports.iter().map(|spec| law(spec, false)).collect();
+            let swing: Vec<f64> = run.times_s.iter().map(|t| (t / SWING_S).sin()).collect();
+            let steady = vec![1.0; swing.len()];
+            let values = [vec![steady; SIGNALS], vec![swing]].concat();
+            let signals: Vec<Signals> = at.iter().map(|at| Signals { at, values: values.clone() }).collect();
+            let found = twin.injected(&run, &TwinSetting::default(), &signals);
+            let moving = twin.columns().position(|c| ["elongation_mm", "angle_deg", "bend_deg"].contains(&c));
+            let moving = moving.expect("what moves");
+            for (spec, found) in ports.iter().zip(found) {
+                let [steady, other, swinging] = [0, 7, 8].map(|i| found[i].as_ref().expect("finite"));
+                let port = (name, spec.element, spec.term);
+                assert_eq!(steady, other);
+                for (change, exact) in steady.iter().zip(exact(&twin, &run, law(spec, false))) {
+                    let off = off(change, &exact);
+                    assert!(off < 1e-6, "{port:?}: {off}");
                 }
+                let off = off(&swinging[moving], &exact(&twin, &run, law(spec, true))[moving]);
+                assert!(off < 0.05, "{port:?} swings: {off}");
             }
         }
-        // The first lane has decided; that others would have gone another way is the point.
-        take_disagreement();
-        let is_finite = |change: &Vec<Vec<f64>>| change.iter().flatten().all(|x| x.is_finite());
-        changes.into_iter().map(|change| is_finite(&change).then_some(change)).collect()
+    }
+
+    /// Distance of two series as a share of the second's size; as it is where that is nothing at all.
+    fn off(series: &[f64], exact: &[f64]) -> f64 {
+        let size = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
+        let whole = size(&mut exact.iter().copied());
+        size(&mut series.iter().zip(exact).map(|(s, x)| s - x)) / if whole > 0.0 { whole } else { 1.0 }
     }
 }

@@ -119,7 +119,7 @@ impl Twin {
     }
 }
 
-fn without_sensors(setting: &TwinSetting<f64>) -> TwinSetting<f64> {
+pub(super) fn without_sensors(setting: &TwinSetting<f64>) -> TwinSetting<f64> {
     let mut body = setting.clone();
     body.effects.retain(|effect| effect.element.kind != ElementKind::Sensor);
     body.parameters.retain(|(parameter, _)| !matches!(parameter, TwinParameter::SensorLaw(..)));
@@ -218,7 +218,7 @@ impl<const L: usize> Bundle<'_, L> {
 
     /// Over the interval that ends at sample `k`.
     fn advance(&mut self, twin: &Twin, k: usize) {
-        let steps = self.run.plan.as_ref().map_or_else(|| twin.steps_by_rule(self.run, k), |plan| plan[k - 1]);
+        let steps = twin.steps_in(self.run, k);
         if self.phase == Phase::Together {
             self.before.clone_from(&self.course.state);
             self.course.advance(&mut self.plant, self.run, k, steps);

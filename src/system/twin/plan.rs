@@ -71,8 +71,13 @@ impl Twin {
         Some(Arc::from(plan))
     }
 
-    /// Steps of an interval without a plan.
-    pub(super) fn steps_by_rule(&self, run: &TwinRun, k: usize) -> u16 {
+    /// Steps of the interval that ends at sample `k`.
+    pub(super) fn steps_in(&self, run: &TwinRun, k: usize) -> u16 {
+        run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1])
+    }
+
+    /// Those of an interval without a plan.
+    fn steps_by_rule(&self, run: &TwinRun, k: usize) -> u16 {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
         let shorter = if from - run.times_s[0] < super::RINGING_S { super::RINGING_STEPS } else { 1.0 };
         let steps = ((to - from) * shorter / self.step_s - 1e-6).ceil();

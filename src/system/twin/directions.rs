@@ -1,0 +1,169 @@
+//! The fast model between two samples, as a matrix: what small changes of its state, and of what acts at its ports, come to.
+
+use std::ops::Range;
+
+use num_dual::DualSVec64;
+
+use crate::effects::Effect;
+use crate::scalar::Scalar;
+use crate::system::laws::Acts;
+use crate::system::plant::Plant;
+
+use super::course::Course;
+use super::{Twin, TwinRun, TwinSetting};
+
+/// Directions that one run follows, and the number that carries the derivatives along them.
+pub(super) const TOGETHER: usize = 8;
+type D = DualSVec64<TOGETHER>;
+
+/// What is changed at the beginning of every interval.
+#[derive(Clone, Debug)]
+enum Along {
+    /// Numbers of the state, by their places.
+    State(Vec<usize>),
+    /// What acts at so many ports, over the whole interval.
+    Ports(usize),
+}
+
+/// A run that carries derivatives along a few directions, begun anew with every interval.
+pub(super) struct Directions<'a> {
+    twin: &'a Twin,
+    run: &'a TwinRun,
+    along: Along,
+    /// Places of the state's numbers that are looked at.
+    numbers: &'a [usize],
+    plant: Plant<D>,
+    course: Course<D>,
+    room: Option<Acts<D>>,
+    pub is_sound: bool,
+}
+
+/// Derivatives over some intervals: of each interval and direction the numbers of the state at its end, then the outputs there.
+pub(super) struct Columns {
+    values: Vec<f64>,
+    directions: usize,
+    length: usize,
+}
+
+impl Columns {
+    /// Those of an interval, one after the other.
+    pub fn of(&self, interval: usize) -> &[f64] {
+        let all = self.directions * self.length;
+        &self.values[interval * all..][..all]
+    }
+
+    /// That of one direction.
+    pub fn column(&self, interval: usize, direction: usize) -> &[f64] {
+        &self.of(interval)[direction * self.length..][..self.length]
+    }
+}
+
+impl<'a> Directions<'a> {
+    /// Runs along every one of the state's `numbers`, several at a time. `memory`: a law that gives the state some of them.
+    pub fn of_state(
+        twin: &'a Twin,
+        run: &'a TwinRun,
+        setting: &TwinSetting<f64>,
+        memory: Option<&Effect<f64>>,
+        numbers: &'a [usize],
+    ) -> Vec<Self> {
+        let at_rest: Vec<&Effect<f64>> = memory.into_iter().collect();
+        let along = |some: &[usize]| Along::State(some.to_vec());
+        numbers.chunks(TOGETHER).map(|some| Self::new(twin, run, setting, &at_rest, numbers, along(some))).collect()
+    }
+
+    /// Runs along what acts at ports, several at a time: laws whose only number is what acts.
+    pub fn of_ports(
+        twin: &'a Twin,
+        run: &'a TwinRun,
+        setting: &TwinSetting<f64>,
+        ports: &[&Effect<f64>],
+        numbers: &'a [usize],
+    ) -> Vec<Self> {
+        let new = |some: &[&Effect<f64>]| Self::new(twin, run, setting, some, numbers, Along::Ports(some.len()));
+        ports.chunks(TOGETHER).map(new).collect()
+    }
+
+    fn new(
+        twin: &'a Twin,
+        run: &'a TwinRun,
+        setting: &TwinSetting<f64>,
+        ports: &[&Effect<f64>],
+        numbers: &'a [usize],
+        along: Along,
+    ) -> Self {
+        let lifted = |effect: &Effect<f64>, value: &dyn Fn(f64) -> D| Effect {
+            entry: effect.entry,
+            element: effect.element,
+            channel: effect.channel.clone(),
+            values: effect.values.iter().map(|x| value(*x)).collect(),
+        };
+        let acting = |(i, port): (usize, &&Effect<f64>)| match along {
+            Along::State(_) => lifted(port, &|_| D::from_re(0.0)),
+            Along::Ports(_) => lifted(port, &|_| D::from_re(0.0).derivative(i)),
+        };
+        let known = setting.effects.iter().map(|effect| lifted(effect, &D::from_re));
+        let setting = TwinSetting {
+            parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from_re(*x))).collect(),
+            effects: known.chain(ports.iter().enumerate().map(acting)).collect(),
+        };
+        let (mut plant, state) = twin.prepare(&setting);
+        let course = Course::new(&mut plant, state, run);
+        Self { twin, run, along, numbers, plant, course, room: None, is_sound: true }
+    }
+
+    fn count(&self) -> usize {
+        match &self.along {
+            Along::State(numbers) => numbers.len(),
+            Along::Ports(count) => *count,
+        }
+    }
+
+    /// Over the intervals that end at these samples.
+    pub fn follow(&mut self, samples: Range<usize>) -> Columns {
+        let mut values = Vec::with_capacity(samples.len() * self.count() * self.length());
+        for k in samples {
+            self.begin();
+            let steps = self.twin.steps_in(self.run, k);
+            self.course.advance(&mut self.plant, self.run, k, steps);
+            self.is_sound &= self.course.is_sound(&self.plant);
+            self.read(&mut values);
+        }
+        Columns { values, directions: self.count(), length: self.length() }
+    }
+
+    /// The same at the run's first sample, before any interval.
+    pub fn start(&mut self) -> Columns {
+        let mut values = Vec::new();
+        self.read(&mut values);
+        Columns { values, directions: self.count(), length: self.length() }
+    }
+
+    fn length(&self) -> usize {
+        self.numbers.len() + self.twin.outputs.len()
+    }
+
+    /// Adds the derivatives of state and outputs as they are.
+    fn read(&mut self, values: &mut Vec<f64>) {
+        let state: Vec<D> = self.course.state.numbers().copied().collect();
+        let shown = self.numbers.iter().map(|&i| state[i]);
+        let outputs = self.twin.outputs.iter();
+        let read = outputs.map(|o| o.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room));
+        let here: Vec<D> = shown.chain(read).collect();
+        let slope = |x: &D, direction: usize| x.eps.0.as_ref().map_or(0.0, |eps| eps[direction]);
+        (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| slope(x, d))));
+    }
+
+    /// Leaves behind what earlier intervals made of the directions.
+    fn begin(&mut self) {
+        for number in self.course.state.numbers_mut() {
+            *number = D::constant(number.value());
+        }
+        let Along::State(own) = &self.along else { return };
+        for (i, number) in self.course.state.numbers_mut().enumerate() {
+            if let Some(direction) = own.iter().position(|&n| n == i) {
+                *number = number.derivative(direction);
+            }
+        }
+    }
+}
