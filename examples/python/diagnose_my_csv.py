@@ -1,4 +1,4 @@
-"""From the arrays of a rig to the physics that its model lacks: folder of recordings, diagnosis, before and after.
+"""From the arrays of a rig to the physics that its model lacks: diagnosis, before and after.
 
     python examples/python/diagnose_my_csv.py [FIGURE.png]
 
@@ -9,9 +9,7 @@ The cells (# %%) run one by one in Jupyter, VS Code or Spyder. Takes about half 
 # There is no rig here. `play` stands for it: a bench that leaks, and sensors with noise. With a rig, fill `runs` with what
 # your data acquisition gave: numpy.loadtxt("mine.csv", delimiter=",", skiprows=1), one dictionary for each run.
 import sys
-from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import smam
@@ -42,18 +40,9 @@ runs = {
     "chirp": play(1.5 - 1.5 * np.cos(phase_rad), time_s),
 }
 
-# %% A folder of recordings: which columns drive, which are compared, which run is held back
-folder = smam.write_recordings(
-    "my_rig",
-    scene="muscle_bench",  # or the path of your own scene file
-    runs=runs,
-    inputs=["plunger_mm"],
-    outputs={"elongation_mm": ELONGATION_NOISE_MM, "pressure_kpa": PRESSURE_NOISE_KPA},  # None: estimated
-    holdout=["chirp"],
-)
-
-# %% The diagnosis
-diagnosis = smam.diagnose(folder)
+# %% The diagnosis: which run is held back, and what is known of the noise
+noise = {"elongation_mm": ELONGATION_NOISE_MM, "pressure_kpa": PRESSURE_NOISE_KPA}  # what is left out is estimated
+diagnosis = smam.diagnose(runs, scene="muscle_bench", noise=noise, holdout=["chirp"], out="my_rig")
 print(diagnosis.verdict)
 print(diagnosis.summary)
 found = diagnosis.effects[["name", "element", "probability", "parameter", "value", "ci95_low", "ci95_high"]]
@@ -62,25 +51,4 @@ print(diagnosis.channels.to_string(float_format="%.4g"))
 print("the page:", diagnosis.report)
 
 # %% Before and after, on the run that had no part in finding it
-chirp = Path(folder, "chirp.csv")
-before = smam.run(diagnosis.baseline, input=chirp)
-after = smam.run(diagnosis.scene, input=chirp)
-measured = runs["chirp"]
-
-figure, axes = plt.subplots(3, sharex=True, figsize=(7.5, 7.5), layout="constrained", height_ratios=[2, 1, 1])
-axes[0].plot(time_s, measured["elongation_mm"], color="0.2", linewidth=3, alpha=0.35, label="measured")
-axes[0].plot(time_s, before["elongation_mm"], color="#c0392b", linewidth=1, label="scene, calibrated")
-axes[0].plot(time_s, after["elongation_mm"], color="#1f5fa8", linewidth=1, label="scene with what was found")
-axes[0].set_ylabel("elongation (mm)")
-for axis, column, label, noise in (
-    (axes[1], "elongation_mm", "elongation: measured\n− simulated (mm)", ELONGATION_NOISE_MM),
-    (axes[2], "pressure_kpa", "pressure: measured\n− simulated (kPa)", PRESSURE_NOISE_KPA),
-):
-    axis.axhspan(-2.0 * noise, 2.0 * noise, color="0.85", label="two standard deviations of the noise")
-    axis.plot(time_s, measured[column] - before[column], color="#c0392b", linewidth=0.8)
-    axis.plot(time_s, measured[column] - after[column], color="#1f5fa8", linewidth=0.8)
-    axis.set_ylabel(label)
-axes[2].set_xlabel("time (s)")
-handles = [handle for axis in axes[:2] for handle in axis.get_legend_handles_labels()[0]]
-figure.legend(handles=handles, loc="outside upper center", ncols=2, frameon=False)
-figure.savefig(sys.argv[1] if len(sys.argv) > 1 else "diagnosis.png", dpi=150)
+diagnosis.plot("chirp").savefig(sys.argv[1] if len(sys.argv) > 1 else "diagnosis.png", dpi=150)

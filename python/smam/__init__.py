@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ._compare import Comparison, compare
 from ._diagnose import Diagnosis, diagnose
 from ._errors import SmamError
+from ._feedforward import feedforward
 from ._identify import Identification, identify
 from ._laws import Law
 from ._lists import effects, keys, scenes
@@ -30,6 +31,7 @@ __all__ = [
     "compare",
     "diagnose",
     "effects",
+    "feedforward",
     "identify",
     "keys",
     "run",

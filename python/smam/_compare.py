@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from ._answers import answer_folder, read_json
+from ._answers import read_json
 from ._frames import PathLike
+from ._given import Given, Told, recorded
 from ._laws import Law, law_arguments
 from ._process import Word, call
+from ._shown import framed
 from ._toml import set_arguments
 
 
@@ -29,27 +31,35 @@ class Comparison:
     raw: dict[str, Any] = field(repr=False)
     """All of compare.json."""
 
+    def _repr_html_(self) -> str | None:
+        return framed(self.page)
+
 
 def compare(
-    folder: PathLike,
+    recordings: Given,
     *,
     scene: PathLike | None = None,
+    noise: Mapping[str, float | None] | None = None,
+    inputs: Collection[str] | None = None,
+    conditions: Mapping[str, Mapping[str, float]] | None = None,
     set: Mapping[str, Any] | None = None,
     laws: Sequence[Law] | None = None,
     out: PathLike | None = None,
 ) -> Comparison:
     """Simulates what was recorded and lays both over each other.
 
-    ``folder``: with a recordings.toml. ``scene``: instead of the one named there. ``set``: keys of the scene with other
-    values. ``laws``: as in :func:`run`. ``out``: where to write, ``out/compare_NAME`` if left out.
+    ``recordings``, ``scene``, ``noise``, ``inputs``, ``conditions``: as in :func:`diagnose`; one folder. ``set``: keys of the scene
+    with other values. ``laws``: as in :func:`run`. ``out``: where to write. Left out, ``out/compare_NAME`` for a folder; what
+    arrays come to is kept as long as the answer.
     """
-    written = answer_folder(out, "compare", folder)
-    words: list[Word] = ["compare", folder, "--out", written, *law_arguments(laws), *set_arguments(set)]
-    if scene is not None:
+    given = recorded(recordings, scene, Told(noise, inputs, (), conditions), "compare", out)
+    words: list[Word] = ["compare", *given.paths, "--out", given.answer, *law_arguments(laws), *set_arguments(set)]
+    if scene is not None and not given.runs:
         words += ["--scene", scene]
-    call(words)
-    raw = read_json(written / "compare.json")
-    rows = {(run, channel): fit for run, fits in raw["runs"].items() for channel, fit in fits.items()}
-    channels = pd.DataFrame(list(rows.values()), columns=["rmse", "noise_sd", "range", "samples"])
-    channels.index = pd.MultiIndex.from_tuples(list(rows), names=["run", "channel"])
-    return Comparison(channels, dict(raw.get("fitted", {})), written / "compare.html", raw)
+    with given:
+        call(words, private=given.private)
+        raw = read_json(given.answer / "compare.json")
+        rows = {(run, channel): fit for run, fits in raw["runs"].items() for channel, fit in fits.items()}
+        channels = pd.DataFrame(list(rows.values()), columns=["rmse", "noise_sd", "range", "samples"])
+        channels.index = pd.MultiIndex.from_tuples(list(rows), names=["run", "channel"])
+        return given.goes_with(Comparison(channels, dict(raw.get("fitted", {})), given.answer / "compare.html", raw))

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from os import PathLike as OsPathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from ._answers import answer_folder, read_json
+from ._answers import read_json
 from ._frames import PathLike
-from ._laws import Law, law_arguments
+from ._given import Given, Told, recorded
+from ._laws import Law, law_arguments, laws_of_scene
 from ._process import Word, call
+from ._run import run
+from ._shown import framed, overlay
 from ._toml import set_arguments
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _EFFECT_COLUMNS = [
     "name", "element", "channel", "probability", "parameter", "value", "ci95_low", "ci95_high", "rivals", "law", "hypothetical",
@@ -47,6 +52,34 @@ class Diagnosis:
     """Where everything was written."""
     raw: dict[str, Any] = field(repr=False)
     """All of diagnosis.json."""
+    runs: dict[str, pd.DataFrame] = field(repr=False, default_factory=dict)
+    """The runs by name, where frames or arrays were given."""
+
+    @property
+    def laws(self) -> list[dict[str, Any]]:
+        """The laws of the corrected scene as ``[[law]]`` tables: what ``laws`` of :func:`run` and :func:`sweep` takes."""
+        return laws_of_scene(self.scene) if self.scene is not None else []
+
+    def plot(self, run_name: str | None = None) -> Figure:
+        """Measured, calibrated and corrected over each other for one run, with what is left (matplotlib).
+
+        For arrays without conditions of their own; ``run_name`` left out: the first that was held out, else the last.
+        """
+        if not self.runs or self.baseline is None:
+            raise ValueError("there are no arrays to draw\n  remedy: look at the page, `report`")
+        held_out = [name for name in self.runs if f"{name}.csv" in self.raw.get("fit", {}).get("holdout", [])]
+        name = run_name if run_name is not None else (held_out or list(self.runs))[-1 if not held_out else 0]
+        if name not in self.runs:
+            raise ValueError(f"run_name: there is no run {name}; the runs are {', '.join(self.runs)}")
+        measured = self.runs[name]
+        scenes = {"calibrated": self.baseline, "corrected": self.scene}
+        simulated = {label: run(scene, input=measured) for label, scene in scenes.items() if scene is not None}
+        columns = [column for column in self.channels.index if column in measured.columns]
+        noise_sd = {str(channel): float(sd) for channel, sd in self.channels["noise_sd"].items()}
+        return overlay(measured, simulated, columns, noise_sd, name)
+
+    def _repr_html_(self) -> str | None:
+        return framed(self.report)
 
     @property
     def report(self) -> Path | None:
@@ -74,9 +107,13 @@ class Diagnosis:
 
 
 def diagnose(
-    folders: PathLike | Sequence[PathLike],
+    recordings: Given,
     *,
     scene: PathLike | None = None,
+    noise: Mapping[str, float | None] | None = None,
+    inputs: Collection[str] | None = None,
+    holdout: Collection[str] = (),
+    conditions: Mapping[str, Mapping[str, float]] | None = None,
     set: Mapping[str, Any] | None = None,
     laws: Sequence[Law] | None = None,
     out: PathLike | None = None,
@@ -87,20 +124,22 @@ def diagnose(
 ) -> Diagnosis:
     """Finds what physics the scene of some recordings lacks.
 
-    ``folders``: one folder with a recordings.toml (:func:`write_recordings` makes one) or several of one rig.
-    ``scene``: instead of the one that recordings.toml names. ``set``: keys of the scene with other values.
-    ``laws``: as in :func:`run`.
-    ``out``: where to write, ``out/diagnose_NAME`` if left out. ``rrd``: also a stream for the Rerun viewer.
+    ``recordings``: a frame over ``time_s`` or arrays by column (one run), several of these by the run's name, or folders with a
+    recordings.toml. Columns end in their unit and are called as the scene's channels.
+    ``scene``: the scene of arrays; of folders, instead of the one that recordings.toml names.
+    Of arrays alone: ``noise``, standard deviations in the column's unit where they are known; ``inputs``, the columns that drive, else
+    those of the scene; ``holdout``, runs that are held back; ``conditions``, known numbers of a run
+    (:func:`write_recordings`).
+    ``set``: keys of the scene with other values. ``laws``: as in :func:`run`.
+    ``out``: where to write. Left out, ``out/diagnose_NAME`` for a folder; what arrays come to is kept as long as the answer.
+    ``rrd``: also a stream for the Rerun viewer.
     ``transfer``: a specimen that is predicted from the others with its stated conditions alone.
     Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
     """
-    given = [folders] if isinstance(folders, (str, OsPathLike)) else list(folders)
-    if not given:
-        raise ValueError("no folder of recordings given")
-    folder = answer_folder(out, "diagnose", given[0])
-    words: list[Word] = ["diagnose", *given, "--out", folder, "--seed", str(seed)]
+    given = recorded(recordings, scene, Told(noise, inputs, holdout, conditions), "diagnose", out)
+    words: list[Word] = ["diagnose", *given.paths, "--out", given.answer, "--seed", str(seed)]
     words += [*law_arguments(laws), *set_arguments(set)]
-    if scene is not None:
+    if scene is not None and not given.runs:
         words += ["--scene", scene]
     if threads is not None:
         words += ["--threads", str(threads)]
@@ -108,11 +147,12 @@ def diagnose(
         words.append("--rrd")
     if transfer is not None:
         words += ["--transfer", transfer]
-    call(words, also_fine=[1])
-    return _read(folder)
+    with given:
+        call(words, also_fine=[1], private=given.private)
+        return given.goes_with(_read(given.answer, given.runs))
 
 
-def _read(folder: Path) -> Diagnosis:
+def _read(folder: Path, runs: dict[str, pd.DataFrame] | None = None) -> Diagnosis:
     raw = read_json(folder / "diagnosis.json")
     fit = raw.get("fit", {})
     channels = pd.DataFrame.from_dict(
@@ -129,6 +169,7 @@ def _read(folder: Path) -> Diagnosis:
         warnings=list(raw.get("warnings", [])),
         folder=folder,
         raw=raw,
+        runs=runs or {},
     )
 
 

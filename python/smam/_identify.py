@@ -9,9 +9,11 @@ from typing import Any
 
 import pandas as pd
 
-from ._answers import answer_folder, read_json
-from ._frames import PathLike
+from ._answers import read_json
+from ._frames import PathLike, Series
+from ._given import single
 from ._process import Word, call
+from ._shown import framed
 
 
 @dataclass(frozen=True)
@@ -28,9 +30,12 @@ class Identification:
     raw: dict[str, Any] = field(repr=False)
     """All of identify.json."""
 
+    def _repr_html_(self) -> str | None:
+        return framed(self.page)
+
 
 def identify(
-    recordings: PathLike,
+    recordings: PathLike | Series,
     model: str | Sequence[str] = "paper",
     *,
     method: str = "hybrid",
@@ -42,28 +47,33 @@ def identify(
 ) -> Identification:
     """Fits hysteresis models to recorded loops.
 
-    ``recordings``: a folder with a recordings.toml, or a CSV or Parquet file. ``model``: one name or several, such as
+    ``recordings``: a loop as a frame over ``time_s`` or arrays by column, a CSV or Parquet file, or a folder with a
+    recordings.toml. ``model``: one name or several, such as
     ``"paper"``, ``"asymmetric"``, ``"prandtl-ishlinskii"``. ``method``: pso, cma, lm or hybrid. ``input``, ``output``:
-    columns, both lengths. ``skip_s``: seconds at the start of each run that do not count. ``out``: where to write,
-    ``out/identify_NAME`` if left out.
+    columns, both lengths. ``skip_s``: seconds at the start of each run that do not count. ``out``: where to write. Left out,
+    ``out/identify_NAME`` for files; what arrays come to is kept as long as the answer.
     """
-    written = answer_folder(out, "identify", recordings)
-    words: list[Word] = ["identify", recordings, "--out", written, "--method", method, "--seed", str(seed)]
+    given = single(recordings, "identify", out)
+    written = given.answer
+    words: list[Word] = ["identify", *given.paths, "--out", written, "--method", method, "--seed", str(seed)]
     for name in [model] if isinstance(model, str) else model:
         words += ["--model", name]
     for option, column in (("--input", input), ("--output", output)):
         if column is not None:
             words += [option, column]
-    call([*words, f"--skip={float(skip_s)!r}"])
-    raw = read_json(written / "identify.json")
-    found = raw["identified"]
-    return Identification(
-        models=pd.DataFrame(found, columns=["model", "f_mm2", "f_holdout_mm2", "samples"]).set_index("model"),
-        parameters=_parameters(found),
-        tables={one["model"]: written / f"{one['model']}.toml" for one in found},
-        page=written / "identify.html",
-        raw=raw,
-    )
+    with given:
+        call([*words, f"--skip={float(skip_s)!r}"], private=given.private)
+        raw = read_json(written / "identify.json")
+        found = raw["identified"]
+        return given.goes_with(
+            Identification(
+                models=pd.DataFrame(found, columns=["model", "f_mm2", "f_holdout_mm2", "samples"]).set_index("model"),
+                parameters=_parameters(found),
+                tables={one["model"]: written / f"{one['model']}.toml" for one in found},
+                page=written / "identify.html",
+                raw=raw,
+            )
+        )
 
 
 def _parameters(found: Sequence[dict[str, Any]]) -> pd.DataFrame:

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any, Union
 
 from ._toml import value
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 Law = Union[str, Mapping[str, Any]]
 """``"PORT adds EXPRESSION"``, ``"PORT scales EXPRESSION"``, or a ``[[law]]`` table with ``name``, ``port``, ``adds`` or ``scales``,
@@ -28,6 +35,12 @@ def law_overrides(laws: Iterable[Law] | None) -> list[str]:
 def law_arguments(laws: Iterable[Law] | None) -> list[str]:
     """``--set law.NAME={...}`` for each."""
     return [word for text in law_overrides(laws) for word in ("--set", text)]
+
+
+def laws_of_scene(path: Path) -> list[dict[str, Any]]:
+    """The ``[[law]]`` tables of a scene file."""
+    with path.open("rb") as file:
+        return list(tomllib.load(file).get("law", []))
 
 
 def _short(text: str) -> dict[str, str]:
