@@ -123,12 +123,23 @@ impl Search<'_> {
         listed: &mut Explained,
         tried: Tried,
     ) -> Result<Option<Explained>, DiagnoseError> {
-        let Explained { found, confirmed, excess, noise, .. } = listed;
+        let former = case.runs.clone();
+        let Explained { found, confirmed, excess, noise, .. } = &mut *listed;
         let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, tried, self.say) else {
             return Ok(None);
         };
         let (found, noise) = hypothesis::renew(case, noise, found);
-        Ok(Some(Explained { confirmed: listed.confirmed, ..proven(case, found, noise, self.seed)? }))
+        let lawful = Explained { confirmed: listed.confirmed, ..proven(case, found, noise, self.seed)? };
+        let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &lawful.noise };
+        if harm::is_worse(&sealed, &listed.found, &lawful.found.best, self.seed) {
+            let [own, known] = [&lawful.found, &listed.found].map(|f| f.best.model.title());
+            listed.of_found.push(format!(
+                "{own} predicts the held-out runs worse than {known} alone: it is not put into scene.toml"
+            ));
+            case.runs = former;
+            return Ok(None);
+        }
+        Ok(Some(lawful))
     }
 }
 

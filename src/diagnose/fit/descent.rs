@@ -66,14 +66,14 @@ impl Problem<'_> {
     /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
     /// tell which models are worth [`Problem::fit`].
     pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
-        Some(self.end(self.go_on(self.begin(model, start, slopes)?, ITERATIONS)))
-    }
-
-    /// Begins [`Problem::fit_roughly`].
-    pub fn begin(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Underway> {
         let x = within(start, &self.numbers(model));
         let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
-        Some(Underway { model: model.clone(), x, rows, damping: LEAST_DAMPING })
+        Some(self.end(self.go_on(self.begin(model, x, rows), ITERATIONS)))
+    }
+
+    /// Begins [`Problem::fit_roughly`] at numbers within their ranges, where residuals and slopes are known.
+    pub fn begin(&self, model: &Model, x: Vec<f64>, rows: Rows) -> Underway {
+        Underway { model: model.clone(), x, rows, damping: LEAST_DAMPING }
     }
 
     /// Goes on for so many steps at most.

@@ -53,6 +53,9 @@ pub const MORE_SHAPES: [Shape; 4] = [
     shape("sin(x)", f64::sin, true, true),
     with_number("exp(-(x - p)^2)", |x| (-(x - P).powi(2)).exp(), true),
 ];
+/// Of these, what goes one way from a run's beginning on: what ages, warms up or softens. Something that comes and goes with the
+/// clock is an event of one run, and no law.
+pub const MORE_SHAPES_OF_TIME: [Shape; 1] = [MORE_SHAPES[0]];
 pub const P: f64 = 1.5;
 /// What `p` may be.
 pub const P_RANGE: Range = Range { min: 0.1, max: 4.0 };

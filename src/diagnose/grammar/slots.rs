@@ -2,7 +2,7 @@
 
 use super::acting::{action, injected};
 use super::reading::{Reading, readings};
-use super::shapes::{CONSTANT, MORE_SHAPES, SHAPES, Shape};
+use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::{Fit, Placed};
 use crate::laws::{Acts, Address, Carrier, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings};
@@ -61,7 +61,12 @@ impl Slot {
 
     /// The same slot, whose law may have the shapes that are tried where the simple ones leave something.
     pub fn bent(&self) -> Self {
-        Self { shapes: &MORE_SHAPES, ..self.clone() }
+        Self { shapes: self.more_shapes(), ..self.clone() }
+    }
+
+    fn more_shapes(&self) -> &'static [Shape] {
+        let is_time = self.variable == Quantity::Time.spec().name() && self.reading == Reading::Plain;
+        if is_time { &MORE_SHAPES_OF_TIME } else { &MORE_SHAPES }
     }
 
     /// Those of which its curve is made up when slots are screened.
@@ -102,7 +107,7 @@ pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
         Reach::Plain => slots.extend(constants(case)),
         Reach::Wide => {
             let more = slots.iter().flat_map(|slot| beyond(case, slot, &slots)).collect::<Vec<_>>();
-            slots.iter_mut().for_each(|slot| slot.shapes = &MORE_SHAPES);
+            slots.iter_mut().for_each(|slot| slot.shapes = slot.more_shapes());
             slots.extend(more);
         }
     }

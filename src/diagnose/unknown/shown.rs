@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::span::{explained, sizes};
 use crate::diagnose::case::CaseRun;
-use crate::diagnose::fit::{Fit, Model, Number, Problem, Sides, Underway, Variant, orthogonal};
+use crate::diagnose::fit::{Fit, Model, Number, Problem, Rows, Sides, Underway, Variant, orthogonal};
 use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
 use crate::effects::Effect;
 use crate::system::{Change, Signals};
@@ -136,10 +136,11 @@ impl<'a> Shown<'a> {
         let problem = self.problem;
         let begin = |candidate: &Candidate| {
             let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
-            let own = problem.rows(model, start, known..start.len(), Sides::One)?.slopes;
+            let own = problem.rows(model, start, known..start.len(), Sides::One)?;
             let mut slopes = self.slopes.clone().resize_horizontally(start.len(), 0.0);
-            slopes.columns_mut(known, own.ncols()).copy_from(&own);
-            Some(problem.go_on(problem.begin(model, start, slopes)?, FIRST_STEPS))
+            slopes.columns_mut(known, own.slopes.ncols()).copy_from(&own.slopes);
+            let rows = Rows { residual: own.residual, slopes };
+            Some(problem.go_on(problem.begin(model, start.clone(), rows), FIRST_STEPS))
         };
         let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
         underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));

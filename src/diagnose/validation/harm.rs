@@ -132,6 +132,14 @@ fn exchange(found: &mut Found, other: Place, own: Fit) {
     }
 }
 
+/// Whether a fit with laws predicts the held-out runs worse, beyond chance, than the listed effects that were found before. The calibrated
+/// scene has its own word, in [`without`].
+pub(in crate::diagnose) fn is_worse(sealed: &Problem, listed: &Found, lawful: &Fit, seed: u64) -> bool {
+    let has_listed = !listed.best.model.effects.is_empty();
+    let is_beyond_chance = |p: Proof| p.gap_closed < 0.0 && p.gain_ci95[1] < 0.0;
+    has_listed && prove::prove(sealed, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
+}
+
 /// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it loses where samples
 /// are left out of the fit: there next to nothing holds a joint, and a small wrong force drives it anywhere.
 fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &Proof) -> bool {
