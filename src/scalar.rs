@@ -1,5 +1,6 @@
 //! The number types the laws are written over.
 
+use std::cell::Cell;
 use std::fmt::Debug;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -104,7 +105,7 @@ pub trait Scalar:
 
     fn abs(&self) -> Self;
 
-    /// `|x|`, with the slopes of its mean over `still` to both sides: at rest a small change goes either way.
+    /// `|x|`; within [`blended_at_rest`] with the slopes of its mean over `still` to both sides: at rest a small change goes either way.
     fn abs_about_rest(&self, still: Self) -> Self {
         let _ = still;
         self.abs()
@@ -123,6 +124,18 @@ pub trait Scalar:
     fn powf(&self, n: f64) -> Self;
     /// A power whose exponent is of the same type.
     fn powd(&self, n: Self) -> Self;
+}
+
+thread_local! {
+    static BLENDS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Computes with the slopes that [`Scalar::abs_about_rest`] has for small changes; elsewhere they are those of the branch it is on.
+pub(crate) fn blended_at_rest<R>(compute: impl FnOnce() -> R) -> R {
+    let before = BLENDS.replace(true);
+    let result = compute();
+    BLENDS.set(before);
+    result
 }
 
 /// Functions handed on as they are.
@@ -156,7 +169,7 @@ impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
     #[inline]
     fn abs_about_rest(&self, still: Self) -> Self {
         let (x, still) = (self.value(), still.value());
-        if T::NDERIV == 0 || x.abs() >= still {
+        if T::NDERIV == 0 || x.abs() >= still || !BLENDS.get() {
             return T::abs(self);
         }
         *self * (x / still) + (x.abs() - x * x / still)

@@ -5,7 +5,7 @@ use std::ops::Range;
 use num_dual::DualSVec64;
 
 use crate::effects::Effect;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, blended_at_rest};
 use crate::system::laws::Acts;
 use crate::system::plant::Plant;
 
@@ -122,13 +122,15 @@ impl<'a> Directions<'a> {
     /// Over the intervals that end at these samples.
     pub fn follow(&mut self, samples: Range<usize>) -> Columns {
         let mut values = Vec::with_capacity(samples.len() * self.count() * self.length());
-        for k in samples {
-            self.begin();
-            let steps = self.twin.steps_in(self.run, k);
-            self.course.advance(&mut self.plant, self.run, k, steps);
-            self.is_sound &= self.course.is_sound(&self.plant);
-            self.read(&mut values);
-        }
+        blended_at_rest(|| {
+            for k in samples {
+                self.begin();
+                let steps = self.twin.steps_in(self.run, k);
+                self.course.advance(&mut self.plant, self.run, k, steps);
+                self.is_sound &= self.course.is_sound(&self.plant);
+                self.read(&mut values);
+            }
+        });
         Columns { values, directions: self.count(), length: self.length() }
     }
 

@@ -195,6 +195,7 @@ mod tests {
     use super::*;
     use crate::effects::{Element, EntryId, Fitted, Range};
     use crate::laws::{Carrier, LawTable, PORTS, PortSpec, Surroundings};
+    use crate::scalar::blended_at_rest;
     use crate::scene::Scene;
     use crate::system::Schedule;
 
@@ -232,7 +233,8 @@ mod tests {
         let mut values: Vec<Dual64> = values.into_iter().map(Dual64::from).collect();
         values[0].eps = 1.0;
         let effects = vec![Effect { entry, element, channel, values }];
-        let series = twin.simulate(run, &TwinSetting { parameters: Vec::new(), effects }).expect("it does not diverge");
+        let setting = TwinSetting { parameters: Vec::new(), effects };
+        let series = blended_at_rest(|| twin.simulate(run, &setting)).expect("it does not diverge");
         series.into_iter().map(|channel| channel.into_iter().map(|x| x.eps).collect()).collect()
     }
 
