@@ -54,6 +54,8 @@ class Diagnosis:
     """All of diagnosis.json."""
     runs: dict[str, pd.DataFrame] = field(repr=False, default_factory=dict)
     """The runs by name, where frames or arrays were given."""
+    conditions: Mapping[str, Mapping[str, float]] = field(repr=False, default_factory=dict)
+    """What was said of them."""
 
     @property
     def laws(self) -> list[dict[str, Any]]:
@@ -63,14 +65,16 @@ class Diagnosis:
     def plot(self, run_name: str | None = None) -> Figure:
         """Measured, calibrated and corrected over each other for one run, with what is left (matplotlib).
 
-        For arrays without conditions of their own; ``run_name`` left out: the first that was held out, else the last.
+        For arrays, of runs without conditions of their own; ``run_name`` left out: the first that was held out, else the last.
         """
         if not self.runs or self.baseline is None:
             raise ValueError("there are no arrays to draw\n  remedy: look at the page, `report`")
         held_out = [name for name in self.runs if f"{name}.csv" in self.raw.get("fit", {}).get("holdout", [])]
-        name = run_name if run_name is not None else (held_out or list(self.runs))[-1 if not held_out else 0]
+        name = run_name if run_name is not None else next(iter(held_out), list(self.runs)[-1])
         if name not in self.runs:
             raise ValueError(f"run_name: there is no run {name}; the runs are {', '.join(self.runs)}")
+        if self.conditions.get(name):
+            raise ValueError(f"run_name: {name} has conditions, which are not played here\n  remedy: look at the page, `report`")
         measured = self.runs[name]
         scenes = {"calibrated": self.baseline, "corrected": self.scene}
         simulated = {label: run(scene, input=measured) for label, scene in scenes.items() if scene is not None}
@@ -149,10 +153,14 @@ def diagnose(
         words += ["--transfer", transfer]
     with given:
         call(words, also_fine=[1], private=given.private)
-        return given.goes_with(_read(given.answer, given.runs))
+        return given.goes_with(_read(given.answer, given.runs, conditions))
 
 
-def _read(folder: Path, runs: dict[str, pd.DataFrame] | None = None) -> Diagnosis:
+def _read(
+    folder: Path,
+    runs: dict[str, pd.DataFrame] | None = None,
+    conditions: Mapping[str, Mapping[str, float]] | None = None,
+) -> Diagnosis:
     raw = read_json(folder / "diagnosis.json")
     fit = raw.get("fit", {})
     channels = pd.DataFrame.from_dict(
@@ -170,6 +178,7 @@ def _read(folder: Path, runs: dict[str, pd.DataFrame] | None = None) -> Diagnosi
         folder=folder,
         raw=raw,
         runs=runs or {},
+        conditions=conditions or {},
     )
 
 

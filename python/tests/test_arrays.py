@@ -2,6 +2,7 @@
 
 import gc
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,8 @@ def test_arrays_are_diagnosed_drawn_and_leave_nothing(folder: Path) -> None:
     assert len(figure.axes[1].lines) == 2
     with pytest.raises(ValueError, match="there is no run x; the runs are sine, steps, chirp"):
         found.plot("x")
+    with pytest.raises(ValueError, match="sine has conditions"):
+        replace(found, conditions={"sine": {"hanging_mass_kg": 0.2}}).plot("sine")
     written = found.folder
     assert written.is_dir()
     del found
