@@ -29,6 +29,7 @@ else
     echo "skipped: shellcheck is not installed"
 fi
 cargo clippy --no-default-features --all-targets -- -D warnings
+RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --no-default-features
 
 say "what it is built from: licences, sources, pins, no unsafe code"
 python3 -B tests/dependencies/check.py
@@ -165,8 +166,5 @@ elif [ -n "${SMAM_REQUIRE_BOOK:-}" ]; then
 else
     echo "skipped: mdbook and typos could not be installed (no python3 venv, or no network)"
 fi
-
-say "documentation"
-RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --no-default-features
 
 say "all is well"

@@ -105,7 +105,7 @@ pub trait Scalar:
 
     fn abs(&self) -> Self;
 
-    /// `|x|`; within [`blended_at_rest`] with the slopes of its mean over `still` to both sides: at rest a small change goes either way.
+    /// `|x|`; within `blended_at_rest` with the slopes of its mean over `still` to both sides: at rest a small change goes either way.
     fn abs_about_rest(&self, still: Self) -> Self {
         let _ = still;
         self.abs()
