@@ -263,7 +263,7 @@ fn what_two_effects_only_imitate_is_unknown() {
     assert_eq!(d.location.element.as_deref(), Some("muscle"));
 }
 
-/// What two sensor effects of altered form leave over looks like plastic set, in some runs; the sealed one would have the set undo itself.
+/// What two sensor effects of altered form leave over looks like plastic set, in some runs; the held-out one would have the set undo itself.
 #[test]
 fn an_effect_that_a_run_would_have_at_an_impossible_size_is_taken_back() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -23,7 +23,10 @@ fn answer(case: Case) -> Diagnosis {
     let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
     println!("{}", outcome.diagnosis.summary);
     for (channel, p) in &outcome.diagnosis.fit.channels {
-        println!("  {channel}: sealed rmse {:.4} -> {:.4}, noise {:.4}", p.rmse_baseline, p.rmse_corrected, p.noise_sd);
+        println!(
+            "  {channel}: held out, rmse {:.4} -> {:.4}, noise {:.4}",
+            p.rmse_baseline, p.rmse_corrected, p.noise_sd
+        );
     }
     for e in &outcome.diagnosis.effects {
         let numbers: Vec<String> = e.parameters.iter().map(|(k, v)| format!("{k} = {:.4e}", v.value)).collect();
@@ -46,8 +49,8 @@ fn val_creep_of_a_coiled_tube_is_named() {
     assert_eq!(named(&d, "viscoelasticity", "muscle").probability, d.effects[0].probability);
     // Their own scripts shift the channels against each other.
     named(&d, "sensor_lag", "sensor");
-    let sealed = d.fit.channels["displacement_mm"];
-    assert!(sealed.rmse_corrected < 0.7 * sealed.rmse_baseline, "{sealed:?}");
+    let held_out = d.fit.channels["displacement_mm"];
+    assert!(held_out.rmse_corrected < 0.7 * held_out.rmse_baseline, "{held_out:?}");
 }
 
 /// The long hold: fitted up to its middle, foretold from there to the release.
@@ -94,7 +97,7 @@ fn val_dry_friction_of_a_seal_and_its_growth_with_pressure_are_named() {
     let mut case = load(&folder);
     case.runs.retain(|r| r.file.starts_with("o-ring"));
     // The greatest pressure is foretold.
-    case.runs.iter_mut().for_each(|r| r.is_sealed = r.file == "o-ring257_7bar.csv");
+    case.runs.iter_mut().for_each(|r| r.is_held_out = r.file == "o-ring257_7bar.csv");
     let d = answer(case);
     let growth = named(&d, "seal_friction", "syringe").parameters["friction_per_pressure_n_pa"];
     println!("  {:.3e} N/Pa in {:.3e} .. {:.3e}", growth.value, growth.ci95[0], growth.ci95[1]);

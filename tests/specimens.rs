@@ -102,7 +102,7 @@ fn a_specimen_is_predicted_from_the_others() {
     let load = || Case::load(&[folder.path()], None, &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut case = load();
     case.transfer("third").unwrap_or_else(|e| panic!("{e}"));
-    let held: Vec<&str> = case.runs.iter().filter(|run| run.is_sealed).map(|run| run.file.as_str()).collect();
+    let held: Vec<&str> = case.runs.iter().filter(|run| run.is_held_out).map(|run| run.file.as_str()).collect();
     assert_eq!(held, ["third_0.csv", "third_1.csv"]);
     let d = answer(case);
     assert_eq!(d.fit.holdout, ["third_0.csv", "third_1.csv"]);

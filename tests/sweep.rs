@@ -264,7 +264,7 @@ fn points_in_trouble_are_columns_and_not_the_best() {
     assert!(said.contains("1 point is beyond what the rig can do (slack at 1 point, up to 4."), "{said}");
     let header = table.lines().next().expect("a header");
     assert!(
-        header.ends_with("range_deg,warning_slack_s,warning_cavitation_s,warning_yield_s,warning_penetration_s,error")
+        header.ends_with("range_deg,warning_slack_s,warning_cavitation_s,warning_yield_s,warning_penetration_s,warning_joint_limit_s,error")
     );
     assert!(sound.starts_with("1,0.6,"), "{sound}");
     let (said, _, allowed) = best("allow = [\"slack\"]");

@@ -65,7 +65,7 @@ fn a_run_that_is_cut_off_leaves_the_former_file() {
 fn a_diagnosis_becomes_a_complete_file() {
     let file = std::env::var_os("SMAM_DIAGNOSIS_RRD")
         .map_or_else(|| PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("diagnosis.rrd"), PathBuf::from);
-    let runs = [compared("sine.csv"), compared("steps.csv (sealed)")];
+    let runs = [compared("sine.csv"), compared("steps.csv (held out)")];
     let sink = ViewSink::File(file.clone());
     let said = show_diagnosis(&sink, "Diagnosis", "Something is missing.", &runs, &ViewOptions::default()).unwrap();
     assert!(said.contains("`rerun "));

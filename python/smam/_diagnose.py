@@ -44,9 +44,9 @@ class Diagnosis:
     specimens: pd.DataFrame = field(repr=False)
     """Calibrated numbers of each specimen, and whether they differ between specimens."""
     channels: pd.DataFrame = field(repr=False)
-    """Errors on the sealed runs by channel, in its unit: ``rmse_baseline``, ``rmse_corrected``, ``noise_sd``."""
+    """Errors on the held-out runs by channel, in its unit: ``rmse_baseline``, ``rmse_corrected``, ``noise_sd``."""
     gap_closed: float
-    """Share of the gap between calibrated scene and noise that the effects close on the sealed runs."""
+    """Share of the gap between calibrated scene and noise that the effects close on the held-out runs."""
     warnings: list[str] = field(repr=False)
     folder: Path
     """Where everything was written."""

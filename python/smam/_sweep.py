@@ -43,8 +43,8 @@ def sweep(
     ``measure``: figures of each run by the name of their column: ``{"range_deg": "range(angle_deg)"}``.
     ``laws``: as in :func:`run`; a parameter can be varied, ``{"law.NAME.PARAMETER": [0.1, 0.2]}``.
     ``out``: keep tables, page and journal in this folder; ``resume`` goes on with what is there.
-    Columns ``warning_slack_s``, ``warning_cavitation_s``, ``warning_yield_s`` and ``warning_penetration_s`` say for how long a
-    run was where the rig, or the model, ends.
+    Columns ``warning_slack_s``, ``warning_cavitation_s``, ``warning_yield_s``, ``warning_penetration_s`` and
+    ``warning_joint_limit_s`` say for how long a run was where the rig, or the model, ends.
     Without ``vary`` and ``measure``, ``scene`` is a sweep file. A point that failed has NaN for its measures and the
     reason in the column ``error``.
     """

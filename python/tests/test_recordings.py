@@ -31,7 +31,7 @@ def test_a_hidden_leak_is_named(folder: Path) -> None:
     assert elongation["rmse_corrected"] < 0.025 < elongation["rmse_baseline"]
     assert found.raw["fit"]["holdout"] == ["chirp.csv"]
     assert found.report is not None and "leak" in found.report.read_text(encoding="utf-8")
-    # The corrected scene runs; on the sealed run it leaves the noise.
+    # The corrected scene runs; on the held-out run it leaves the noise.
     assert found.scene is not None
     after = smam.run(found.scene, input="leaky rig/chirp.csv")
     measured = pd.read_csv("leaky rig/chirp.csv", index_col="time_s")

@@ -18,6 +18,7 @@ use super::CliError;
 use super::changes::Changes;
 use super::files::{make_folder, write, write_page};
 use super::import::recordings;
+use super::results::{Results, name_of};
 
 /// Arguments of `smam compare`.
 #[derive(Args)]
@@ -52,13 +53,15 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         None => declared.clone(),
     };
     let may_fit: Vec<RecordedRun> = declared.into_iter().filter(|r| r.run.run_use != Some(RunUse::Holdout)).collect();
-    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dir));
+    let results = Results::of(&arguments.dir, "compare", arguments.out.as_deref())?;
+    let out = &results.folder;
     check_channels(&set, &scene)?;
     for run in &shown {
         let way = lead_in(&scene, run).map_err(|e| e.in_file(&run.run.file))?;
         way.iter().for_each(|way| eprintln!("note: {}: {}", run.run.file, way.note()));
     }
-    make_folder(&out)?;
+    make_folder(out)?;
+    results.note_input()?;
     let report = fit_rig_parameters(&set, &scene_name, &overrides, &may_fit)?;
     say_fit(&report);
     overrides.extend(report.overrides());
@@ -69,8 +72,8 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .map(|(run, is)| compare_channels(&run.recording, is, &set.channels_of(&run.run)))
         .collect::<Result<_, _>>()?;
     shown.iter().zip(&simulated).for_each(|(run, is)| warn_of_units(run, is, &set));
-    let heading = format!("{}: measured, and simulated by {}", set_name(&arguments.dir), scene.file.name);
-    write_page(&out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
+    let heading = format!("{}: measured, and simulated by {}", name_of(&arguments.dir), scene.file.name);
+    write_page(out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
     let pooled = pool(fits.iter());
     let json = to_json(&scene, &shown, &fits, &pooled, &report);
     write(&out.join("compare.json"), &format!("{json:#}\n"))?;
@@ -107,18 +110,6 @@ fn chosen_run(set: &RecordingSet, file: &str) -> Run {
         _ => file.to_owned(),
     };
     Run { file, ..Run::default() }
-}
-
-fn default_out(dir: &Path) -> PathBuf {
-    Path::new("out").join(format!("compare_{}", set_name(dir)))
-}
-
-/// Name of the folder of recordings.
-fn set_name(dir: &Path) -> String {
-    let name = dir.canonicalize().ok().and_then(|d| {
-        if d.is_file() { d.file_stem() } else { d.file_name() }.map(|n| n.to_string_lossy().into_owned())
-    });
-    name.unwrap_or_else(|| "recordings".to_owned())
 }
 
 /// Curves of each run and channel, errors, and what was fitted.

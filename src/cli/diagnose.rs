@@ -14,6 +14,7 @@ use super::changes::Changes;
 use super::diagnose_view::Shown;
 use super::files::{is_same_file, make_folder, take_folder};
 use super::import::recordings;
+use super::results::Results;
 
 /// Arguments of `smam diagnose`.
 #[derive(Args)]
@@ -52,7 +53,7 @@ pub struct DiagnoseArguments {
     /// Threads [default: all cores]; the answer does not depend on it
     #[arg(long, value_parser = threads())]
     threads: Option<usize>,
-    /// Say at each step how many seconds have gone by
+    /// Say at each step how many seconds have gone by, and how many million samples have been simulated
     #[arg(long)]
     timings: bool,
 }
@@ -98,22 +99,27 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     if let Some(step) = arguments.without {
         case.leave_out(step.step());
     }
-    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.dirs[0]));
-    refuse_scene_in_use(&case, &out)?;
-    let _held = take_folder(&out)?;
-    let start = Instant::now();
+    let results = Results::of(&arguments.dirs[0], "diagnose", arguments.out.as_deref())?;
+    let out = &results.folder;
+    refuse_scene_in_use(&case, out)?;
+    let _held = take_folder(out)?;
+    results.note_input()?;
+    let (start, effort) = (Instant::now(), case.effort.watched());
     let progress = |line: String| match arguments.timings {
-        true => eprintln!("{:7.1} s  {line}", start.elapsed().as_secs_f64()),
+        true => {
+            let [seconds, millions] = [start.elapsed().as_secs_f64(), effort.samples() as f64 * 1e-6];
+            eprintln!("{seconds:7.1} s {millions:7.1} M  {line}");
+        }
         false => eprintln!("{line}"),
     };
     let outcome = run_diagnosis(case, Options { seed: arguments.seed }, &progress)?;
     if arguments.timings {
         progress("done".to_owned());
     }
-    write_all(&outcome, &out)?;
+    write_all(&outcome, out)?;
     print_diagnosis(&outcome.diagnosis);
     eprintln!("written: {}", out.display());
-    shown.show(&outcome, &out)?;
+    shown.show(&outcome, out)?;
     let usable = outcome.diagnosis.verdict != Verdict::UnusableData;
     Ok(if usable { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
@@ -154,13 +160,6 @@ pub fn use_threads(threads: Option<usize>) -> Result<(), CliError> {
     })
 }
 
-fn default_out(folder: &Path) -> PathBuf {
-    let name = folder.canonicalize().ok().and_then(|p| {
-        if p.is_file() { p.file_stem() } else { p.file_name() }.map(|n| n.to_string_lossy().into_owned())
-    });
-    Path::new("out").join(format!("diagnose_{}", name.unwrap_or_else(|| "recordings".to_owned())))
-}
-
 fn print_diagnosis(d: &Diagnosis) {
     say!("{}", d.summary);
     for e in &d.effects {
@@ -180,7 +179,7 @@ fn print_diagnosis(d: &Diagnosis) {
     );
     for (channel, p) in &d.fit.channels {
         say!(
-            "  sealed {}: {channel} rmse {:.4} -> {:.4} (noise {:.4})",
+            "  held out {}: {channel} rmse {:.4} -> {:.4} (noise {:.4})",
             d.fit.holdout.join(", "),
             p.rmse_baseline,
             p.rmse_corrected,

@@ -64,11 +64,11 @@ impl Shown {
     }
 }
 
-/// The verdict with the effects and the errors of the sealed runs, as Markdown.
+/// The verdict with the effects and the errors of the held-out runs, as Markdown.
 #[cfg(feature = "viz")]
 fn verdict(outcome: &Outcome) -> String {
     let d = &outcome.diagnosis;
-    let mut text = format!("{}\n\n| sealed runs | calibrated | corrected | noise |\n|---|---|---|---|\n", d.summary);
+    let mut text = format!("{}\n\n| held-out runs | calibrated | corrected | noise |\n|---|---|---|---|\n", d.summary);
     for (column, p) in &d.fit.channels {
         text += &format!("| {column} | {:.3} | {:.3} | {:.3} |\n", p.rmse_baseline, p.rmse_corrected, p.noise_sd);
     }

@@ -1,6 +1,6 @@
 //! `smam identify`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
@@ -15,6 +15,7 @@ use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 use super::CliError;
 use super::files::{take_folder, write, write_page};
 use super::identify_page::page;
+use super::results::Results;
 
 /// Arguments of `smam identify`.
 #[derive(Args)]
@@ -69,8 +70,10 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
         return Err(CliError::Usage(format!("{message}\n  remedy: give seconds, or leave --skip out")));
     }
     let loops = load(arguments)?;
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("identify_{}", loops.name)));
-    let _held = take_folder(&out)?;
+    let results = Results::of(&arguments.recordings, "identify", arguments.out.as_deref())?;
+    let out = &results.folder;
+    let _held = take_folder(out)?;
+    results.note_input()?;
     let options = SearchOptions {
         method: arguments.method,
         seed: arguments.seed,
@@ -82,7 +85,7 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
     let answers: Vec<Value> = found.iter().map(|f| answer(f, &loops)).collect();
     let whole = json!({ "format": 1, "recordings": loops.name, "seed": arguments.seed, "identified": answers });
     write(&out.join("identify.json"), &format!("{whole:#}\n"))?;
-    write_page(&out, "identify.html", &page(&found, &loops))?;
+    write_page(out, "identify.html", &page(&found, &loops))?;
     for identification in &found {
         say(identification, &loops);
         let file = out.join(format!("{}.toml", identification.form.name()));

@@ -32,6 +32,7 @@ mod observers;
 mod proof;
 mod proof_figure;
 mod reproduce;
+mod results;
 mod run;
 mod run_file;
 mod scenes;

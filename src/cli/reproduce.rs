@@ -86,9 +86,10 @@ fn print(made: &[Made]) {
         }
     }
     say!(
-        "{} met, {} not met, {} given, {} shown",
+        "{} met, {} not met, {} tuned to, {} given, {} shown",
         count(Standing::Met),
         count(Standing::NotMet),
+        count(Standing::Tuned),
         count(Standing::Given),
         count(Standing::Shown)
     );

@@ -169,12 +169,12 @@ pub struct Estimate {
     pub ci95: [f64; 2],
 }
 
-/// Step 7: how much better on sealed data.
+/// Step 7: how much better on held-out runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Proof {
     pub holdout: Vec<String>,
     pub channels: BTreeMap<String, ChannelProof>,
-    /// Share of the gap between baseline and noise that the effects close on sealed data.
+    /// Share of the gap between baseline and noise that the effects close on held-out runs.
     pub gap_closed: f64,
     pub gain_ci95: [f64; 2],
     /// What wrong effects gained through the same door.
@@ -185,13 +185,20 @@ pub struct Proof {
 /// How far the fast model, which the diagnosis works on, is from the full scene with the numbers found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FullScene {
-    /// If not, the figures of the sealed runs are those of the full scene.
+    /// If not, the figures of the held-out runs are those of the full scene.
     pub agrees: bool,
     /// By channel, the greatest over the runs, in units of the noise.
     pub rms_difference_over_noise: BTreeMap<String, f64>,
 }
 
-/// One channel of the sealed runs.
+impl FullScene {
+    /// Whether it was played, and came out otherwise than the fast model.
+    pub fn differs(&self) -> bool {
+        !self.agrees && !self.rms_difference_over_noise.is_empty()
+    }
+}
+
+/// One channel of the held-out runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelProof {
     pub rmse_baseline: f64,

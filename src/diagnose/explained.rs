@@ -1,12 +1,13 @@
 //! What explains the recordings: the calibration, effects of the catalogue, laws that nobody listed, and what they are worth on the
-//! sealed runs.
+//! held-out runs.
 
-use super::case::{Case, Noise, Sealed};
+use super::case::{Case, Noise, RunSet};
 use super::diagnosis::Proof;
 use super::error::DiagnoseError;
 use super::fit::{Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
 use super::unknown::hypothesis::{self, OneLaw, Tried};
+use super::unknown::pair;
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
@@ -42,9 +43,14 @@ pub(super) fn explain(
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
-    let warnings = [warnings, base.warnings, case.notes()].concat();
+    let cut = case.effort.has_cut().then(|| CUT.to_owned());
+    let warnings = [warnings, base.warnings, case.notes(), cut.into_iter().collect()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
+
+/// Said where a search was ended by what it had cost.
+const CUT: &str = "the search for several effects or laws at once was ended by what it had cost, although they leave much: what is named is the \
+    nearest that was found until then; look at the runs and times that stand out, or record fewer things at once";
 
 /// The search for several effects and several laws.
 struct Search<'a> {
@@ -63,6 +69,11 @@ impl Search<'_> {
         noise: Vec<Noise>,
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
+        let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
+        let tried = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
+            OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
+            OneLaw::Part(tried) => *tried,
+        };
         let law = Bound(tried.law.as_ref());
         let open = reweight::open_runs(case, &noise);
         let found = begun.clone().finish(&open, self.variants, law, self.say);
@@ -79,7 +90,7 @@ impl Search<'_> {
         self.to_the_end(case, noise, found, again)
     }
 
-    /// What was found in the catalogue, weighed, held against the sealed runs and against laws; `tried`: what was tried with one before.
+    /// What was found in the catalogue, weighed, held against the held-out runs and against laws; `tried`: what was tried with one before.
     fn to_the_end(
         &self,
         case: &mut Case,
@@ -88,12 +99,12 @@ impl Search<'_> {
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
         let (found, noise) = reweight::weigh(case, noise, found, self.variants, self.say);
-        let mut listed = self.held_against_sealed(case, found, noise)?;
+        let mut listed = self.held_against_others(case, found, noise)?;
         Ok(self.by_laws(case, &mut listed, tried)?.unwrap_or(listed))
     }
 
-    /// What the catalogue explains, without what does not stand, held against the sealed runs.
-    fn held_against_sealed(
+    /// What the catalogue explains, without what does not stand, held against the held-out runs.
+    fn held_against_others(
         &self,
         case: &mut Case,
         found: Found,
@@ -102,17 +113,17 @@ impl Search<'_> {
         let (variants, say) = (self.variants, self.say);
         let found = creep::broaden(case, &noise, found, variants, say);
         let case = &*case;
-        let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
-        let (open, sealed, whole) = (problem(Sealed::Open), problem(Sealed::Sealed), problem(Sealed::Both));
+        let problem = |runs: RunSet| Problem { case, runs: case.subset(runs), noise: &noise };
+        let (open, held_out, whole) = (problem(RunSet::Open), problem(RunSet::HeldOut), problem(RunSet::All));
         let mut found = confirm::prune(&open, found, variants, say);
         detection_limit::confirm_least_sizes(&open, &found.baseline, &mut found.screened);
         let mut warnings = Vec::new();
         let found = confirm::take_back_unplayable(&whole, found, &mut warnings);
         let (found, possible) = confirm::take_back_contradicted(&whole, &open, found, variants, &mut warnings);
-        say("sealed runs".to_owned());
+        say("held-out runs".to_owned());
         let mut explained = proven(case, found, noise.clone(), self.seed)?;
         explained.confirmed =
-            confirm::confirm(&sealed, &explained.found, &explained.proof, &mut warnings).and(possible);
+            confirm::confirm(&held_out, &explained.found, &explained.proof, &mut warnings).and(possible);
         Ok(Explained { of_found: warnings, ..explained })
     }
 
@@ -130,8 +141,8 @@ impl Search<'_> {
         };
         let (found, noise) = hypothesis::renew(case, noise, found);
         let lawful = Explained { confirmed: listed.confirmed, ..proven(case, found, noise, self.seed)? };
-        let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &lawful.noise };
-        if harm::is_worse(&sealed, &listed.found, &lawful.found.best, self.seed) {
+        let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &lawful.noise };
+        if harm::is_worse(&held_out, &listed.found, &lawful.found.best, self.seed) {
             let [own, known] = [&lawful.found, &listed.found].map(|f| f.best.model.title());
             listed.of_found.push(format!(
                 "{own} predicts the held-out runs worse than {known} alone: it is not put into scene.toml"
@@ -143,11 +154,11 @@ impl Search<'_> {
     }
 }
 
-/// What was found with what it is worth on the sealed runs.
+/// What was found with what it is worth on the held-out runs.
 fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Explained, DiagnoseError> {
-    let problem = |runs: Sealed| Problem { case, runs: case.subset(runs), noise: &noise };
-    let (sealed, whole) = (problem(Sealed::Sealed), problem(Sealed::Both));
-    let proof = prove::prove(&sealed, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
+    let problem = |runs: RunSet| Problem { case, runs: case.subset(runs), noise: &noise };
+    let (held_out, whole) = (problem(RunSet::HeldOut), problem(RunSet::All));
+    let proof = prove::prove(&held_out, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
     let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
     let (confirmed, warnings, of_found) = (Confirmed::Yes, Vec::new(), Vec::new());
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings, of_found })
@@ -158,9 +169,9 @@ fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &d
     let Explained { found, mut proof, noise, mut of_found, .. } = explained;
     let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
     say("full scene".to_owned());
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise: &noise };
-    proof.placebo_gap_closed = confirm::placebos(&sealed, &found, seed);
-    if !confirm::check_on_full_scene(&sealed, &found, &mut proof, seed, &mut of_found) {
+    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &noise };
+    proof.placebo_gap_closed = confirm::placebos(&held_out, &found, seed);
+    if !confirm::check_on_full_scene(&held_out, &found, &mut proof, seed, &mut of_found) {
         harm::without_unplayable(case, &noise, &mut found, &mut proof, &mut of_found);
     }
     Explained { found, proof, noise, of_found, ..explained }

@@ -41,7 +41,7 @@ mod verdict;
 use std::collections::BTreeMap;
 
 pub use answer::{Outcome, side_by_side, write_answer, write_answer_with};
-pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, Sealed, Step};
+pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet, Step};
 pub use diagnosis::{
     ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof, Verdict,
     size_key,
@@ -90,7 +90,7 @@ pub struct Options {
 /// std::fs::write(folder.path().join("recordings.toml"), set)?;
 /// let case = Case::load(&[folder.path()], None, &[])?;
 /// // Of a single run the last third is held back.
-/// assert_eq!(case.runs.iter().filter(|run| run.is_sealed).count(), 1);
+/// assert_eq!(case.runs.iter().filter(|run| run.is_held_out).count(), 1);
 /// let diagnosis = diagnose(case, Options { seed: 1 }, &|_| {})?.diagnosis;
 /// assert_eq!(diagnosis.verdict, Verdict::UnusableData);
 /// assert!(diagnosis.summary.contains("only 101 samples: record at least some ten seconds"));
@@ -103,7 +103,7 @@ pub struct Options {
 pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let preflight = {
         let noise: Vec<Noise> = case.channels.iter().map(|_| Noise::white(1.0)).collect();
-        preflight::preflight(&case, &Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise })?
+        preflight::preflight(&case, &Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise })?
     };
     if !preflight.unusable.is_empty() {
         return Ok(unusable(case, preflight));
@@ -113,16 +113,16 @@ pub fn diagnose(mut case: Case, options: Options, say: &dyn Fn(String)) -> Resul
 }
 
 /// Said where nothing is left to be named of the open runs.
-const SEALED_ALONE: &str = "the open runs are explained down to their noise: what is left shows in the sealed runs alone, and cannot be \
+const HELD_OUT_ALONE: &str = "the open runs are explained down to their noise: what is left shows in the held-out runs alone, and cannot be \
     named from the others; record more runs of their kind, or hold back another one (use = \"holdout\" in recordings.toml)";
 
 /// Names what was found and where, and proposes what to record next.
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings, of_found } = explained;
     warnings.extend(of_found);
-    let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+    let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
     // A specimen that is predicted from others has no say in their numbers.
-    let fitted = if case.is_transfer() { Sealed::Open } else { Sealed::Both };
+    let fitted = if case.is_transfer() { RunSet::Open } else { RunSet::All };
     let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
@@ -130,7 +130,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let verdict = judged(&case, (&found, &effects), confirmed, excess);
     let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
-        warnings.push(SEALED_ALONE.to_owned());
+        warnings.push(HELD_OUT_ALONE.to_owned());
     }
     warnings.extend(figures::on_bounds(&case, &complete));
     let specimens = specimens::numbers(&case, &complete);
@@ -236,7 +236,7 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
 
 /// Whether the open runs hold more than noise that the best does not explain.
 fn open_is_loud(case: &Case, noise: &[Noise], found: &Found) -> bool {
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     misfit::left(&open, &found.best).is_none_or(|(excess, error)| verdict::is_loud(excess, error))
 }
 

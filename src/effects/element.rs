@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::laws::numbered;
+
 /// A link of the chain from the plunger to what is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -59,16 +61,15 @@ impl Element {
         if self.is_numbered { self.index..(self.index + 1).min(count) } else { 0..count }
     }
 
-    /// Reads `line`, `line_2`; `None` for anything else.
+    /// Reads `line`, `line_2` (also written `line2`, `line 2`, `line[2]`); `None` for anything else.
     pub fn parse(text: &str) -> Option<Self> {
         let plain = |name: &str| ElementKind::ALL.into_iter().find(|k| k.name() == name);
         if let Some(kind) = plain(text) {
             return Some(Self { kind, index: 0, is_numbered: false });
         }
-        let (name, number) = text.rsplit_once('_')?;
+        let (name, number) = numbered(text)?;
         let kind = plain(name).filter(|k| k.is_numbered())?;
-        let number: usize = number.parse().ok().filter(|n| *n >= 1)?;
-        Some(Self { kind, index: number - 1, is_numbered: true })
+        Some(Self { kind, index: number.checked_sub(1)?, is_numbered: true })
     }
 }
 
@@ -95,6 +96,9 @@ mod tests {
     fn names_go_there_and_back() {
         for name in ["syringe", "line_1", "muscle_2", "cable", "mechanism", "sensor"] {
             assert_eq!(Element::parse(name).map(|e| e.to_string()).as_deref(), Some(name));
+        }
+        for written in ["line2", "line 2", "line[2]"] {
+            assert_eq!(Element::parse(written), Element::parse("line_2"), "{written}");
         }
         for wrong in ["", "line_0", "mechanism_1", "muscles", "line_x"] {
             assert_eq!(Element::parse(wrong), None, "{wrong}");

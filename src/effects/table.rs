@@ -14,7 +14,7 @@ pub struct EffectTable {
     /// Name in the catalogue (`smam effects`).
     #[schemars(schema_with = "name_schema")]
     pub name: String,
-    /// What has it: `muscle`, `cable 2`.
+    /// What has it: `muscle`, `cable_2`.
     pub element: String,
     /// Column of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]

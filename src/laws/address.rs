@@ -35,6 +35,16 @@ pub fn nearest_port(text: &str) -> String {
     did_you_mean(&meant, &known.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
+/// Name and number of an element: `line_2`, also written `line2`, `line 2` or `line[2]`.
+pub fn numbered(element: &str) -> Option<(&str, usize)> {
+    let bracketed = element.strip_suffix(']').filter(|e| e.contains('['));
+    let element = bracketed.unwrap_or(element);
+    let name = element.trim_end_matches(|c: char| c.is_ascii_digit());
+    let number = element[name.len()..].parse().ok()?;
+    let separators: &[char] = if bracketed.is_some() { &['['] } else { &['_', ' '] };
+    Some((name.strip_suffix(separators).unwrap_or(name), number))
+}
+
 /// A port of one rig: `muscle_2.friction`, `joint(pulley).torque`, `sensor.angle_deg`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Address {
@@ -82,8 +92,7 @@ impl Address {
             }
             return Ok(Self { port: spec.port, number: None, of });
         }
-        let numbered = element.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
-        let found = numbered.and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
+        let found = numbered(element).and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
         match found {
             Some((spec, number)) if of.is_none() && spec.carrier != Carrier::Joint => {
                 Ok(Self { port: spec.port, number: Some(number), of: None })
@@ -143,6 +152,12 @@ mod tests {
             assert_eq!(Address::parse(text).unwrap_or_else(|e| panic!("{e:?}")).to_string(), text);
         }
         for wrong in ["", "muscle", "muscle_0.friction", "muscle.speed", "joint_1.torque", "muscle(a).pull", "sensor"] {
+            assert!(Address::parse(wrong).is_err(), "{wrong}");
+        }
+        for written in ["line2.outflow", "line 2.outflow", "line[2].outflow"] {
+            assert_eq!(Address::parse(written).map(|a| a.to_string()).as_deref(), Ok("line_2.outflow"), "{written}");
+        }
+        for wrong in ["line2].outflow", "line[2.outflow", "line-2.outflow", "line[].outflow"] {
             assert!(Address::parse(wrong).is_err(), "{wrong}");
         }
     }

@@ -29,7 +29,7 @@ mod table;
 mod tree;
 mod units;
 
-pub use address::{Address, nearest_port};
+pub use address::{Address, nearest_port, numbered};
 pub use dimension::Dimension;
 pub use law::{Law, Memory, Parameter, Programs, SLOPES, State, Symbol};
 pub use port::{Carrier, PORTS, Port, PortSpec};

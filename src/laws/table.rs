@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Acts;
+
 /// `[[law]]`: a port of the rig, and an expression that is added to it or scales it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -91,22 +93,26 @@ impl LawTable {
     /// # Errors
     /// A text without port, `adds` or `scales`, and expression; with what to write.
     pub fn parse(text: &str, name: &str) -> Result<Self, (String, String)> {
-        let words = text.trim().split_once(char::is_whitespace);
-        let parts = words.and_then(|(port, rest)| Some((port, rest.trim_start().split_once(char::is_whitespace)?)));
-        let (adds, scales) = match parts {
-            Some((_, ("adds", law))) => (Some(law), None),
-            Some((_, ("scales", law))) => (None, Some(law)),
-            _ => {
-                return Err((
-                    format!("\"{text}\" is no law"),
-                    "write PORT adds EXPRESSION or PORT scales EXPRESSION, for example \
-                     'muscle.damping adds 0.05*tanh(speed_m_s/2e-3)'"
-                        .to_owned(),
-                ));
-            }
+        let parts = [Acts::Adds, Acts::Scales].into_iter().filter_map(|acts| split_at(text, acts));
+        let Some((port, acts, law)) = parts.min_by_key(|(port, ..)| port.len()) else {
+            return Err((
+                format!("\"{text}\" is no law"),
+                "write PORT adds EXPRESSION or PORT scales EXPRESSION, for example \
+                 'muscle.damping adds 0.05*tanh(speed_m_s/2e-3)'"
+                    .to_owned(),
+            ));
         };
-        let own = |law: &str| law.trim().to_owned();
-        let port = parts.map_or(String::new(), |(port, _)| port.to_owned());
-        Ok(Self { name: name.to_owned(), port, adds: adds.map(own), scales: scales.map(own), ..Self::default() })
+        let own = |wanted: Acts| (acts == wanted).then(|| law.to_owned());
+        let (adds, scales) = (own(Acts::Adds), own(Acts::Scales));
+        Ok(Self { name: name.to_owned(), port: port.to_owned(), adds, scales, ..Self::default() })
     }
+}
+
+/// Port, verb and expression of `PORT VERB EXPRESSION`.
+fn split_at(text: &str, acts: Acts) -> Option<(&str, Acts, &str)> {
+    let text = text.trim();
+    let parts = text.match_indices(acts.word()).map(|(at, verb)| (&text[..at], &text[at + verb.len()..]));
+    let mut apart =
+        parts.filter(|(port, law)| port.ends_with(char::is_whitespace) && law.starts_with(char::is_whitespace));
+    apart.next().map(|(port, law)| (port.trim(), acts, law.trim()))
 }

@@ -36,7 +36,20 @@ pub(super) struct JointModel {
     pub rest: f64,
     pub lower_stop: Option<Stop>,
     pub upper_stop: Option<Stop>,
+    /// The URDF's limits, which nothing enforces.
+    pub limits: Option<[f64; 2]>,
     pub mimic: Option<Mimic>,
+}
+
+impl JointModel {
+    /// Whether a position is beyond a limit of the URDF, by more than a thousandth of their distance, and no stop of the scene is there.
+    pub fn is_beyond_limits(&self, position: f64) -> bool {
+        self.limits.is_some_and(|[lower, upper]| {
+            let tolerance = 1e-3 * (upper - lower);
+            let below = self.lower_stop.is_none() && position < lower - tolerance;
+            below || (self.upper_stop.is_none() && position > upper + tolerance)
+        })
+    }
 }
 
 /// Time goes with the cube of their number: with so many, a step takes seconds.
@@ -98,8 +111,16 @@ fn from_urdf(file: &Path, joint: &Joint, remarks: &mut Remarks) -> Result<JointM
         rest: 0.0,
         lower_stop: None,
         upper_stop: None,
+        limits: limits(joint),
         mimic: None,
     })
+}
+
+/// Limits of a joint that has some; equal ones, as drawing programs write them, are none.
+fn limits(joint: &Joint) -> Option<[f64; 2]> {
+    let has_limits = matches!(joint.joint_type, JointType::Revolute | JointType::Prismatic);
+    let [lower, upper] = [joint.limit.lower, joint.limit.upper];
+    (has_limits && lower < upper && (upper - lower).is_finite()).then_some([lower, upper])
 }
 
 /// What its position measures, and whether it moves.

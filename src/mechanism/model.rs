@@ -98,8 +98,8 @@ impl Mechanism {
     /// # Errors
     /// Whatever would change the mechanics unnoticed is refused, naming file, element and remedy; what is merely
     /// ignored is listed by [`Mechanism::warnings`]. URDF joint limits are not enforced (the engine's limit rows
-    /// converge badly): stops come from the scene. Effort and velocity limits describe a motor controller and have
-    /// no meaning here.
+    /// converge badly): stops come from the scene, and [`Mechanism::beyond_limits`] tells where one is missed. Effort
+    /// and velocity limits describe a motor controller and have no meaning here.
     pub fn load(spec: &MechanismSpec, base_dir: &Path) -> Result<Self, MechanismError> {
         let file = crate::stock::join(base_dir, &spec.urdf);
         Self::parse(&urdf_file::text(&file)?, &file, spec)
@@ -176,6 +176,16 @@ impl Mechanism {
     /// What the URDF holds that has no effect, one line for each kind.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// Joints that are beyond their limits in the URDF, where the scene has no stop.
+    pub fn beyond_limits(&self) -> impl Iterator<Item = &str> {
+        let beyond = |(joint, share): &(&JointModel, &Option<Share>)| {
+            let leader = share.and_then(|share| Some((share, *self.leaders.get(share.coordinate)?)));
+            let position = leader.map(|(share, dof)| share.multiplier * self.dof_position(dof) + share.offset);
+            position.is_some_and(|position| joint.is_beyond_limits(position))
+        };
+        self.joints.iter().zip(&self.shares).filter(beyond).map(|(joint, _)| joint.name.as_str())
     }
 
     /// The independent joint coordinates.

@@ -35,7 +35,7 @@ pub enum Route {
         arms: Vec<Arm>,
         /// From joints that do not move and from offsets of followers, m.
         constant_m: f64,
-        /// Only for drawing.
+        /// Only for drawing; a point at each lever where the scene gives none.
         draw: Vec<LinkPoint>,
     },
     /// L = Σ |pᵢ₊₁ − pᵢ|: straight segments through points fixed in links.
@@ -72,7 +72,8 @@ impl Mechanism {
         }
     }
 
-    /// The points to draw the cable through, in the world, m. Empty for a lever route without `draw`.
+    /// The points to draw the cable through, in the world, m. A lever route without `draw` passes each joint at its
+    /// lever.
     pub fn cable_points(&self, route: &Route) -> Vec<[f64; 3]> {
         let (Route::Levers { draw: points, .. } | Route::Via(points)) = route;
         points.iter().map(|p| self.world_point(p).to_array()).collect()
@@ -135,7 +136,16 @@ impl Mechanism {
                 None => constant_m -= lever.lever_m * self.joints[joint].position,
             }
         }
+        let draw = if draw.is_empty() { arms.iter().filter_map(|arm| self.seat(arm)).collect() } else { draw };
         Ok(Route::Levers { arms, constant_m, draw })
+    }
+
+    /// Where a cable is drawn at a joint if the scene does not say: a lever's length off the axis, on the link that the joint moves.
+    fn seat(&self, arm: &Arm) -> Option<LinkPoint> {
+        let moved = self.moved.get(arm.coordinate)?;
+        let axis = Vector3::from(moved.axis);
+        let across = axis.cross(&Vector3::x()).try_normalize(1e-6).unwrap_or_else(Vector3::y);
+        Some(LinkPoint { link: moved.link, point_m: (arm.lever_m * across).into() })
     }
 
     fn points(&self, specs: &[PointSpec]) -> Result<Vec<LinkPoint>, MechanismError> {

@@ -49,6 +49,12 @@ fn curves(page: &mut HtmlPage, outcome: &Outcome) {
     let compared: Vec<ComparedRun> =
         runs.map(|(i, run)| compared(outcome, run, &before[i], with_after.then_some(&after[i]))).collect();
     page.chooser(&choices(&compared), furthest_off(outcome, before));
+    if outcome.diagnosis.fit.full_scene.differs() {
+        page.small(
+            "These curves and their errors are those of the fast model, which differs from the full scene here; the errors of \
+             held-out runs further down are those of the full scene.",
+        );
+    }
 }
 
 /// Of the figures of all runs and channels, the one in which the calibrated scene is furthest off for its noise.

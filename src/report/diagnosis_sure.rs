@@ -1,6 +1,6 @@
 //! How sure an answer is, as a page of a diagnosis shows it: rivals, run by run, held-out runs.
 
-use crate::diagnose::{ChannelProof, NamedEffect, Outcome};
+use crate::diagnose::{ChannelProof, Estimate, NamedEffect, Outcome};
 
 use super::colour::{BLUE, VERMILION};
 use super::diagnosis_words::estimate;
@@ -33,17 +33,44 @@ fn rivals(page: &mut HtmlPage, outcome: &Outcome) {
 
 /// The size of each effect as every run by itself would have it.
 fn by_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    for e in effects {
-        let key = e.size_key();
-        let sizes = e.size_by_run.iter().map(|(file, size)| (file, estimate(key, e.channel.as_deref(), size)));
-        rows.extend(sizes.map(|(file, size)| [vec![e.name.clone(), file.clone(), key.to_owned()], size].concat()));
+    let with_runs: Vec<&NamedEffect> = effects.iter().filter(|e| !e.size_by_run.is_empty()).collect();
+    if with_runs.is_empty() {
+        return;
     }
-    if !rows.is_empty() {
-        page.subheading("Run by run");
-        page.paragraph("The size of each effect as every run by itself would have it: one rig should give one value.");
-        page.table(&["effect", "run", "parameter", "value", "95 % interval"], &rows);
-    }
+    page.subheading("Run by run");
+    page.paragraph("The size of each effect as every run by itself would have it: one rig should give one value.");
+    let rows: Vec<Vec<String>> = with_runs.iter().flat_map(|e| sizes_of(e)).collect();
+    page.table(&["effect", "run", "parameter", "value", "95 % interval"], &rows);
+    with_runs.iter().filter_map(|e| missed(e)).for_each(|words| {
+        page.paragraph(&words);
+    });
+}
+
+/// The size that all runs share, then that of each.
+fn sizes_of(e: &NamedEffect) -> Vec<Vec<String>> {
+    let key = e.size_key();
+    let row = |run: &str, size: &Estimate| {
+        [vec![e.name.clone(), run.to_owned(), key.to_owned()], estimate(key, e.channel.as_deref(), size)].concat()
+    };
+    let shared = e.parameters.get(key).map(|size| row("all", size));
+    shared.into_iter().chain(e.size_by_run.iter().map(|(file, size)| row(file, size))).collect()
+}
+
+/// The runs whose interval leaves out the size that all share, in words.
+fn missed(e: &NamedEffect) -> Option<String> {
+    let shared = e.parameters.get(e.size_key())?.value;
+    let leaves_out = |size: &Estimate| !(size.ci95[0]..=size.ci95[1]).contains(&shared);
+    let runs: Vec<&str> = e.size_by_run.iter().filter(|(_, s)| leaves_out(s)).map(|(file, _)| file.as_str()).collect();
+    (!runs.is_empty()).then(|| {
+        format!(
+            "{}: {} of {} runs have an interval without the value of all ({}); by chance one in twenty has. The law is an \
+             idealisation, or the rig changed between them.",
+            e.name,
+            runs.len(),
+            e.size_by_run.len(),
+            runs.join(", ")
+        )
+    })
 }
 
 /// Error over noise by channel, before and after.
@@ -98,4 +125,27 @@ fn full_scene(page: &mut HtmlPage, outcome: &Outcome) {
         "The fast model against the full scene with the values found, in units of the noise: {}. {consequence}.",
         each.join(", ")
     ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_without_the_value_of_all_are_named() {
+        let size = |value: f64| Estimate { value, ci95: [0.9 * value, 1.1 * value] };
+        let runs = [("slow.csv", 1.02e-17), ("fast.csv", 1.4e-17)];
+        let mut leak = NamedEffect {
+            name: "leak".to_owned(),
+            parameters: [("conductance_m3_s_pa".to_owned(), size(1e-17))].into(),
+            size_by_run: runs.map(|(run, value)| (run.to_owned(), size(value))).into(),
+            ..NamedEffect::default()
+        };
+        let words = missed(&leak).expect("one is off");
+        assert!(words.starts_with("leak: 1 of 2 runs have an interval without the value of all (fast.csv)"), "{words}");
+        let rows = sizes_of(&leak);
+        assert_eq!(rows.iter().map(|row| row[1].as_str()).collect::<Vec<_>>(), ["all", "fast.csv", "slow.csv"]);
+        leak.size_by_run.remove("fast.csv");
+        assert_eq!(missed(&leak), None);
+    }
 }

@@ -58,7 +58,7 @@ fn lanes(outcome: &Outcome) -> Vec<Lane> {
 
 /// A run's file, and whether it was held out.
 pub(super) fn run_name(run: &CaseRun) -> String {
-    if run.is_sealed { format!("{} (held out)", run.file) } else { run.file.clone() }
+    if run.is_held_out { format!("{} (held out)", run.file) } else { run.file.clone() }
 }
 
 fn states(page: &mut HtmlPage, outcome: &Outcome, before: &[Vec<Vec<f64>>], after: &[Vec<Vec<f64>>]) {

@@ -32,14 +32,17 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     ];
     for (angle_deg, at_s) in HELD {
         let ours = bends.value_at("bend_deg", at_s)?;
-        rows.push(Row::compared(
-            format!("bends to {angle_deg:.0} degrees"),
-            "deg",
-            angle_deg,
-            ours,
-            2.0,
-            "plunger programme sought for it; tolerance 2 deg",
-        ));
+        rows.push(
+            Row::compared(
+                format!("bends to {angle_deg:.0} degrees"),
+                "deg",
+                angle_deg,
+                ours,
+                2.0,
+                "plunger programme sought for it; tolerance 2 deg",
+            )
+            .tuned(),
+        );
     }
     let (closed, open) = (bends.value_at("jaw_deg", 10.5)?, bends.value_at("jaw_deg", 12.9)?);
     rows.push(Row::judged("forceps closed at 90 degrees", "deg", None, closed, closed.abs() < 1.0, "0 is closed"));

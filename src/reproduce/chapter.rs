@@ -10,6 +10,8 @@ use crate::report::Panel;
 pub enum Standing {
     /// Within the tolerance that the remark gives.
     Met,
+    /// Within it, but a number of the rig or the plunger's programme was chosen for it: it tests the fit, and predicts nothing.
+    Tuned,
     /// Outside of it: the remark says why.
     NotMet,
     /// Taken from the paper as an input: it cannot fail.
@@ -23,6 +25,7 @@ impl Standing {
     pub fn word(self) -> &'static str {
         match self {
             Self::Met => "met",
+            Self::Tuned => "tuned",
             Self::NotMet => "not met",
             Self::Given => "given",
             Self::Shown => "shown",
@@ -137,6 +140,12 @@ impl Row {
         let row = Self::given(quantity, unit, paper, remark);
         let standing = if (ours - paper).abs() <= 1e-9 * paper.abs() { Standing::Given } else { Standing::NotMet };
         Self { ours: Some(ours), standing, ..row }
+    }
+
+    /// What is met because something was chosen for it.
+    pub fn tuned(self) -> Self {
+        let standing = if self.standing == Standing::Met { Standing::Tuned } else { self.standing };
+        Self { standing, ..self }
     }
 
     /// Ours less the paper's.

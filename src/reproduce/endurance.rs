@@ -144,8 +144,8 @@ fn suspected(s: &Suspect, endurance: &Endurance) -> Result<(Row, Vec<f64>), Repr
     let name = format!("with {}", s.name);
     match size_for(PAPER_PERCENT, (0.0, s.most), figure)? {
         Some(size) => {
-            let remark = format!("{} = {size:.3e} {}, tolerance 0.1 %", s.number, s.unit);
-            let row = Row::compared(name, "%", PAPER_PERCENT, figure(size)?, 0.1, remark);
+            let remark = format!("{} = {size:.3e} {}, sought for it; tolerance 0.1 %", s.number, s.unit);
+            let row = Row::compared(name, "%", PAPER_PERCENT, figure(size)?, 0.1, remark).tuned();
             Ok((row, endurance.peaks(&[(s.make)(size)])?))
         }
         None => {

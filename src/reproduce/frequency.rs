@@ -158,9 +158,9 @@ fn suspected(s: &Suspect, ends: &Ends) -> Result<(Row, Option<EffectTable>), Rep
         return Ok((Row::about_other_data(format!("with {}", s.name), "dB", PAPER_DB, Some(most), remark), None));
     };
     let with = (s.make)(size);
-    let remark = format!("{} = {size:.4} {}, tolerance 0.02 dB", s.number, s.unit);
+    let remark = format!("{} = {size:.4} {}, sought for it; tolerance 0.02 dB", s.number, s.unit);
     let ours = ends.drop_db(std::slice::from_ref(&with))?;
-    Ok((Row::compared(format!("with {}", s.name), "dB", PAPER_DB, ours, 0.02, remark), Some(with)))
+    Ok((Row::compared(format!("with {}", s.name), "dB", PAPER_DB, ours, 0.02, remark).tuned(), Some(with)))
 }
 
 /// Fig. 4e.

@@ -188,23 +188,28 @@ impl Found {
                 width,
                 our_width,
                 0.5,
-                format!("at {our_at:.2} mm; the printed model's is at {at:.2} mm; tolerance 0.5 mm"),
-            ),
+                format!(
+                    "compliances and friction were inferred from it; at {our_at:.2} mm, the printed model's at {at:.2} mm; \
+                     tolerance 0.5 mm"
+                ),
+            )
+            .tuned(),
             Row::compared(
                 format!("area of the loop {model}"),
                 "mm²",
                 target.area(),
                 stock.area(),
                 0.15 * target.area(),
-                "tolerance 15 %",
-            ),
+                "follows from the width; tolerance 15 %",
+            )
+            .tuned(),
             close("stock rig".to_owned(), &self.as_delivered, 0.45),
-            close("C1, C_s, m0, m1, x_pre calibrated".to_owned(), &self.calibrated, 0.25),
+            close("C1, C_s, m0, m1, x_pre calibrated".to_owned(), &self.calibrated, 0.25).tuned(),
         ]);
         rows.extend(self.attempts().map(|c| {
             Row::shown(format!("calibrated, {}", added(c)), "mm", c.rms_mm, "RMS from the printed model, one attempt")
         }));
-        rows.push(close(format!("closest: {}", added(self.best())), self.best(), PAPERS_OWN_MM));
+        rows.push(close(format!("closest: {}", added(self.best())), self.best(), PAPERS_OWN_MM).tuned());
         rows
     }
 }

@@ -64,7 +64,8 @@ fn derived() -> Vec<Row> {
             mass_g(),
             0.005,
             "wire 0.20 mm of steel and tube; the wire was inferred from this number",
-        ),
+        )
+        .tuned(),
         Row::compared("length over diameter, 3000 mm long", "1", 2069.0, 3000.0 / 1.45, 0.5, "arithmetic"),
         Row::judged(
             "fluid in the line",
@@ -100,7 +101,8 @@ fn stretches(safe: &Recording, beyond: &Recording) -> Result<Vec<Row>, Reproduce
             stretch(safe)?,
             0.5,
             "the plunger's stroke was sought for it; Fig. 1b says about 247 % for a muscle of 47 mm",
-        ),
+        )
+        .tuned(),
         Row::judged(
             "longer than at first after 245 %",
             "%",

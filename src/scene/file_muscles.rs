@@ -138,9 +138,10 @@ pub struct MuscleSpec {
     pub joint: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cable: Option<String>,
-    /// Where to draw its fixed end, and the direction in which it extends.
-    #[serde(default)]
-    pub anchor_m: [f64; 3],
+    /// Where to draw its fixed end; else it lies behind the first point of its cable, or beside the others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anchor_m: Option<[f64; 3]>,
+    /// The direction in which it extends.
     #[serde(default = "x_axis")]
     pub direction: [f64; 3],
     /// What is other about this muscle than `[muscles]` says: any of its keys, `{ tube.material.c1_pa = 3.1e5 }`.

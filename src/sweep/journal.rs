@@ -50,7 +50,7 @@ pub enum JournalLine {
 /// )?)?;
 /// let folder = tempfile::tempdir()?;
 /// let journal = Journal::open(folder.path(), &plan, false)?;
-/// journal.add(&Row { index: 1, values: plan.point(1), outcome: Ok(vec![26.2]), concerns_s: [0.0; 4] })?;
+/// journal.add(&Row { index: 1, values: plan.point(1), outcome: Ok(vec![26.2]), concerns_s: [0.0; 5] })?;
 /// drop(journal);
 /// // Begun is begun: anew only in another folder, else it goes on with what is done.
 /// assert!(Journal::open(folder.path(), &plan, false).is_err());
@@ -192,13 +192,13 @@ mod tests {
     #[test]
     fn a_line_comes_back_as_it_was() {
         for outcome in [Ok(vec![1.0 / 3.0, -2e-300]), Err("it \"broke\"\nhere".to_owned())] {
-            let before = Row { index: 7, values: vec![0.1, 5e17], outcome, concerns_s: [0.0, 1.5, 0.0, 0.25] };
+            let before = Row { index: 7, values: vec![0.1, 5e17], outcome, concerns_s: [0.0, 1.5, 0.0, 0.25, 0.0] };
             let text = line(&before);
             assert_eq!(text.matches('\n').count(), 1);
             let after = serde_json::from_str(&text).ok().and_then(row);
             assert_eq!(after, Some(before));
         }
-        let cut = line(&Row { index: 1, values: vec![], outcome: Ok(vec![2.5]), concerns_s: [0.0; 4] });
+        let cut = line(&Row { index: 1, values: vec![], outcome: Ok(vec![2.5]), concerns_s: [0.0; 5] });
         assert!(serde_json::from_str::<JournalLine>(&cut[..cut.len() - 4]).is_err());
     }
 }

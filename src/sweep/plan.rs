@@ -285,7 +285,13 @@ mod tests {
     fn wrong_keys_ranges_and_measures_are_refused_before_anything_runs() {
         let good = Plan::new(file("muscles.friction.m0_n", 0.1, 0.2, "range(elongation_mm)")).expect("right");
         assert_eq!((good.count(), good.point(2)), (3, vec![0.2]));
-        let warnings = ["warning_slack_s", "warning_cavitation_s", "warning_yield_s", "warning_penetration_s"];
+        let warnings = [
+            "warning_slack_s",
+            "warning_cavitation_s",
+            "warning_yield_s",
+            "warning_penetration_s",
+            "warning_joint_limit_s",
+        ];
         assert_eq!(good.columns(), [&["index", "muscles.friction.m0_n", "m"][..], &warnings].concat());
         let wrong =
             |key: &str, from: f64, of: &str| Plan::new(file(key, from, 0.2, of)).expect_err("wrong").to_string();

@@ -21,10 +21,12 @@ pub enum Concern {
     Yield,
     /// Bodies are inside each other.
     Penetration,
+    /// A joint is beyond its limits in the URDF.
+    JointLimit,
 }
 
 impl Concern {
-    pub const ALL: [Self; 4] = [Self::Slack, Self::Cavitation, Self::Yield, Self::Penetration];
+    pub const ALL: [Self; 5] = [Self::Slack, Self::Cavitation, Self::Yield, Self::Penetration, Self::JointLimit];
 
     /// Its name in files.
     pub fn word(self) -> &'static str {
@@ -33,6 +35,7 @@ impl Concern {
             Self::Cavitation => "cavitation",
             Self::Yield => "yield",
             Self::Penetration => "penetration",
+            Self::JointLimit => "joint_limit",
         }
     }
 }
@@ -120,6 +123,8 @@ fn conditions(simulation: &Simulation) -> Vec<(Concern, String)> {
                 present.push(words);
             }
         }
+        let beyond = |joint: &str| format!("joint {joint}: beyond its limit in the URDF, where the scene has no stop");
+        present.extend(mechanism.beyond_limits().map(|joint| (Concern::JointLimit, beyond(joint))));
     }
     present
 }

@@ -1,9 +1,18 @@
 //! What a running scene shows: the fixed graph and one frame.
 
+use nalgebra::Vector3;
+
 use super::Simulation;
 use super::channels::Channels;
 use super::observe::{CableFrame, Frame, JointGraph, LawFrame, MuscleFrame, MuscleGraph, SceneGraph};
 use crate::mechanism::{CoordinateKind, Mechanism};
+use crate::scene::MuscleSpec;
+
+/// From the fixed end of a muscle to its cable's first point, in lengths of the muscle at the start.
+const GAP: f64 = 1.3;
+
+/// Between muscles that would lie in one place, m.
+const BESIDE_M: f64 = 0.006;
 
 impl Simulation {
     /// What stays the same during the run.
@@ -29,14 +38,15 @@ impl Simulation {
     }
 
     fn muscle_graphs(&self) -> Vec<MuscleGraph> {
-        let drawn = self.scene.file.muscle.iter().zip(&self.scene.makes).map(|(m, make)| {
+        let muscles = self.scene.file.muscle.iter().zip(&self.scene.makes).zip(&self.anchors_m);
+        let drawn = muscles.map(|((m, make), anchor_m)| {
             let coil = make.tube.as_ref().map(|t| t.coil);
             MuscleGraph {
                 name: m.name.clone(),
                 outer_diameter_m: coil.map_or(1.45e-3, |c| c.outer_diameter_m),
                 coil_turns: coil.map_or(250.0, |c| c.turns),
                 rest_length_m: make.rest_length_m,
-                anchor_m: m.anchor_m,
+                anchor_m: *anchor_m,
                 direction: m.direction,
             }
         });
@@ -82,7 +92,30 @@ impl Simulation {
         let spec = &self.scene.file.muscle[index];
         let make = self.scene.makes.get(index)?;
         let length = make.rest_length_m + self.muscle_frames().get(index)?.elongation_m;
-        Some([0, 1, 2].map(|k| spec.anchor_m[k] + spec.direction[k] * length))
+        let anchor_m = self.anchors_m.get(index)?;
+        Some([0, 1, 2].map(|k| anchor_m[k] + spec.direction[k] * length))
+    }
+
+    /// Where to draw the fixed end of each muscle, m: as the scene says, else behind the first point of its cable, or at the origin; beside
+    /// those that are there already.
+    pub(super) fn place_muscles(&self) -> Vec<[f64; 3]> {
+        let lengths = self.scene.makes.iter().zip(self.muscle_frames()).map(|(m, f)| m.rest_length_m + f.elongation_m);
+        let graph = self.scene.file.muscle.iter().zip(lengths);
+        graph.fold(Vec::new(), |mut placed, (spec, length)| {
+            let own = spec.anchor_m.unwrap_or_else(|| {
+                let anchor = self.behind_cable(spec, GAP * length).unwrap_or_default();
+                beside(anchor, spec.direction, &placed)
+            });
+            placed.push(own);
+            placed
+        })
+    }
+
+    /// A place so far behind the first point of the muscle's cable.
+    fn behind_cable(&self, spec: &MuscleSpec, distance_m: f64) -> Option<[f64; 3]> {
+        let cable = self.scene.file.cable.iter().position(|c| Some(&c.name) == spec.cable.as_ref())?;
+        let first = *self.mechanism.as_ref()?.cable_points(self.built.routes.get(cable)?).first()?;
+        Some([0, 1, 2].map(|k| first[k] - distance_m * spec.direction[k]))
     }
 
     fn law_frames(&self) -> Vec<LawFrame> {
@@ -106,6 +139,17 @@ impl Simulation {
     }
 }
 
+/// The place itself, or the nearest one across the direction where no muscle lies yet.
+fn beside(place: [f64; 3], direction: [f64; 3], taken: &[[f64; 3]]) -> [f64; 3] {
+    let direction = Vector3::from(direction);
+    let across = direction.cross(&Vector3::z()).try_normalize(1e-6).unwrap_or_else(Vector3::y);
+    let mut own = Vector3::from(place);
+    while taken.iter().any(|other| (own - Vector3::from(*other)).norm() < 0.5 * BESIDE_M) {
+        own -= BESIDE_M * across;
+    }
+    own.into()
+}
+
 fn joint_graphs(mechanism: &Mechanism) -> Vec<JointGraph> {
     let joints = mechanism.coordinates().iter().zip(mechanism.moved());
     let graph = joints.map(|(c, moved)| JointGraph {
@@ -115,4 +159,27 @@ fn joint_graphs(mechanism: &Mechanism) -> Vec<JointGraph> {
         axis: moved.axis,
     });
     graph.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn a_rig_that_says_nothing_of_drawing_is_drawn_apart_and_whole() {
+        let mut scene = Scene::load("antagonistic_pulley", &[]).expect("a stock scene");
+        scene.file.muscle.iter_mut().for_each(|muscle| muscle.anchor_m = None);
+        scene.file.cable.iter_mut().for_each(|cable| cable.route.draw.clear());
+        let simulation = Simulation::new(scene).expect("right");
+        let [first, second] = [0, 1].map(|i| Vector3::from(simulation.anchors_m[i]));
+        // On opposite sides of the pulley, as its levers are.
+        assert!((first.y - 8e-3).abs() < 1e-12 && (second.y + 8e-3).abs() < 1e-12, "{first} {second}");
+        for cable in simulation.cable_frames() {
+            let [from, to] = cable.points_m[..] else { panic!("{:?}", cable.points_m) };
+            assert!(from[0] < to[0] && (from[1] - to[1]).abs() < 1e-12, "{from:?} {to:?}");
+        }
+        let in_one_place = beside([0.0; 3], [1.0, 0.0, 0.0], &[[0.0; 3], [0.0, BESIDE_M, 0.0]]);
+        assert_eq!(in_one_place, [0.0, 2.0 * BESIDE_M, 0.0]);
+    }
 }

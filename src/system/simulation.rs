@@ -63,6 +63,8 @@ pub struct Simulation {
     hysteresis: Vec<Vec<f64>>,
     has_stepped: bool,
     pub(super) energy: Option<EnergyBook>,
+    /// Where muscles are drawn, m.
+    pub(super) anchors_m: Vec<[f64; 3]>,
 }
 
 impl Simulation {
@@ -95,12 +97,14 @@ impl Simulation {
             hysteresis: vec![Vec::new(); built.displacements.len()],
             has_stepped: false,
             energy: None,
+            anchors_m: Vec::new(),
             scene,
             mechanism,
             built,
         };
         simulation.resolve_loads()?;
         simulation.hold_spans();
+        simulation.anchors_m = simulation.place_muscles();
         simulation.check_laws()?;
         Ok(simulation)
     }

@@ -32,7 +32,7 @@ fn replay(outcome: &Outcome, run: &CaseRun, [baseline, complete]: [&Fit; 2]) -> 
         case.channels.iter().zip(&run.measured).map(|(c, m)| (c.column.as_str(), m.as_slice())).collect();
     let windows = outcome.diagnosis.location.time_windows_s.iter().filter(|(file, _, _)| *file == run.file);
     let mut shown = SideBySide {
-        run: if run.is_sealed { format!("{} (sealed)", run.file) } else { run.file.clone() },
+        run: if run.is_held_out { format!("{} (held out)", run.file) } else { run.file.clone() },
         measured_poses: measured_poses(&run.scene, &recorded)?,
         measured: Vec::new(),
         windows_s: windows.map(|(_, from, to)| (*from, *to)).collect(),

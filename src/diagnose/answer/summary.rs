@@ -27,7 +27,7 @@ fn verdict(d: &Diagnosis) -> String {
 fn said(d: &Diagnosis, effects: &[String]) -> String {
     // Less than the noise can be left by chance: no more than all of a gap is closed.
     let closed = format!(
-        "On the sealed runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
+        "On the held-out runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
         100.0 * d.fit.gap_closed.min(1.0)
     );
     match d.verdict {

@@ -6,15 +6,15 @@ impl Case {
     /// Holds the last run back unless the recordings say which; of a single run its last third is cut off, and of every run where
     /// nothing drives them: then none foretells another.
     pub(super) fn seal(&mut self) {
-        if self.runs.iter().any(|r| r.is_sealed) && self.runs.iter().any(|r| !r.is_sealed) {
+        if self.runs.iter().any(|r| r.is_held_out) && self.runs.iter().any(|r| !r.is_held_out) {
             return;
         }
-        self.runs.iter_mut().for_each(|r| r.is_sealed = false);
+        self.runs.iter_mut().for_each(|r| r.is_held_out = false);
         let is_driven = !self.scene.file.input.is_empty();
         if let [_, .., last] = self.runs.as_mut_slice()
             && is_driven
         {
-            last.is_sealed = true;
+            last.is_held_out = true;
             return;
         }
         let note = match self.runs.len() {
@@ -23,8 +23,8 @@ impl Case {
         };
         self.notes.push(note.to_owned());
         let ends = self.runs.iter().map(|run| run.cut_at(run.times_s().len() * 2 / 3));
-        let (open, sealed): (Vec<CaseRun>, Vec<CaseRun>) = ends.map(|[open, sealed]| (open, sealed)).unzip();
-        self.runs = open.into_iter().chain(sealed).collect();
+        let (open, held_out): (Vec<CaseRun>, Vec<CaseRun>) = ends.map(|[open, held_out]| (open, held_out)).unzip();
+        self.runs = open.into_iter().chain(held_out).collect();
     }
 
     /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
@@ -37,14 +37,14 @@ impl CaseRun {
     /// What lies before sample `cut`, open, and the rest, held back; that is simulated from the start.
     fn cut_at(&self, cut: usize) -> [Self; 2] {
         let cut = cut.min(self.times_s().len());
-        let (mut open, mut sealed) = (self.clone(), self.clone());
+        let (mut open, mut held_out) = (self.clone(), self.clone());
         open.keep(0..cut);
-        open.is_sealed = false;
-        sealed.open_part = Some(sealed.measured.clone());
-        sealed.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
-        sealed.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
-        sealed.is_sealed = true;
-        [open, sealed]
+        open.is_held_out = false;
+        held_out.open_part = Some(held_out.measured.clone());
+        held_out.open_part.iter_mut().flatten().for_each(|m| m[cut..].fill(f64::NAN));
+        held_out.measured.iter_mut().for_each(|m| m[..cut].fill(f64::NAN));
+        held_out.is_held_out = true;
+        [open, held_out]
     }
 
     fn keep(&mut self, range: std::ops::Range<usize>) {

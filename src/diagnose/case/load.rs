@@ -11,7 +11,7 @@ use crate::system::{Twin, TwinRun};
 
 use super::decimate::thin;
 use super::instants::{at_times, with_points_of};
-use super::{Case, CaseChannel, CaseParameter, CaseRun};
+use super::{Case, CaseChannel, CaseParameter, CaseRun, Effort};
 use crate::diagnose::error::DiagnoseError;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
@@ -55,6 +55,7 @@ impl Case {
             runs: Vec::new(),
             notes: Vec::new(),
             has_clock: sets.iter().flat_map(|set| &set.runs).all(|run| !run.layout.counts_rows()),
+            effort: Effort::default(),
             without: None,
             scene_name,
         };
@@ -117,7 +118,7 @@ impl Case {
             file: run.run.file.clone(),
             measured,
             specimen: run.run.specimen.clone(),
-            is_sealed: run.run.run_use == Some(RunUse::Holdout),
+            is_held_out: run.run.run_use == Some(RunUse::Holdout),
             unheld: Vec::new(),
             open_part: None,
             twin: Arc::new(Twin::new(&scene)?),

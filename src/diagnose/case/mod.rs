@@ -4,6 +4,7 @@
 
 mod ablation;
 mod decimate;
+mod effort;
 mod held_out;
 mod instants;
 mod load;
@@ -23,6 +24,7 @@ use crate::scene::Scene;
 use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
 
 pub use ablation::Step;
+pub use effort::Effort;
 pub use noise::Noise;
 
 /// An output that was recorded.
@@ -53,8 +55,8 @@ pub struct CaseRun {
     pub unheld: Vec<Vec<(usize, f64)>>,
     /// Which sample, or set-up, it was recorded on, if that is stated.
     pub specimen: Option<String>,
-    pub is_sealed: bool,
-    /// Of the sealed end of a run: what was measured before it. A free zero is decided there.
+    pub is_held_out: bool,
+    /// Of the held-out end of a run: what was measured before it. A free zero is decided there.
     pub open_part: Option<Vec<Vec<f64>>>,
 }
 
@@ -129,6 +131,8 @@ pub struct Case {
     pub notes: Vec<String>,
     /// Whether the times of all runs are times, and no count of rows.
     pub has_clock: bool,
+    /// What has been simulated so far.
+    pub effort: Effort,
     /// A step of the diagnosis that is left out.
     without: Option<Step>,
 }
@@ -177,11 +181,11 @@ impl Case {
     }
 
     /// Runs to fit and select with, or those held back.
-    pub fn subset(&self, sealed: Sealed) -> Vec<Cow<'_, CaseRun>> {
-        let wanted = |r: &&CaseRun| match sealed {
-            Sealed::Open => !r.is_sealed,
-            Sealed::Sealed => r.is_sealed,
-            Sealed::Both => true,
+    pub fn subset(&self, runs: RunSet) -> Vec<Cow<'_, CaseRun>> {
+        let wanted = |r: &&CaseRun| match runs {
+            RunSet::Open => !r.is_held_out,
+            RunSet::HeldOut => r.is_held_out,
+            RunSet::All => true,
         };
         self.runs.iter().filter(wanted).map(Cow::Borrowed).collect()
     }
@@ -196,10 +200,10 @@ fn unheld_note(file: &str, column: &str, count: usize) -> String {
 
 /// Which runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sealed {
+pub enum RunSet {
     Open,
-    Sealed,
-    Both,
+    HeldOut,
+    All,
 }
 
 /// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.

@@ -31,7 +31,7 @@ impl Case {
     /// Gives every specimen that an open run shows calibrated numbers of its own. The others have the mean of those.
     pub(super) fn untie(&mut self) {
         let is_open =
-            |name: &&str| self.runs.iter().any(|run| !run.is_sealed && run.specimen.as_deref() == Some(*name));
+            |name: &&str| self.runs.iter().any(|run| !run.is_held_out && run.specimen.as_deref() == Some(*name));
         let names: Vec<String> = self.specimens().into_iter().filter(is_open).map(str::to_owned).collect();
         if names.is_empty() {
             return;
@@ -54,7 +54,7 @@ impl Case {
                 known: names.into_iter().map(str::to_owned).collect(),
             });
         }
-        self.runs.iter_mut().for_each(|run| run.is_sealed = run.specimen.as_deref() == Some(specimen));
+        self.runs.iter_mut().for_each(|run| run.is_held_out = run.specimen.as_deref() == Some(specimen));
         // Tied again, one of each key, and untied over those that are open now.
         let mut tied: Vec<CaseParameter> = Vec::new();
         for p in std::mem::take(&mut self.parameters) {
@@ -69,7 +69,7 @@ impl Case {
 
     /// Whether a specimen is predicted from others alone.
     pub(in crate::diagnose) fn is_transfer(&self) -> bool {
-        let has_open = |name: &str| self.runs.iter().any(|r| !r.is_sealed && r.specimen.as_deref() == Some(name));
+        let has_open = |name: &str| self.runs.iter().any(|r| !r.is_held_out && r.specimen.as_deref() == Some(name));
         self.specimens().into_iter().any(|name| !has_open(name))
     }
 
@@ -111,7 +111,7 @@ mod tests {
         let mut case = made::recorded("muscle_bench", &set, &["plunger_mm"], &["elongation_mm"]);
         let run = case.runs[0].clone();
         case.runs = ["a", "b", "c"].map(|name| CaseRun { specimen: Some(name.to_owned()), ..run.clone() }).to_vec();
-        case.runs[2].is_sealed = true;
+        case.runs[2].is_held_out = true;
         case
     }
 

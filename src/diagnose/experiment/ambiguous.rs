@@ -116,7 +116,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::{Model, Placed};
     use crate::effects::{Element, ElementKind, find};
 
@@ -135,7 +135,7 @@ mod tests {
     fn what_says_the_same_is_left_out() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.02)];
-        let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
         let fit = |id, element, values: &[f64]| {
             let entry = find(id).expect("of the catalogue");
             let model = Model::baseline().plus(&Placed { entry, element, channel: None }, values);

@@ -3,7 +3,7 @@
 use super::model::Model;
 use super::problem::{Fit, Problem};
 use crate::diagnose::case::noise::estimate;
-use crate::diagnose::case::{Case, Noise, Sealed};
+use crate::diagnose::case::{Case, Noise, RunSet};
 use crate::diagnose::error::DiagnoseError;
 
 /// Baseline on the open runs, with the noise estimated from what it leaves.
@@ -60,7 +60,7 @@ fn diverges() -> DiagnoseError {
 }
 
 fn problem<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
-    Problem { case, runs: case.subset(Sealed::Open), noise }
+    Problem { case, runs: case.subset(RunSet::Open), noise }
 }
 
 fn fit(case: &Case, noise: &[Noise], near: Option<&[f64]>) -> Result<Fit, DiagnoseError> {

@@ -19,7 +19,7 @@ const AGREES: f64 = 0.5;
 /// The full scene's channels of one run, and how far the fast model is from them.
 #[derive(Clone, Debug)]
 pub struct FullRun {
-    pub is_sealed: bool,
+    pub is_held_out: bool,
     /// By channel, then time.
     pub values: Vec<Vec<f64>>,
     /// Root mean square difference by channel, a free zero allowed for, in units of the noise.
@@ -52,7 +52,7 @@ fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRu
         rms(&compared, case.channels[c].has_free_zero) / noise[c].sd
     };
     let difference_over_noise = (0..values.len()).map(difference).collect();
-    Ok(FullRun { is_sealed: run.is_sealed, values, difference_over_noise })
+    Ok(FullRun { is_held_out: run.is_held_out, values, difference_over_noise })
 }
 
 /// What the full scene shows in a run, with the numbers of a fit: by channel, then time.

@@ -32,7 +32,7 @@ pub(in crate::diagnose) fn settle(whole: &Problem, fit: Fit) -> Option<Fit> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::Model;
     use crate::scene::Override;
 
@@ -42,7 +42,7 @@ mod tests {
         let set = [Override::number("friction_m0_n", 0.11)];
         let case = made::recorded("antagonistic_pulley", &set, &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);
         let noise = [Noise::white(0.01)];
-        let whole = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
         let baseline = Model::baseline();
         let friction = case.parameters.iter().position(|p| p.key == "friction_m0_n").expect("calibrated");
         let mut wrong = whole.fit_to_the_end(&baseline, &whole.start(&baseline, None)).expect("played");

@@ -123,7 +123,7 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
     let Some(variable) = quantity(own) else { return Vec::new() };
     let slot = |reading: Reading| {
         let other = reading.other().and_then(|q| here.iter().find(|slot| quantity(slot) == Some(q)));
-        let runs = case.runs.iter().filter(|run| !run.is_sealed).enumerate();
+        let runs = case.runs.iter().filter(|run| !run.is_held_out).enumerate();
         let series: Vec<Vec<f64>> = runs
             .map(|(r, run)| reading.series(&own.series[r], other.map_or(&[][..], |o| &o.series[r]), &run.drive.times_s))
             .collect();
@@ -136,7 +136,7 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
 /// Slots of laws that depend on nothing. What acts in the fluid as it did before adds no number of its own: a steady flow or pressure
 /// is physics, not a number.
 fn constants(case: &Case) -> Vec<Slot> {
-    let open = || case.runs.iter().filter(|run| !run.is_sealed);
+    let open = || case.runs.iter().filter(|run| !run.is_held_out);
     let is_number = |spec: &&PortSpec| {
         action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength
     };
@@ -174,7 +174,7 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
         }
     }
     let laws: Vec<Law> = asked.iter().map(|(law, ..)| law.clone()).collect();
-    let open = case.runs.iter().filter(|run| !run.is_sealed);
+    let open = case.runs.iter().filter(|run| !run.is_held_out);
     let Some(visited) = open
         .map(|run| run.twin.visited(&run.drive, &from.model.setting(case, run, &from.x), &laws))
         .collect::<Option<Vec<_>>>()
@@ -219,7 +219,7 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::{Model, Problem};
 
     /// Rows that are only counted tell an order, and no pace.
@@ -228,7 +228,7 @@ mod tests {
         let mut case = made::recorded("antagonistic_pulley", &[], &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);
         let of_rate = |case: &Case| {
             let noise = [Noise::white(0.01)];
-            let problem = Problem { case, runs: case.subset(Sealed::Open), noise: &noise };
+            let problem = Problem { case, runs: case.subset(RunSet::Open), noise: &noise };
             let fit = problem.fit(&Model::baseline(), &problem.start(&Model::baseline(), None)).expect("a fit");
             let all = slots(case, &fit, Reach::Wide);
             (all.len(), all.iter().filter(|slot| slot.needs_clock()).count())

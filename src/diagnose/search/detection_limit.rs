@@ -36,7 +36,7 @@ pub(in crate::diagnose) fn confirm_least_sizes(problem: &Problem, fit: &Fit, scr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, Sealed, made};
+    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::Model;
     use crate::diagnose::search::candidates;
     use crate::diagnose::search::screening::screen;
@@ -46,7 +46,7 @@ mod tests {
     fn what_levels_off_within_the_noise_is_not_visible() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "force_n"]);
         let noise = [Noise::white(0.02), Noise::white(0.5)];
-        let problem = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
         let baseline = Model::baseline();
         let fit = problem.fit(&baseline, &problem.start(&baseline, None)).expect("played");
         let mut screened = screen(&problem, &fit, &candidates::variants(&case)).expect("played").screened;

@@ -2,7 +2,7 @@
 
 use super::screening::least_gain;
 use super::stepwise::{Begun, Bound, Found};
-use crate::diagnose::case::{Case, Noise, Sealed, noise};
+use crate::diagnose::case::{Case, Noise, RunSet, noise};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 
 /// Searches again from what was found, where that asks for other weights or other steps.
@@ -19,7 +19,7 @@ pub(in crate::diagnose) fn weigh(
         }
         let former = case.runs.clone();
         let Some(renewed) = renew(case, &noise, &found) else {
-            // With the former steps the fast model could follow; what it cannot on a sealed run is taken back later.
+            // With the former steps the fast model could follow; what it cannot on a held-out run is taken back later.
             case.runs = former;
             break;
         };
@@ -67,7 +67,7 @@ pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Foun
     Some(Renewed { noise, weights_hold, start, baseline })
 }
 
-/// The fit of the runs that are not sealed.
+/// The fit of the runs that are not held out.
 pub(in crate::diagnose) fn open_runs<'a>(case: &'a Case, noise: &'a [Noise]) -> Problem<'a> {
-    Problem { case, runs: case.subset(Sealed::Open), noise }
+    Problem { case, runs: case.subset(RunSet::Open), noise }
 }

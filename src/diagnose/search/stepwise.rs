@@ -50,8 +50,7 @@ impl Bound<'_> {
     /// Whether the law leaves less than several effects do, and not much.
     pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
         self.0.is_some_and(|law| {
-            let is_lower = law.cost < several.cost - least_gain(problem.samples());
-            several.model.effects.len() > 1 && is_lower && !leaves_much(problem, baseline, law)
+            law.cost < several.cost - least_gain(problem.samples()) && !leaves_much(problem, baseline, law)
         })
     }
 }
@@ -97,6 +96,14 @@ impl Begun {
         Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
     }
 
+    /// Goes on to so many effects, and no further.
+    pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
+        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (most, Bound(None)), say);
+        self.known = swaps.known;
+        self
+    }
+
     /// What stands as far as it went.
     pub fn found(&self) -> Found {
         Found {
@@ -128,7 +135,7 @@ impl Begun {
             return self.found();
         }
         for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
-            if !leaves_much(problem, &baseline, &self.way.best) {
+            if !leaves_much(problem, &baseline, &self.way.best) || problem.case.effort.is_beyond(MOST_SEARCHED) {
                 break;
             }
             if !self.seen.is_new(&other) {
@@ -148,6 +155,9 @@ impl Begun {
 /// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
+/// Simulated samples after which no third effect and no other beginning is tried: some fifty times what one effect takes. What the
+/// catalogue does not hold it searches longest, and in vain.
+const MOST_SEARCHED: u64 = 60_000_000;
 /// Share of the misfit that is much.
 const MUCH: f64 = 0.05;
 
@@ -235,6 +245,9 @@ fn climb(
 ) -> Way {
     let problem = swaps.problem;
     while !way.is_at_end && way.best.model.effects.len() < most && !law.outdoes(problem, baseline, &way.best) {
+        if way.best.model.effects.len() > 1 && problem.case.effort.is_beyond(MOST_SEARCHED) {
+            break;
+        }
         let best = &way.best;
         let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
         let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));

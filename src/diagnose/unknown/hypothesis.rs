@@ -6,7 +6,7 @@ use super::elsewhere::elsewhere;
 use super::forms::{Criterion, equally_good, other_forms, tie, with_elsewhere};
 use super::shown::Located;
 use super::unlisted::{Proposals, propose};
-use crate::diagnose::case::{Case, Noise, Sealed, Step};
+use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{Found, MOST_EFFECTS, foretells, foretells_runs, least_gain, leaves_much, reweight};
@@ -14,6 +14,8 @@ use crate::diagnose::verdict::{self, Confirmed, Excess, misfit};
 
 /// Laws in one answer, at most.
 const MOST_LAWS: usize = 2;
+/// Simulated samples after which neither a second law nor one that remembers is tried.
+const MOST_TRIED: u64 = 100_000_000;
 /// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
@@ -23,9 +25,9 @@ const SEEN: f64 = 3.0;
 /// A model with a law, the others that are as good, and where the misfit sits.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
-    best: Fit,
-    forms: Vec<Fit>,
-    located: Vec<Located>,
+    pub best: Fit,
+    pub forms: Vec<Fit>,
+    pub located: Vec<Located>,
 }
 
 /// What one law makes of the recordings before the catalogue has tried several effects.
@@ -49,7 +51,7 @@ pub(in crate::diagnose) struct Tried {
 /// Looks for one law in the place of the best single effect, where that leaves more than noise.
 pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
     let nothing = OneLaw::Part(Box::default());
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
         return nothing;
     }
@@ -73,15 +75,28 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let law = best.as_ref().map(|lawful| lawful.best.clone());
     let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
     let Some(lawful) = best.filter(is_all) else { return part };
+    match renewed(case, noise, lawful.beside(found), say) {
+        Some((found, noise)) => OneLaw::All(Box::new(found), noise),
+        None => part,
+    }
+}
+
+/// What explains all, with the weights and steps that it asks for; none where it leaves more than noise then.
+pub(super) fn renewed(
+    case: &mut Case,
+    noise: &[Noise],
+    found: Found,
+    say: &dyn Fn(String),
+) -> Option<(Found, Vec<Noise>)> {
     let former = case.runs.clone();
-    let (found, renewed) = renew(case, noise, lawful.beside(found));
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise: &renewed };
+    let (found, noise) = renew(case, noise, found);
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &noise };
     if leaves_something(&open, &found.best) {
         case.runs = former;
-        return part;
+        return None;
     }
     say(format!("{} explains it all", found.best.model.title()));
-    OneLaw::All(Box::new(found), renewed)
+    Some((found, noise))
 }
 
 /// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
@@ -98,7 +113,7 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
 /// catalogue explains a law must predict whole runs left out better than that does by itself.
-fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
     let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
         true => foretells(open, &found.baseline, lawful),
@@ -109,7 +124,7 @@ fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
 
 impl Lawful {
     /// What was found with the law in its place.
-    fn beside(self, found: &Found) -> Found {
+    pub fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
         let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
         let (rivals_against, forms) = (self.best.cost, self.forms);
@@ -130,7 +145,7 @@ pub(in crate::diagnose) fn weigh_laws(
     if case.is_without(Step::OpenSet) {
         return None;
     }
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let is_open = confirmed == Confirmed::InPart || verdict::is_unknown(found, excess);
     let is_null = found.best.model.effects.is_empty();
     let is_elsewhere = !is_open && other_places(&open, found);
@@ -204,7 +219,7 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
-fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
@@ -253,12 +268,13 @@ fn add_laws(
     let mut begun = begun.map(|b| b.again(open));
     for _ in usize::from(lawful.is_some())..MOST_LAWS {
         let is_all = lawful.is_some() && !leaves_something(open, &here);
-        if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
+        let is_late = lawful.is_some() && open.case.effort.is_beyond(MOST_TRIED);
+        if is_explained(open, baseline, &here) || is_all || is_late || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
         let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
         let Some(first) = proposals.fits.first() else { break };
-        if lawful.is_none() && leaves_something(open, first) {
+        if lawful.is_none() && leaves_something(open, first) && !open.case.effort.is_beyond(MOST_TRIED) {
             proposals.fits = wider(open, &here, proposals.fits, say);
         }
         let Some(first) = proposals.fits.first() else { break };
@@ -275,7 +291,7 @@ fn add_laws(
 }
 
 /// A fit and its forms without the effects that the law which came last has made needless.
-fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
+pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
     let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
     let least = least_gain(open.samples());
     loop {

@@ -1,4 +1,4 @@
-//! Step 7, the consequences: what does not hold on sealed runs is taken back, and the full scene has the last word.
+//! Step 7, the consequences: what does not hold on held-out runs is taken back, and the full scene has the last word.
 
 use super::{consistency, prove};
 use crate::diagnose::case::Step;
@@ -13,42 +13,43 @@ use rayon::prelude::*;
 /// What the held-out runs say to what the open ones have found. They choose nothing: where they gain nothing, the answer stays, as a part
 /// of the truth.
 pub(in crate::diagnose) fn confirm(
-    sealed: &Problem,
+    held_out: &Problem,
     found: &Found,
     proof: &Proof,
     warnings: &mut Vec<String>,
 ) -> Confirmed {
     let gains_nothing = proof.gap_closed <= 0.0 && proof.gain_ci95[1] < 0.5;
-    let is_asked = !found.best.model.effects.is_empty() && !sealed.case.is_without(Step::CrossValidation);
+    let is_asked = !found.best.model.effects.is_empty() && !held_out.case.is_without(Step::CrossValidation);
     if !is_asked || !gains_nothing {
         return Confirmed::Yes;
     }
     let title = found.best.model.title();
-    if let Some(sensor) = missing_sensor(sealed, found) {
-        warnings.push(format!("the sealed runs lack {sensor}, which shows what {title} changes: it is unproven there"));
+    if let Some(sensor) = missing_sensor(held_out, found) {
+        warnings
+            .push(format!("the held-out runs lack {sensor}, which shows what {title} changes: it is unproven there"));
         return Confirmed::Yes;
     }
-    warnings.push(format!("{title} explains open runs, but not the sealed ones"));
+    warnings.push(format!("{title} explains open runs, but not the held-out ones"));
     Confirmed::InPart
 }
 
-/// Distance between baseline and best on the sealed runs, standard errors, below which these can say nothing.
+/// Distance between baseline and best on the held-out runs, standard errors, below which these can say nothing.
 const SHOWN: f64 = 5.0;
 
-/// A channel of the open runs that the sealed ones lack, where what they have shows no difference.
-fn missing_sensor<'a>(sealed: &Problem<'a>, found: &Found) -> Option<&'a str> {
-    let case = sealed.case;
-    let has = |is_sealed: bool, c: usize| {
-        let runs = case.runs.iter().filter(|r| r.is_sealed == is_sealed);
+/// A channel of the open runs that the held-out ones lack, where what they have shows no difference.
+fn missing_sensor<'a>(held_out: &Problem<'a>, found: &Found) -> Option<&'a str> {
+    let case = held_out.case;
+    let has = |is_held_out: bool, c: usize| {
+        let runs = case.runs.iter().filter(|r| r.is_held_out == is_held_out);
         runs.flat_map(|r| &r.measured[c]).any(|v| v.is_finite())
     };
     let lacking = (0..case.channels.len()).find(|c| has(false, *c) && !has(true, *c))?;
-    let residual = |fit: &Fit| sealed.weighted_residual(&fit.model, &fit.x);
+    let residual = |fit: &Fit| held_out.weighted_residual(&fit.model, &fit.x);
     let apart = (residual(&found.baseline)? - residual(&found.best)?).norm();
     (apart < SHOWN).then_some(case.channels[lacking].column.as_str())
 }
 
-/// Takes back what the fast model cannot follow on every run, sealed ones included.
+/// Takes back what the fast model cannot follow on every run, held-out ones included.
 pub(in crate::diagnose) fn take_back_unplayable(
     whole: &Problem,
     mut found: Found,
@@ -123,13 +124,13 @@ pub(in crate::diagnose) fn take_back_contradicted(
 ///
 /// Whether the full scene can be played at all.
 pub fn check_on_full_scene(
-    sealed: &Problem,
+    held_out: &Problem,
     found: &Found,
     proof: &mut Proof,
     seed: u64,
     warnings: &mut Vec<String>,
 ) -> bool {
-    let compared = compare_with_full_scene(sealed, found, proof, seed, warnings);
+    let compared = compare_with_full_scene(held_out, found, proof, seed, warnings);
     if let Err(e) = &compared {
         proof.full_scene.agrees = false;
         warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
@@ -138,28 +139,28 @@ pub fn check_on_full_scene(
 }
 
 fn compare_with_full_scene(
-    sealed: &Problem,
+    held_out: &Problem,
     found: &Found,
     proof: &mut Proof,
     seed: u64,
     warnings: &mut Vec<String>,
 ) -> Result<(), DiagnoseError> {
-    let case = sealed.case;
-    let corrected = play_full(case, &found.best, sealed.noise)?;
+    let case = held_out.case;
+    let corrected = play_full(case, &found.best, held_out.noise)?;
     let agreement = agreement(case, &corrected);
     if !agreement.agrees {
         let residuals = |runs: &[FullRun]| -> Vec<Vec<Vec<f64>>> {
-            let played = runs.iter().filter(|r| r.is_sealed);
-            sealed.runs.iter().zip(played).map(|(run, full)| sealed.subtract(run, &full.values)).collect()
+            let played = runs.iter().filter(|r| r.is_held_out);
+            held_out.runs.iter().zip(played).map(|(run, full)| held_out.subtract(run, &full.values)).collect()
         };
-        let baseline = play_full(case, &found.baseline, sealed.noise)?;
-        let renewed = prove::compare(sealed, &residuals(&baseline), &residuals(&corrected), seed);
+        let baseline = play_full(case, &found.baseline, held_out.noise)?;
+        let renewed = prove::compare(held_out, &residuals(&baseline), &residuals(&corrected), seed);
         *proof = Proof { placebo_gap_closed: std::mem::take(&mut proof.placebo_gap_closed), ..renewed };
         let differ: Vec<String> =
             agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
         let named = if found.best.model.effects.is_empty() { "that nothing is missing" } else { "what is named" };
         warnings.push(format!(
-            "the fast model differs from the full scene ({}): the figures of the sealed runs are those of the full scene, {named} rests on \
+            "the fast model differs from the full scene ({}): the figures of the held-out runs are those of the full scene, {named} rests on \
              the fast model",
             differ.join(", ")
         ));
@@ -171,10 +172,10 @@ fn compare_with_full_scene(
 /// Wrong effects that are put through the same door, at most.
 const PLACEBOS: usize = 5;
 
-/// What the rivals that lost would have gained on the sealed runs.
-pub fn placebos(sealed: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
+/// What the rivals that lost would have gained on the held-out runs.
+pub fn placebos(held_out: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
     let gained = |rival: &Fit| -> Option<(String, f64)> {
-        let proof = prove::prove(sealed, &found.baseline, rival, seed)?;
+        let proof = prove::prove(held_out, &found.baseline, rival, seed)?;
         Some((rival.model.title(), proof.gap_closed))
     };
     found.rivals.iter().flatten().take(PLACEBOS).filter_map(gained).collect()

@@ -1,7 +1,7 @@
 //! Do no harm: what predicts worse than the calibrated scene does not leave the program.
 
 use super::prove;
-use crate::diagnose::case::{Case, CaseRun, Noise, Sealed, Step};
+use crate::diagnose::case::{Case, CaseRun, Noise, RunSet, Step};
 use crate::diagnose::diagnosis::Proof;
 use crate::diagnose::fit::{Fit, Problem, simulate};
 use crate::diagnose::full::play_full;
@@ -27,10 +27,10 @@ pub(in crate::diagnose) fn without(
         "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
         found.best.model.title()
     ));
-    let sealed = Problem { case, runs: case.subset(Sealed::Sealed), noise };
+    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise };
     let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
     if let Some(other) = other {
-        let renewed = prove::prove(&sealed, &other.baseline, &other.best, seed);
+        let renewed = prove::prove(&held_out, &other.baseline, &other.best, seed);
         if let Some(renewed) = renewed.filter(|p| !is_harmful(case, noise, &other.baseline, &other.best, p)) {
             *proof = renewed;
             return other;
@@ -72,7 +72,7 @@ pub(in crate::diagnose) fn without_unplayable(
 /// Of the fits that explain the open runs as well as what was found, that which is nearest to what was left out of them; none where that
 /// is what was found.
 fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Option<Found> {
-    let open = Problem { case, runs: case.subset(Sealed::Open), noise };
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let distance = |fit: &Fit| left_out(&open, fit).unwrap_or(f64::INFINITY);
     let mut least = distance(&found.best);
     let mut nearest = None;
@@ -134,10 +134,10 @@ fn exchange(found: &mut Found, other: Place, own: Fit) {
 
 /// Whether a fit with laws predicts the held-out runs worse, beyond chance, than the listed effects that were found before. The calibrated
 /// scene has its own word, in [`without`].
-pub(in crate::diagnose) fn is_worse(sealed: &Problem, listed: &Found, lawful: &Fit, seed: u64) -> bool {
+pub(in crate::diagnose) fn is_worse(held_out: &Problem, listed: &Found, lawful: &Fit, seed: u64) -> bool {
     let has_listed = !listed.best.model.effects.is_empty();
     let is_beyond_chance = |p: Proof| p.gap_closed < 0.0 && p.gain_ci95[1] < 0.0;
-    has_listed && prove::prove(sealed, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
+    has_listed && prove::prove(held_out, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
 }
 
 /// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it loses where samples
@@ -156,8 +156,8 @@ fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &P
 /// Chi² that a fit gains on the held-out runs, and that it loses where samples of any run are left out; `None` where it cannot be
 /// simulated.
 fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Option<[f64; 2]> {
-    let [sealed, whole] = [Sealed::Sealed, Sealed::Both].map(|runs| Problem { case, runs: case.subset(runs), noise });
-    let cost = |fit: &Fit| sealed.cost_at(&fit.model, &fit.x);
+    let [held_out, whole] = [RunSet::HeldOut, RunSet::All].map(|runs| Problem { case, runs: case.subset(runs), noise });
+    let cost = |fit: &Fit| held_out.cost_at(&fit.model, &fit.x);
     Some([cost(baseline)? - cost(fit)?, left_out(&whole, fit)? - left_out(&whole, baseline)?])
 }
 
@@ -198,7 +198,7 @@ mod tests {
         let own = [Override::parse(law).expect("a law")];
         let case = made::recorded_for("muscle_bench", [&[], &own], &["plunger_mm"], &["elongation_mm"]);
         let noise = [Noise::white(0.01)];
-        let open = Problem { case: &case, runs: case.subset(Sealed::Both), noise: &noise };
+        let open = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
         let calibrated = Model::baseline();
         let baseline = open.fit(&calibrated, &open.start(&calibrated, None)).expect("played");
         let mut found = Begun::with_one(&open, baseline.clone(), &[], &|_| {}).found();

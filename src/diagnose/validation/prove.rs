@@ -18,14 +18,14 @@ struct Block {
     samples: f64,
 }
 
-/// Compares two fits on the sealed runs.
+/// Compares two fits on the held-out runs.
 pub(in crate::diagnose) fn prove(problem: &Problem, baseline: &Fit, corrected: &Fit, seed: u64) -> Option<Proof> {
     let before = problem.residuals(&baseline.model, &baseline.x)?;
     let after = problem.residuals(&corrected.model, &corrected.x)?;
     Some(compare(problem, &before, &after, seed))
 }
 
-/// Compares two sets of residuals of the sealed runs.
+/// Compares two sets of residuals of the held-out runs.
 pub(super) fn compare(problem: &Problem, before: &[Vec<Vec<f64>>], after: &[Vec<Vec<f64>>], seed: u64) -> Proof {
     let blocks = blocks(problem, before, after);
     let gap = |blocks: &[Block]| {

@@ -17,12 +17,12 @@ const LEFT_SHARE: f64 = 0.1;
 /// Misfit per sample below which nothing is called unknown, in units of the noise's variance.
 const LEFT_LEAST: f64 = 0.015;
 
-/// What the sealed runs say to what the open ones have found.
+/// What the held-out runs say to what the open ones have found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confirmed {
     /// It holds, or there is nothing to hold.
     Yes,
-    /// It explains open runs and not the sealed ones, or a run contradicts it: not the whole truth.
+    /// It explains open runs and not the held-out ones, or a run contradicts it: not the whole truth.
     InPart,
 }
 

@@ -1,0 +1,73 @@
+//! Two things at once of which the catalogue holds one or none: a law with a listed effect beside it, or with a second law.
+
+use super::forms::{equally_good, tie};
+use super::hypothesis::{Lawful, OneLaw, Tried, is_clearly_better, leaves_something, renewed, without_idle};
+use super::unlisted::propose;
+use crate::diagnose::case::{Case, Noise, RunSet, Step};
+use crate::diagnose::fit::{Fit, Problem, Variant};
+use crate::diagnose::grammar::Reach;
+use crate::diagnose::search::{Found, beside};
+
+/// Share of what a law leaves that its partner must explain: each of two is fitted as if it were alone at first, and still explains much.
+const LEAST_SHARE: f64 = 1.0 / 3.0;
+
+/// Looks for a law with something beside it, where the best listed effects leave more than noise. What does best beside the best single law
+/// is its partner; beside that the law is sought anew, since alone it had to stand for both.
+pub(in crate::diagnose) fn pair(
+    case: &mut Case,
+    noise: &[Noise],
+    (found, variants): (&Found, &[Variant]),
+    mut tried: Tried,
+    say: &dyn Fn(String),
+) -> OneLaw {
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    let first = tried.proposals.as_ref().and_then(|p| p.fits.first()).cloned();
+    let law = first.filter(|_| !case.is_without(Step::OpenSet) && leaves_something(&open, &found.best));
+    let Some(lawful) = law.and_then(|law| with_partner(&open, &law, variants, say)) else {
+        return OneLaw::Part(Box::new(tried));
+    };
+    let is_all = !leaves_something(&open, &lawful.best) && is_clearly_better(&open, found, &lawful.best);
+    let is_nearer = tried.instead.as_ref().is_none_or(|other| lawful.best.cost < other.best.cost);
+    if is_all && let Some((found, noise)) = renewed(case, noise, lawful.clone().beside(found), say) {
+        return OneLaw::All(Box::new(found), noise);
+    }
+    if is_nearer {
+        // However many listed effects, they must leave less than this.
+        let is_bound = tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost);
+        tried.law = if is_bound { Some(lawful.best.clone()) } else { tried.law };
+        tried.instead = Some(lawful);
+    }
+    OneLaw::Part(Box::new(tried))
+}
+
+/// Of two laws, one with an effect of the catalogue in the place of the other that explains as much.
+fn listed_instead(open: &Problem, two: &Fit, variants: &[Variant]) -> Option<Fit> {
+    let is_law = |i: usize| two.model.effects[i].entry.hypothetical;
+    if two.model.effects.len() != 2 || !(0..2).all(is_law) {
+        return None;
+    }
+    let other = |i: usize| {
+        let alone = open.fit(&two.model.without(i), &open.start_without(two, i))?;
+        let listed = beside(open, &alone, variants).into_iter().next()?;
+        (listed.cost <= two.cost + tie(open, two, alone.cost)).then_some(listed)
+    };
+    (0..2).filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+fn with_partner(open: &Problem, law: &Fit, variants: &[Variant], say: &dyn Fn(String)) -> Option<Lawful> {
+    let listed = beside(open, law, variants).into_iter().next();
+    let second = propose(open, law, Reach::Plain, say).and_then(|p| p.fits.into_iter().next());
+    let both = listed.into_iter().chain(second).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    say(format!("{}: chi2 {:.0} -> {:.0}", both.model.title(), law.cost, both.cost));
+    if law.cost - both.cost < LEAST_SHARE * (law.cost - open.noise_cost()) {
+        return None;
+    }
+    let partner = open.fit(&both.model.without(0), &open.start_without(&both, 0))?;
+    let proposals = propose(open, &partner, Reach::Plain, say)?;
+    let (best, forms) = equally_good(open, &proposals.fits, partner.cost)?;
+    let (best, forms) = if best.cost < both.cost { (best, forms) } else { (both, Vec::new()) };
+    let (best, forms) = without_idle(open, best, forms);
+    let (best, forms) = listed_instead(open, &best, variants).map_or((best, forms), |listed| (listed, Vec::new()));
+    say(format!("{}: chi2 {:.0}", best.model.title(), best.cost));
+    Some(Lawful { best, forms, located: proposals.located })
+}
