@@ -134,7 +134,7 @@ impl Override {
             return add_law(scene, name, law);
         }
         let mut root = Value::Table(std::mem::take(scene));
-        let result = self.put(&mut root);
+        let result = self.put(&mut root).map_err(|error| nearest_of_all(error, &root));
         if let Value::Table(table) = root {
             *scene = table;
         }
@@ -241,6 +241,29 @@ pub(super) fn child_at<'a>(value: &'a Value, segment: &str) -> Option<&'a Value>
     }
 }
 
+/// The error with the nearest of all keys, where nothing near stands at its own place.
+fn nearest_of_all(error: SceneError, root: &Value) -> SceneError {
+    match error {
+        SceneError::Override { key, message, remedy } if !message.contains("did you mean") => {
+            let keys = leaves(root);
+            let meant = did_you_mean(&key, &keys.iter().map(String::as_str).collect::<Vec<_>>());
+            SceneError::Override { message: message + &meant, key, remedy }
+        }
+        other => other,
+    }
+}
+
+/// The keys of all values below tables, lists apart.
+fn leaves(value: &Value) -> Vec<String> {
+    let Value::Table(table) = value else { return Vec::new() };
+    let of = |(key, below): (&String, &Value)| match below {
+        Value::Table(_) => leaves(below).into_iter().map(|leaf| format!("{key}.{leaf}")).collect(),
+        Value::Array(_) => Vec::new(),
+        _ => vec![key.clone()],
+    };
+    table.iter().flat_map(of).collect()
+}
+
 /// The way down to the first table of this name, if there is one within tables.
 fn path_to(value: &Value, name: &str) -> Option<String> {
     let table = value.as_table()?;
@@ -290,5 +313,9 @@ mod tests {
         let mut deep: Table = "[a.c]\nd = 1.5".parse().expect("test TOML");
         let error = Override::number("c.d", 1.0).apply(&mut deep).expect_err("no table c").to_string();
         assert!(error.starts_with("--set c.d: there is no `c` in the scene, did you mean \"a.c.d\"?\n"), "{error}");
+        let mut rig: Table = "[muscles.friction]\nm0_n = 0.1\n[[muscle]]\nname = 'muscle'".parse().expect("test TOML");
+        let error = Override::number("muscle.friction.m0", 0.2).apply(&mut rig).expect_err("no such table").to_string();
+        assert!(error.contains("did you mean \"muscles.friction.m0_n\"?"), "{error}");
+        Override::number("muscles.friction.m0_n", 0.2).apply(&mut rig).expect("what was proposed");
     }
 }

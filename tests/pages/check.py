@@ -7,7 +7,7 @@ VENV holds playwright; the browser is Debian's `chromium`, or playwright's own. 
 
 Made        One page of each kind: diagnosis, comparison, sweeps over one key, two and four, identification, reproduction; and a comparison
             of a run whose file name is made of HTML.
-Looked at   At 390 and 1280 px, light and dark: nothing reaches beyond the window, no error, no request, every figure is drawn. On paper too.
+Looked at   At 390, 1280 and 1920 px, light and dark: nothing reaches beyond the window, no error, no request, every figure is drawn. On paper too.
 Explored    Cursor, zoom and the way back, lines off and on, another run and channel, marked stretches, CSV against what was recorded; of a
             sweep sorting, filters, stretches on parallel axes, and a point's command, which is run.
 
@@ -30,7 +30,7 @@ except ImportError:
     print("skipped: playwright is not installed")
     sys.exit(77)
 
-WIDTHS = (390, 1280)
+WIDTHS = (390, 1280, 1920)
 SCHEMES = ("light", "dark")
 
 
@@ -73,6 +73,7 @@ def look(watched, picture=None):
     watched.expect(width <= page.viewport_size["width"], f"is {width} px wide")
     blank = page.evaluate(explore.BLANK_FIGURES)
     watched.expect(not blank, f"figures that are blank: {blank}")
+    watched.expect(not page.evaluate(explore.CUT_TABLES), "a table is cut, and nothing shows it")
     watched.expect(page.evaluate("window.broken === undefined"), "a name was read as script")
     if picture:
         page.screenshot(path=picture, full_page=True)

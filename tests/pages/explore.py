@@ -13,6 +13,11 @@ BLANK_FIGURES = """() => [...document.querySelectorAll("figure.chart")].filter(f
 }).map(figure => figure.dataset.figure)"""
 
 
+# Whether a table goes on beyond its box without a shadow that says so.
+CUT_TABLES = """() => [...document.querySelectorAll("div:has(> table)")].some(box =>
+  box.scrollWidth > box.clientWidth + 1 && !getComputedStyle(box).backgroundAttachment.includes("local"))"""
+
+
 def shown_figure(page, which=0):
     """The first (or another) figure with a plot that is not hidden."""
     return page.locator("figure:not([hidden]):not(:has(figure)):has(.u-over)").nth(which)

@@ -6,12 +6,12 @@ use super::unlisted::propose;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
-use crate::diagnose::search::{Found, beside};
+use crate::diagnose::search::{Found, beside, leaves_much};
 
 /// Share of what a law leaves that its partner must explain: each of two is fitted as if it were alone at first, and still explains much.
 const LEAST_SHARE: f64 = 1.0 / 3.0;
 
-/// Looks for a law with something beside it, where the best listed effects leave more than noise. What does best beside the best single law
+/// Looks for a law with something beside it, where the best listed effects leave much. What does best beside the best single law
 /// is its partner; beside that the law is sought anew, since alone it had to stand for both.
 pub(in crate::diagnose) fn pair(
     case: &mut Case,
@@ -22,7 +22,9 @@ pub(in crate::diagnose) fn pair(
 ) -> OneLaw {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let first = tried.proposals.as_ref().and_then(|p| p.fits.first()).cloned();
-    let law = first.filter(|_| !case.is_without(Step::OpenSet) && leaves_something(&open, &found.best));
+    // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
+    let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
+    let law = first.filter(|_| is_asked && leaves_something(&open, &found.best));
     let Some(lawful) = law.and_then(|law| with_partner(&open, &law, variants, say)) else {
         return OneLaw::Part(Box::new(tried));
     };

@@ -55,7 +55,7 @@ function drawParallel(host, columns, order, onBrush) {
     ctx.font = FONT;
     ctx.textAlign = i === 0 ? "left" : i === shown.length - 1 ? "right" : "center";
     const textX = i === 0 ? 2 : i === shown.length - 1 ? canvas.clientWidth - 2 : x;
-    const room = (canvas.clientWidth / shown.length) * 0.98;
+    const room = axisX(1) - axisX(0) - 6;
     ctx.fillText(shortened(ctx, column.short, room), textX, 12);
     ctx.fillStyle = colour("soft");
     ctx.fillText(digits(scales[i].high, 3), textX, MARGIN.top - 8);
