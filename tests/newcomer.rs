@@ -41,6 +41,12 @@ fn results_of_folders_of_one_name_are_kept_apart() {
     );
     assert_eq!(fs::read(&page).expect("still there"), first);
     assert!(compare(&["tuesday/rig", "--out", "out/compare_tuesday_rig"]).status.success());
+    // Where the folder is named after all it belongs to the other from then on.
+    assert!(compare(&["tuesday/rig", "--out", "out/compare_rig"]).status.success());
+    assert!(compare(&["tuesday/rig"]).status.success());
+    assert_eq!(compare(&["monday/rig"]).status.code(), Some(2));
+    fs::remove_dir_all(here.path().join("out")).expect("removed");
+    assert!(compare(&["monday/rig"]).status.success());
     // The same folder again, by another way to it, and a folder that is gone.
     assert!(compare(&["./monday/../monday/rig"]).status.success());
     fs::remove_dir_all(here.path().join("monday")).expect("removed");

@@ -125,7 +125,7 @@ def test_a_sweep_has_a_row_per_point(folder: Path) -> None:
         duration_s=20.0,
         out="swept",
     )
-    warnings = [f"warning_{kind}_s" for kind in ("slack", "cavitation", "yield", "penetration")]
+    warnings = [f"warning_{kind}_s" for kind in ("slack", "cavitation", "yield", "penetration", "joint_limit")]
     assert list(table.columns) == ["muscles.friction.m0_n", "range_mm", "loss_mj", *warnings, "error"]
     assert table["muscles.friction.m0_n"].tolist() == pytest.approx([0.05, 0.15, 0.25])
     # More friction: less motion, more loss.

@@ -12,7 +12,7 @@ const MADE_FROM: &str = "made_from.txt";
 /// notes which one it belongs to.
 pub struct Results {
     pub folder: PathBuf,
-    /// The input, where the folder was not named by the user.
+    /// The input, where the folder says what it belongs to.
     input: Option<String>,
 }
 
@@ -22,11 +22,13 @@ impl Results {
     /// # Errors
     /// That folder holds the results of another input, which is still there.
     pub fn of(input: &Path, command: &str, given: Option<&Path>) -> Result<Self, CliError> {
+        let whole = input.canonicalize().unwrap_or_else(|_| input.to_owned());
+        let input_named = || whole.display().to_string();
         if let Some(folder) = given {
-            return Ok(Self { folder: folder.to_owned(), input: None });
+            let input = folder.join(MADE_FROM).exists().then(input_named);
+            return Ok(Self { folder: folder.to_owned(), input });
         }
         let folder = Path::new("out").join(format!("{command}_{}", name_of(input)));
-        let whole = input.canonicalize().unwrap_or_else(|_| input.to_owned());
         let before = std::fs::read_to_string(folder.join(MADE_FROM)).unwrap_or_default();
         let before = Path::new(before.trim_end_matches('\n'));
         if before != whole && before.exists() && !before.as_os_str().is_empty() {
@@ -37,7 +39,7 @@ impl Results {
                 another(&whole, command).display()
             )));
         }
-        Ok(Self { folder, input: Some(whole.display().to_string()) })
+        Ok(Self { folder, input: Some(input_named()) })
     }
 
     /// Writes down what the folder, which is there by now, belongs to.

@@ -72,7 +72,7 @@ struct RunSweep {
     /// Add a law of your own to the scene of --vary: 'PORT adds|scales EXPRESSION'; may be given several times
     #[arg(long, value_name = "LAW")]
     law: Vec<String>,
-    /// Trouble that a point may be in and still count: slack, cavitation, yield, penetration; may be given several times
+    /// Trouble that a point may be in and still count: slack, cavitation, yield, penetration, joint_limit; may be given several times
     #[arg(long, value_name = "TROUBLE", value_parser = concern)]
     allow: Vec<Concern>,
     /// Length of each run, s, instead of the scene's

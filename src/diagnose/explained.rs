@@ -43,7 +43,9 @@ pub(super) fn explain(
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
-    let cut = case.effort.has_cut().then(|| CUT.to_owned());
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &explained.noise };
+    let is_cut = case.effort.has_cut() && hypothesis::leaves_something(&open, &explained.found.best);
+    let cut = is_cut.then(|| CUT.to_owned());
     let warnings = [warnings, base.warnings, case.notes(), cut.into_iter().collect()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }

@@ -24,7 +24,7 @@ const USUAL: [(&str, &str); 12] = [
 /// The nearest port to a text that is none, in words (`, did you mean "muscle_2.damping"?`): of its own element where it has one.
 pub fn nearest_port(text: &str) -> String {
     let (element, term) = text.split_once('.').unwrap_or((text, ""));
-    let kind = element.split('(').next().unwrap_or(element).trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
+    let kind = numbered(element).map_or(element, |(name, _)| name).split('(').next().unwrap_or(element);
     let all: Vec<String> = PORTS.iter().map(PortSpec::name).collect();
     let own = |term: &str| format!("{element}.{term}");
     let its = PORTS.iter().filter(|p| p.element == kind && !p.term.is_empty());

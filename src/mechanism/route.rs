@@ -4,6 +4,7 @@ use nalgebra::{DVector, Vector3};
 use rapier3d_f64::math::Vector;
 
 use super::convert::na_vector;
+use super::coordinate::CoordinateKind;
 use super::error::{MechanismError, known_names};
 use super::model::Mechanism;
 use super::spec::{LeverSpec, PointSpec, RouteSpec};
@@ -140,12 +141,15 @@ impl Mechanism {
         Ok(Route::Levers { arms, constant_m, draw })
     }
 
-    /// Where a cable is drawn at a joint if the scene does not say: a lever's length off the axis, on the link that the joint moves.
+    /// Where a cable is drawn at a joint if the scene does not say: a lever's length off the axis, on the link that the joint (of
+    /// one that mimics, its leader) moves.
     fn seat(&self, arm: &Arm) -> Option<LinkPoint> {
         let moved = self.moved.get(arm.coordinate)?;
         let axis = Vector3::from(moved.axis);
         let across = axis.cross(&Vector3::x()).try_normalize(1e-6).unwrap_or_else(Vector3::y);
-        Some(LinkPoint { link: moved.link, point_m: (arm.lever_m * across).into() })
+        // Of a slider it is no length: m of cable by m of motion.
+        let offset_m = if self.coordinates[arm.coordinate].kind == CoordinateKind::Angle { arm.lever_m } else { 0.0 };
+        Some(LinkPoint { link: moved.link, point_m: (offset_m * across).into() })
     }
 
     fn points(&self, specs: &[PointSpec]) -> Result<Vec<LinkPoint>, MechanismError> {

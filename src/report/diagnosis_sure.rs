@@ -63,8 +63,8 @@ fn missed(e: &NamedEffect) -> Option<String> {
     let runs: Vec<&str> = e.size_by_run.iter().filter(|(_, s)| leaves_out(s)).map(|(file, _)| file.as_str()).collect();
     (!runs.is_empty()).then(|| {
         format!(
-            "{}: {} of {} runs have an interval without the value of all ({}); by chance one in twenty has. The law is an \
-             idealisation, or the rig changed between them.",
+            "{}: {} of {} runs have an interval without the value of all ({}). Chance, a calibration that is not quite that run's, a law \
+             that is an idealisation, or a rig that changed: it is worth a look where the values are far apart.",
             e.name,
             runs.len(),
             e.size_by_run.len(),

@@ -10,7 +10,7 @@ use crate::report::Panel;
 pub enum Standing {
     /// Within the tolerance that the remark gives.
     Met,
-    /// Within it, but a number of the rig or the plunger's programme was chosen for it: it tests the fit, and predicts nothing.
+    /// Within it, but a number of the rig or the plunger's trajectory was chosen for it: it tests the fit, and predicts nothing.
     Tuned,
     /// Outside of it: the remark says why.
     NotMet,

@@ -18,7 +18,7 @@ pub fn page(made: &[Made]) -> HtmlPage {
     page.paragraph(
         "Every number that the paper prints beside ours. The paper published no raw data: shapes are compared with its \
          printed hysteresis model and printed parameters. 'tuned' is met, but a number of the rig or the plunger's \
-         programme was chosen for it. 'given' was taken over as an input; 'shown' has nothing to be \
+         trajectory was chosen for it. 'given' was taken over as an input; 'shown' has nothing to be \
          compared with, or was printed about recordings that nobody else has.",
     );
     let rows: Vec<Vec<String>> =
@@ -45,7 +45,8 @@ fn tally(made: &[Made]) -> (String, String) {
     use Standing::{Given, Met, NotMet, Shown, Tuned};
     let [met, missed, tuned, given, shown] = [Met, NotMet, Tuned, Given, Shown].map(|standing| count(made, standing));
     let besides = format!(
-        "of the numbers that nothing was tuned to; {missed} not met. Besides: {tuned} tuned to, {given} given, {shown} shown."
+        "of the numbers that can be judged, apart from {tuned} that are met because something was tuned to them; {missed} not \
+         met. Besides: {given} given, {shown} shown."
     );
     (format!("{met} of {} met", met + missed), besides)
 }
@@ -132,8 +133,11 @@ mod tests {
             Row::compared("mass", "g", 0.28, 0.28, 0.01, "the wire was inferred from it").tuned(),
         ];
         let text = page(&[(figure, Chapter { rows, ..Chapter::default() })]).finish();
-        assert!(text.contains("<strong>1 of 2 met</strong> of the numbers that nothing was tuned to; 1 not met."));
-        assert!(text.contains("Besides: 1 tuned to, 1 given, 0 shown."), "{text}");
+        assert!(
+            text.contains("<strong>1 of 2 met</strong> of the numbers that can be judged, apart from 1 that"),
+            "{text}"
+        );
+        assert!(text.contains("1 not met. Besides: 1 given, 0 shown."), "{text}");
         assert!(text.contains("<td class=\"l\">not met</td><td class=\"l\">width</td><td>4.000 mm</td>"), "{text}");
         assert!(text.contains("<td>+0.5000 mm</td>"), "{text}");
     }

@@ -143,11 +143,10 @@ impl Simulation {
 fn beside(place: [f64; 3], direction: [f64; 3], taken: &[[f64; 3]]) -> [f64; 3] {
     let direction = Vector3::from(direction);
     let across = direction.cross(&Vector3::z()).try_normalize(1e-6).unwrap_or_else(Vector3::y);
-    let mut own = Vector3::from(place);
-    while taken.iter().any(|other| (own - Vector3::from(*other)).norm() < 0.5 * BESIDE_M) {
-        own -= BESIDE_M * across;
-    }
-    own.into()
+    let moved = |times: usize| Vector3::from(place) - times as f64 * BESIDE_M * across;
+    let is_free = |own: &Vector3<f64>| taken.iter().all(|other| (own - Vector3::from(*other)).norm() > 0.5 * BESIDE_M);
+    // Of so many places one is free, but where the numbers are too large to tell them apart.
+    (0..=taken.len()).map(moved).find(is_free).unwrap_or_else(|| place.into()).into()
 }
 
 fn joint_graphs(mechanism: &Mechanism) -> Vec<JointGraph> {

@@ -23,11 +23,9 @@ impl Effort {
         self.0.samples.load(Ordering::Relaxed)
     }
 
-    /// Whether more has been simulated than a step of the search is worth; it is left out then, which is remembered.
-    pub(in crate::diagnose) fn is_beyond(&self, samples: u64) -> bool {
-        let is_beyond = self.samples() > samples;
-        self.0.has_cut.fetch_or(is_beyond, Ordering::Relaxed);
-        is_beyond
+    /// Remembers that a step has been left out.
+    pub(in crate::diagnose) fn cut(&self) {
+        self.0.has_cut.store(true, Ordering::Relaxed);
     }
 
     /// Whether a step has been left out.
@@ -58,7 +56,7 @@ mod tests {
         let (copy, watched) = (effort.clone(), effort.watched());
         effort.add(11);
         assert_eq!([effort.samples(), watched.samples(), copy.samples()], [11, 11, 0]);
-        assert!(!effort.is_beyond(11) && !effort.has_cut());
-        assert!(effort.is_beyond(10) && watched.has_cut() && !copy.has_cut());
+        watched.cut();
+        assert!(effort.has_cut() && !copy.has_cut());
     }
 }

@@ -97,7 +97,9 @@ impl Problem<'_> {
             let simulated = simulate(self.case, run, model, x)?;
             Some(self.subtract(run, &simulated))
         };
-        self.runs.par_iter().map(one).collect()
+        // All runs are simulated even where one diverges: what a diagnosis has cost must not depend on which comes first.
+        let all: Vec<Option<_>> = self.runs.par_iter().map(one).collect();
+        all.into_iter().collect()
     }
 
     /// Residuals at `x` and the derivatives to the numbers `wanted`, one row per sample that is there.
@@ -111,7 +113,8 @@ impl Problem<'_> {
             let rows = channels.map(|(c, r)| self.weighted_rows(run, c, r, &response.slopes, &numbers[wanted.clone()]));
             Some(rows.collect())
         };
-        let parts = self.runs.par_iter().map(one).collect::<Option<Vec<_>>>()?;
+        let parts: Vec<Option<Vec<Rows>>> = self.runs.par_iter().map(one).collect();
+        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
         Rows::stack(&parts.concat())
     }
 

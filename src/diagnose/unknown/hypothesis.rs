@@ -14,8 +14,8 @@ use crate::diagnose::verdict::{self, Confirmed, Excess, misfit};
 
 /// Laws in one answer, at most.
 const MOST_LAWS: usize = 2;
-/// Simulated samples after which neither a second law nor one that remembers is tried.
-const MOST_TRIED: u64 = 100_000_000;
+/// Simulations of all runs after which neither a second law nor one that remembers is tried: one law takes 700 to 1700.
+const MOST_TRIED: u64 = 3000;
 /// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
@@ -157,8 +157,9 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
     // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
-    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
-    let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
+    let since = case.simulations();
+    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, (&found.baseline, since), l, say));
+    let search = |from: &Fit, begun| add_laws(&open, (&found.baseline, since), (from.clone(), None), begun, say);
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
@@ -219,7 +220,7 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
-pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
@@ -231,36 +232,26 @@ fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     fit.cost - noise < EXPLAINED * (baseline.cost - noise)
 }
 
-/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
-/// first with other weights.
-fn search(
-    open: &Problem,
-    baseline: &Fit,
-    from: &Fit,
-    begun: Option<Proposals>,
-    say: &dyn Fn(String),
-) -> Option<Lawful> {
-    add_laws(open, baseline, (from.clone(), None), begun, say)
-}
-
 /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
-fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
+fn go_on(open: &Problem, begin: (&Fit, u64), own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
     let fit = open.fit(&own.best.model, &own.best.x)?;
     let last = fit.model.effects.len() - 1;
     let before = match last {
-        0 => baseline.cost,
+        0 => begin.0.cost,
         _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
     };
     let mut fits = with_elsewhere(open, fit, before);
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let (best, forms) = equally_good(open, &fits, before)?;
     let here = best.clone();
-    add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
+    add_laws(open, begin, (here, Some(Lawful { best, forms, ..own })), None, say)
 }
 
+/// Adds laws to a fit, one by one, as long as much is left; with the calibration alone and when that began, in simulations; `begun` is
+/// what was proposed for the first with other weights.
 fn add_laws(
     open: &Problem,
-    baseline: &Fit,
+    (baseline, since): (&Fit, u64),
     (mut here, mut lawful): (Fit, Option<Lawful>),
     begun: Option<Proposals>,
     say: &dyn Fn(String),
@@ -268,13 +259,15 @@ fn add_laws(
     let mut begun = begun.map(|b| b.again(open));
     for _ in usize::from(lawful.is_some())..MOST_LAWS {
         let is_all = lawful.is_some() && !leaves_something(open, &here);
-        let is_late = lawful.is_some() && open.case.effort.is_beyond(MOST_TRIED);
-        if is_explained(open, baseline, &here) || is_all || is_late || here.model.effects.len() >= MOST_EFFECTS {
+        if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
+            break;
+        }
+        if lawful.is_some() && open.case.is_spent(since, MOST_TRIED) {
             break;
         }
         let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
         let Some(first) = proposals.fits.first() else { break };
-        if lawful.is_none() && leaves_something(open, first) && !open.case.effort.is_beyond(MOST_TRIED) {
+        if lawful.is_none() && leaves_something(open, first) && !open.case.is_spent(since, MOST_TRIED) {
             proposals.fits = wider(open, &here, proposals.fits, say);
         }
         let Some(first) = proposals.fits.first() else { break };

@@ -28,14 +28,15 @@ pub(in crate::diagnose) fn pair(
     let Some(lawful) = law.and_then(|law| with_partner(&open, &law, variants, say)) else {
         return OneLaw::Part(Box::new(tried));
     };
-    let is_all = !leaves_something(&open, &lawful.best) && is_clearly_better(&open, found, &lawful.best);
+    let is_better = is_clearly_better(&open, found, &lawful.best);
+    let is_all = is_better && !leaves_something(&open, &lawful.best);
     let is_nearer = tried.instead.as_ref().is_none_or(|other| lawful.best.cost < other.best.cost);
     if is_all && let Some((found, noise)) = renewed(case, noise, lawful.clone().beside(found), say) {
         return OneLaw::All(Box::new(found), noise);
     }
     if is_nearer {
         // However many listed effects, they must leave less than this.
-        let is_bound = tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost);
+        let is_bound = is_better && tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost);
         tried.law = if is_bound { Some(lawful.best.clone()) } else { tried.law };
         tried.instead = Some(lawful);
     }
@@ -56,6 +57,20 @@ fn listed_instead(open: &Problem, two: &Fit, variants: &[Variant]) -> Option<Fit
     (0..2).filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
+/// The same with the law behind the listed effect, where it stands before it: forms are of the last.
+fn law_last(open: &Problem, fit: &Fit) -> Option<Fit> {
+    let [law, listed] = &fit.model.effects[..] else { return None };
+    if !law.entry.hypothetical || listed.entry.hypothetical {
+        return None;
+    }
+    let law = law.clone();
+    let alone = Fit { model: fit.model.without(0), x: open.start_without(fit, 0), ..fit.clone() };
+    let numbers = fit.model.places().into_iter().zip(&fit.x[open.case.parameters.len()..]);
+    let own = numbers.filter(|((effect, _), _)| *effect == 0).map(|(_, value)| *value);
+    let x: Vec<f64> = alone.x.iter().copied().chain(own).collect();
+    open.fit(&alone.model.plus(&law, &fit.model.values[0]), &x)
+}
+
 fn with_partner(open: &Problem, law: &Fit, variants: &[Variant], say: &dyn Fn(String)) -> Option<Lawful> {
     let listed = beside(open, law, variants).into_iter().next();
     let second = propose(open, law, Reach::Plain, say).and_then(|p| p.fits.into_iter().next());
@@ -70,6 +85,9 @@ fn with_partner(open: &Problem, law: &Fit, variants: &[Variant], say: &dyn Fn(St
     let (best, forms) = if best.cost < both.cost { (best, forms) } else { (both, Vec::new()) };
     let (best, forms) = without_idle(open, best, forms);
     let (best, forms) = listed_instead(open, &best, variants).map_or((best, forms), |listed| (listed, Vec::new()));
+    let (best, forms) = law_last(open, &best).map_or((best, forms), |fit| (fit, Vec::new()));
+    // Where the law came to nothing, several effects are what is missing.
+    best.model.effects.last().filter(|e| e.entry.hypothetical)?;
     say(format!("{}: chi2 {:.0}", best.model.title(), best.cost));
     Some(Lawful { best, forms, located: proposals.located })
 }
