@@ -7,7 +7,7 @@ use super::error::DiagnoseError;
 use super::fit::{Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
 use super::unknown::hypothesis::{self, OneLaw, Tried};
-use super::unknown::pair;
+use super::unknown::pair::{self, Pair};
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
@@ -43,16 +43,9 @@ pub(super) fn explain(
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
-    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &explained.noise };
-    let is_cut = case.effort.has_cut() && hypothesis::leaves_something(&open, &explained.found.best);
-    let cut = is_cut.then(|| CUT.to_owned());
-    let warnings = [warnings, base.warnings, case.notes(), cut.into_iter().collect()].concat();
+    let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
-
-/// Said where a search was ended by what it had cost.
-const CUT: &str = "the search for several effects or laws at once was ended by what it had cost, although they leave much: what is named is the \
-    nearest that was found until then; look at the runs and times that stand out, or record fewer things at once";
 
 /// The search for several effects and several laws.
 struct Search<'a> {
@@ -72,9 +65,14 @@ impl Search<'_> {
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
         let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
-        let tried = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
-            OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
-            OneLaw::Part(tried) => *tried,
+        let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
+            Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
+            Pair::Listed(two, tried) => {
+                let open = reweight::open_runs(case, &noise);
+                let Found { baseline, .. } = begun.found();
+                (Begun::again(&open, (baseline, two), self.variants, Vec::new(), self.say), *tried)
+            }
+            Pair::Part(tried) => (begun, *tried),
         };
         let law = Bound(tried.law.as_ref());
         let open = reweight::open_runs(case, &noise);

@@ -180,21 +180,6 @@ impl Case {
         self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
     }
 
-    /// How often all runs have been simulated so far, on average. To be asked where no simulation is under way.
-    pub(in crate::diagnose) fn simulations(&self) -> u64 {
-        let samples: usize = self.runs.iter().map(|run| run.drive.times_s.len()).sum();
-        self.effort.samples() / samples.max(1) as u64
-    }
-
-    /// Whether a search has simulated all runs more often than it is worth since it began; what it leaves out then is remembered.
-    pub(in crate::diagnose) fn is_spent(&self, since: u64, most: u64) -> bool {
-        let is_spent = self.simulations() > since + most;
-        if is_spent {
-            self.effort.cut();
-        }
-        is_spent
-    }
-
     /// Runs to fit and select with, or those held back.
     pub fn subset(&self, runs: RunSet) -> Vec<Cow<'_, CaseRun>> {
         let wanted = |r: &&CaseRun| match runs {

@@ -76,7 +76,7 @@ impl Begun {
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
         let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
         let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
-        let way = climb(&mut swaps, &baseline, way, &mut seen, &Until::effects(problem, 1), say);
+        let way = climb(&mut swaps, &baseline, way, &mut seen, (1, Bound(None)), say);
         Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
     }
 
@@ -101,7 +101,7 @@ impl Begun {
     /// Goes on to so many effects, and no further.
     pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
         let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
-        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, &Until::effects(problem, most), say);
+        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (most, Bound(None)), say);
         self.known = swaps.known;
         self
     }
@@ -130,22 +130,22 @@ impl Begun {
         if self.is_new && self.way.best.model.effects.is_empty() {
             self.way = several_to_begin(&mut swaps, self.way, say);
         }
-        let until = Until { law, ..Until::effects(problem, MOST_EFFECTS) };
-        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, &until, say);
+        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (MOST_EFFECTS, law), say);
         let best = &self.way.best;
         let is_done = law.outdoes(problem, &baseline, best) || !leaves_much(problem, &baseline, best);
         if !self.is_new || best.model.effects.len() < 2 || is_done {
             return self.found();
         }
         for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
-            if until.is_reached(problem, &baseline, &self.way.best) {
+            if !leaves_much(problem, &baseline, &self.way.best) {
                 break;
             }
             if !self.seen.is_new(&other) {
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way = climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, &until, say);
+            let way =
+                climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
             if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
                 (self.way.best, self.way.rivals) = (way.best, way.rivals);
             }
@@ -157,9 +157,6 @@ impl Begun {
 /// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
-/// Simulations of all runs after which a search that still leaves much tries no third effect and no other beginning: one effect takes
-/// 200 to 1300. What the catalogue does not hold it searches longest, and in vain.
-const MOST_SEARCHED: u64 = 3000;
 /// Share of the misfit that is much.
 const MUCH: f64 = 0.05;
 
@@ -236,38 +233,17 @@ fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &d
     Some(next)
 }
 
-/// How far a search goes.
-struct Until<'a> {
-    /// So many effects.
-    most: usize,
-    /// Unless a law outdoes them.
-    law: Bound<'a>,
-    /// When it began, in simulations of all runs.
-    since: u64,
-}
-
-impl Until<'_> {
-    fn effects(problem: &Problem, most: usize) -> Self {
-        Self { most, law: Bound(None), since: problem.case.simulations() }
-    }
-
-    /// Whether nothing more is tried: little is left, or it has cost too much.
-    fn is_reached(&self, problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
-        !leaves_much(problem, baseline, best) || problem.case.is_spent(self.since, MOST_SEARCHED)
-    }
-}
-
-/// Adds effect by effect up to so many, and settles after each, until nothing helps, a law outdoes them, another way has been there, or it
-/// has cost too much and still leaves much.
-fn climb(swaps: &mut Swaps, baseline: &Fit, mut way: Way, seen: &mut Seen, until: &Until, say: &dyn Fn(String)) -> Way {
+/// Adds effect by effect up to so many, and settles after each, until nothing helps, a law outdoes them or another way has been there.
+fn climb(
+    swaps: &mut Swaps,
+    baseline: &Fit,
+    mut way: Way,
+    seen: &mut Seen,
+    (most, law): (usize, Bound),
+    say: &dyn Fn(String),
+) -> Way {
     let problem = swaps.problem;
-    let goes_on = |best: &Fit| {
-        let is_idle = best.model.effects.len() > 1
-            && leaves_much(problem, baseline, best)
-            && until.is_reached(problem, baseline, best);
-        best.model.effects.len() < until.most && !until.law.outdoes(problem, baseline, best) && !is_idle
-    };
-    while !way.is_at_end && goes_on(&way.best) {
+    while !way.is_at_end && way.best.model.effects.len() < most && !law.outdoes(problem, baseline, &way.best) {
         let best = &way.best;
         let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
         let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));

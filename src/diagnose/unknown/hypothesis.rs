@@ -14,8 +14,6 @@ use crate::diagnose::verdict::{self, Confirmed, Excess, misfit};
 
 /// Laws in one answer, at most.
 const MOST_LAWS: usize = 2;
-/// Simulations of all runs after which neither a second law nor one that remembers is tried: one law takes 700 to 1700.
-const MOST_TRIED: u64 = 3000;
 /// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
@@ -157,9 +155,8 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
     // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
-    let since = case.simulations();
-    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, (&found.baseline, since), l, say));
-    let search = |from: &Fit, begun| add_laws(&open, (&found.baseline, since), (from.clone(), None), begun, say);
+    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
+    let search = |from: &Fit, begun| add_laws(&open, &found.baseline, (from.clone(), None), begun, say);
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
@@ -233,25 +230,25 @@ fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
 }
 
 /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
-fn go_on(open: &Problem, begin: (&Fit, u64), own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
+fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
     let fit = open.fit(&own.best.model, &own.best.x)?;
     let last = fit.model.effects.len() - 1;
     let before = match last {
-        0 => begin.0.cost,
+        0 => baseline.cost,
         _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
     };
     let mut fits = with_elsewhere(open, fit, before);
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let (best, forms) = equally_good(open, &fits, before)?;
     let here = best.clone();
-    add_laws(open, begin, (here, Some(Lawful { best, forms, ..own })), None, say)
+    add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
 }
 
-/// Adds laws to a fit, one by one, as long as much is left; with the calibration alone and when that began, in simulations; `begun` is
-/// what was proposed for the first with other weights.
+/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
+/// first with other weights.
 fn add_laws(
     open: &Problem,
-    (baseline, since): (&Fit, u64),
+    baseline: &Fit,
     (mut here, mut lawful): (Fit, Option<Lawful>),
     begun: Option<Proposals>,
     say: &dyn Fn(String),
@@ -262,12 +259,9 @@ fn add_laws(
         if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
             break;
         }
-        if lawful.is_some() && open.case.is_spent(since, MOST_TRIED) {
-            break;
-        }
         let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
         let Some(first) = proposals.fits.first() else { break };
-        if lawful.is_none() && leaves_something(open, first) && !open.case.is_spent(since, MOST_TRIED) {
+        if lawful.is_none() && leaves_something(open, first) {
             proposals.fits = wider(open, &here, proposals.fits, say);
         }
         let Some(first) = proposals.fits.first() else { break };

@@ -1,7 +1,7 @@
 //! Two things at once of which the catalogue holds one or none: a law with a listed effect beside it, or with a second law.
 
 use super::forms::{equally_good, tie};
-use super::hypothesis::{Lawful, OneLaw, Tried, is_clearly_better, leaves_something, renewed, without_idle};
+use super::hypothesis::{Lawful, Tried, is_clearly_better, leaves_something, renewed, without_idle};
 use super::unlisted::propose;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
@@ -11,6 +11,16 @@ use crate::diagnose::search::{Found, beside, leaves_much};
 /// Share of what a law leaves that its partner must explain: each of two is fitted as if it were alone at first, and still explains much.
 const LEAST_SHARE: f64 = 1.0 / 3.0;
 
+/// What two things make of the recordings.
+pub(in crate::diagnose) enum Pair {
+    /// A law with its partner explains all that is more than noise. With the noise that it leaves.
+    All(Box<Found>, Vec<Noise>),
+    /// The laws only stood for two effects of the catalogue that explain as much: the search goes on from there.
+    Listed(Fit, Box<Tried>),
+    /// Neither.
+    Part(Box<Tried>),
+}
+
 /// Looks for a law with something beside it, where the best listed effects leave much. What does best beside the best single law
 /// is its partner; beside that the law is sought anew, since alone it had to stand for both.
 pub(in crate::diagnose) fn pair(
@@ -19,20 +29,24 @@ pub(in crate::diagnose) fn pair(
     (found, variants): (&Found, &[Variant]),
     mut tried: Tried,
     say: &dyn Fn(String),
-) -> OneLaw {
+) -> Pair {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let first = tried.proposals.as_ref().and_then(|p| p.fits.first()).cloned();
     // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
     let law = first.filter(|_| is_asked && leaves_something(&open, &found.best));
     let Some(lawful) = law.and_then(|law| with_partner(&open, &law, variants, say)) else {
-        return OneLaw::Part(Box::new(tried));
+        return Pair::Part(Box::new(tried));
     };
+    if !lawful.best.model.effects.iter().any(|e| e.entry.hypothetical) {
+        let is_lower = lawful.best.cost < found.best.cost;
+        return if is_lower { Pair::Listed(lawful.best, Box::new(tried)) } else { Pair::Part(Box::new(tried)) };
+    }
     let is_better = is_clearly_better(&open, found, &lawful.best);
     let is_all = is_better && !leaves_something(&open, &lawful.best);
     let is_nearer = tried.instead.as_ref().is_none_or(|other| lawful.best.cost < other.best.cost);
     if is_all && let Some((found, noise)) = renewed(case, noise, lawful.clone().beside(found), say) {
-        return OneLaw::All(Box::new(found), noise);
+        return Pair::All(Box::new(found), noise);
     }
     if is_nearer {
         // However many listed effects, they must leave less than this.
@@ -40,13 +54,12 @@ pub(in crate::diagnose) fn pair(
         tried.law = if is_bound { Some(lawful.best.clone()) } else { tried.law };
         tried.instead = Some(lawful);
     }
-    OneLaw::Part(Box::new(tried))
+    Pair::Part(Box::new(tried))
 }
 
-/// Of two laws, one with an effect of the catalogue in the place of the other that explains as much.
+/// Of two things, the same with an effect of the catalogue in the place of a law, where that explains as much.
 fn listed_instead(open: &Problem, two: &Fit, variants: &[Variant]) -> Option<Fit> {
-    let is_law = |i: usize| two.model.effects[i].entry.hypothetical;
-    if two.model.effects.len() != 2 || !(0..2).all(is_law) {
+    if two.model.effects.len() != 2 {
         return None;
     }
     let other = |i: usize| {
@@ -54,7 +67,8 @@ fn listed_instead(open: &Problem, two: &Fit, variants: &[Variant]) -> Option<Fit
         let listed = beside(open, &alone, variants).into_iter().next()?;
         (listed.cost <= two.cost + tie(open, two, alone.cost)).then_some(listed)
     };
-    (0..2).filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
+    let laws = (0..2).filter(|&i| two.model.effects[i].entry.hypothetical);
+    laws.filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// The same with the law behind the listed effect, where it stands before it: forms are of the last.
@@ -84,10 +98,13 @@ fn with_partner(open: &Problem, law: &Fit, variants: &[Variant], say: &dyn Fn(St
     let (best, forms) = equally_good(open, &proposals.fits, partner.cost)?;
     let (best, forms) = if best.cost < both.cost { (best, forms) } else { (both, Vec::new()) };
     let (best, forms) = without_idle(open, best, forms);
-    let (best, forms) = listed_instead(open, &best, variants).map_or((best, forms), |listed| (listed, Vec::new()));
+    let mut listed = listed_instead(open, &best, variants);
+    // One law may have stood before the other: the other may stand for an effect as well.
+    if let Some(again) = listed.as_ref().and_then(|listed| listed_instead(open, listed, variants)) {
+        listed = Some(again);
+    }
+    let (best, forms) = listed.map_or((best, forms), |listed| (listed, Vec::new()));
     let (best, forms) = law_last(open, &best).map_or((best, forms), |fit| (fit, Vec::new()));
-    // Where the law came to nothing, several effects are what is missing.
-    best.model.effects.last().filter(|e| e.entry.hypothetical)?;
     say(format!("{}: chi2 {:.0}", best.model.title(), best.cost));
     Some(Lawful { best, forms, located: proposals.located })
 }
