@@ -23,9 +23,9 @@ const SEEN: f64 = 3.0;
 /// A model with a law, the others that are as good, and where the misfit sits.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
-    pub best: Fit,
-    pub forms: Vec<Fit>,
-    pub located: Vec<Located>,
+    best: Fit,
+    forms: Vec<Fit>,
+    located: Vec<Located>,
 }
 
 /// What one law makes of the recordings before the catalogue has tried several effects.
@@ -73,28 +73,15 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let law = best.as_ref().map(|lawful| lawful.best.clone());
     let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
     let Some(lawful) = best.filter(is_all) else { return part };
-    match renewed(case, noise, lawful.beside(found), say) {
-        Some((found, noise)) => OneLaw::All(Box::new(found), noise),
-        None => part,
-    }
-}
-
-/// What explains all, with the weights and steps that it asks for; none where it leaves more than noise then.
-pub(super) fn renewed(
-    case: &mut Case,
-    noise: &[Noise],
-    found: Found,
-    say: &dyn Fn(String),
-) -> Option<(Found, Vec<Noise>)> {
     let former = case.runs.clone();
-    let (found, noise) = renew(case, noise, found);
-    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &noise };
+    let (found, renewed) = renew(case, noise, lawful.beside(found));
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &renewed };
     if leaves_something(&open, &found.best) {
         case.runs = former;
-        return None;
+        return part;
     }
     say(format!("{} explains it all", found.best.model.title()));
-    Some((found, noise))
+    OneLaw::All(Box::new(found), renewed)
 }
 
 /// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
@@ -111,7 +98,7 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
 /// catalogue explains a law must predict whole runs left out better than that does by itself.
-pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
     let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
         true => foretells(open, &found.baseline, lawful),
@@ -122,7 +109,7 @@ pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> 
 
 impl Lawful {
     /// What was found with the law in its place.
-    pub fn beside(self, found: &Found) -> Found {
+    fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
         let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
         let (rivals_against, forms) = (self.best.cost, self.forms);
@@ -156,7 +143,7 @@ pub(in crate::diagnose) fn weigh_laws(
     // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
     let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
-    let search = |from: &Fit, begun| add_laws(&open, &found.baseline, (from.clone(), None), begun, say);
+    let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
@@ -217,7 +204,7 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
-pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
@@ -227,6 +214,18 @@ pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
 fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     let noise = open.noise_cost();
     fit.cost - noise < EXPLAINED * (baseline.cost - noise)
+}
+
+/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
+/// first with other weights.
+fn search(
+    open: &Problem,
+    baseline: &Fit,
+    from: &Fit,
+    begun: Option<Proposals>,
+    say: &dyn Fn(String),
+) -> Option<Lawful> {
+    add_laws(open, baseline, (from.clone(), None), begun, say)
 }
 
 /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
@@ -244,8 +243,6 @@ fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> O
     add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
 }
 
-/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
-/// first with other weights.
 fn add_laws(
     open: &Problem,
     baseline: &Fit,
@@ -278,7 +275,7 @@ fn add_laws(
 }
 
 /// A fit and its forms without the effects that the law which came last has made needless.
-pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
+fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
     let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
     let least = least_gain(open.samples());
     loop {
