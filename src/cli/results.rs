@@ -31,7 +31,7 @@ impl Results {
         let folder = Path::new("out").join(format!("{command}_{}", name_of(input)));
         let before = std::fs::read_to_string(folder.join(MADE_FROM)).unwrap_or_default();
         let before = Path::new(before.trim_end_matches('\n'));
-        if before != whole && before.exists() && !before.as_os_str().is_empty() {
+        if before != whole && before.exists() {
             return Err(CliError::Usage(format!(
                 "{}: holds the results of {}\n  remedy: give another folder, for example --out {}",
                 folder.display(),
