@@ -1,10 +1,11 @@
 //! The points of a sweep, for a reader to search.
 
+use smam::recording::axis_label;
 use smam::report::{Exploration, Key, Measure};
 use smam::sweep::{MeasureSpec, Plan, SamplingSpec, Table, VarySpec};
 
 use super::sweep_page::plain;
-use super::sweep_panels::{measure_label, scale_of};
+use super::sweep_panels::scale_of;
 use super::sweep_trouble::is_sound;
 
 /// Every point that ran, with the words that run its scene again.
@@ -27,8 +28,7 @@ pub fn exploration(plan: &Plan, table: &Table, best: &[usize]) -> Exploration {
             marks: v.mark.iter().map(|m| (m.label.clone(), m.at / scale.factor)).collect(),
         }
     };
-    let measure =
-        |m: &MeasureSpec| Measure { name: m.name.clone(), label: measure_label(&m.name), values: pick(&m.name) };
+    let measure = |m: &MeasureSpec| Measure { name: m.name.clone(), label: axis_label(&m.name), values: pick(&m.name) };
     let place = |row: &usize| ran.binary_search(row).ok();
     Exploration {
         name: file.name.clone(),

@@ -1,6 +1,6 @@
 //! The pictures of a sweep's page.
 
-use smam::recording::parse_column;
+use smam::recording::axis_label;
 use smam::report::{
     BLUE, Bar, BarPanel, GREEN, GREY, Mark, ORANGE, PURPLE, Panel, SILVER, Scale, Series, VERMILION, quantity,
 };
@@ -31,7 +31,7 @@ pub fn panels(plan: &Plan, table: &Table, best: &[usize]) -> Vec<Panel> {
         Panel {
             title: [Some(m.name.clone()), Some(m.of.clone()), constant(&y)].into_iter().flatten().collect(),
             x_label: key_label(&first.key, &scale),
-            y_label: measure_label(&m.name),
+            y_label: axis_label(&m.name),
             behind: if is_line(plan) { beyond(plan, table, &x, &y) } else { Vec::new() },
             series,
             points,
@@ -51,11 +51,6 @@ pub fn scale_of(key: &str, values: &[f64]) -> Scale {
 /// A key as it stands in the scene, and the unit in which it is shown.
 fn key_label(key: &str, scale: &Scale) -> String {
     if scale.symbol.is_empty() { key.to_owned() } else { format!("{key}, shown in {}", scale.symbol) }
-}
-
-/// `peak_kpa` as `peak (kPa)`.
-pub fn measure_label(name: &str) -> String {
-    parse_column(name).map_or_else(|_| name.to_owned(), |n| n.axis_label())
 }
 
 /// Said of a measure that the sweep does not move by more than rounding errors.
@@ -78,8 +73,8 @@ pub fn front_panel(plan: &Plan, table: &Table, best: &[usize]) -> Option<Panel> 
     let front = line("best".to_owned(), VERMILION, pick(&x), pick(&y));
     Some(Panel {
         title: vec![format!("{} and {}", one.measure, other.measure)],
-        x_label: measure_label(&one.measure),
-        y_label: measure_label(&other.measure),
+        x_label: axis_label(&one.measure),
+        y_label: axis_label(&other.measure),
         points: vec![line("all points".to_owned(), SILVER, x, y), front],
         ..Panel::default()
     })
@@ -217,7 +212,6 @@ mod tests {
             key_label("muscles.pre_elongation_ratio", &scale_of("x_ratio", &[0.5])),
             "muscles.pre_elongation_ratio"
         );
-        assert_eq!(measure_label("peak_kpa"), "peak (kPa)");
     }
 
     #[test]

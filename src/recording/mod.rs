@@ -69,7 +69,7 @@ pub use survey::{Gap, Missing, Strays, Survey, gap_limit_s, median, median_inter
 pub use table::{
     Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label,
 };
-pub use unit::{ColumnName, KNOWN_UNITS, Unit, parse_column};
+pub use unit::{ColumnName, KNOWN_UNITS, Unit, axis_label, parse_column};
 pub use writer::RecordingWriter;
 
 pub use crate::bag::Clock;

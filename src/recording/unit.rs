@@ -82,11 +82,12 @@ impl ColumnName<'_> {
     pub fn si_column(&self) -> String {
         format!("{}_{}", self.base, self.unit.si_suffix)
     }
+}
 
-    /// Text for an axis: `plunger 1 (mm)`.
-    pub fn axis_label(&self) -> String {
-        format!("{} ({})", self.base.replace('_', " "), self.unit.symbol)
-    }
+/// Text for the axis of a column: `plunger 1 (mm)`; a name without a unit stays as it is.
+pub fn axis_label(column: &str) -> String {
+    let label = |name: ColumnName| format!("{} ({})", name.base.replace('_', " "), name.unit.symbol);
+    parse_column(column).map_or_else(|_| column.to_owned(), label)
 }
 
 /// Splits a column name into quantity and unit.
@@ -134,7 +135,7 @@ mod tests {
         let name = parse_column("plunger_1_mm").unwrap();
         assert_eq!((name.base, name.unit.suffix), ("plunger_1", "mm"));
         assert_eq!(name.si_column(), "plunger_1_m");
-        assert_eq!(name.axis_label(), "plunger 1 (mm)");
+        assert_eq!((axis_label("plunger_1_mm").as_str(), axis_label("laps").as_str()), ("plunger 1 (mm)", "laps"));
         let bend = parse_column("bend_deg").unwrap().unit;
         assert!((bend.to_si(180.0) - PI).abs() < 1e-15);
         assert!((bend.from_si(PI) - 180.0).abs() < 1e-12);

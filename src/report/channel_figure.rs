@@ -4,7 +4,7 @@ use super::axis::three_digits;
 use super::colour::MEASURED;
 use super::kit::{Choice, Line, TimeSeries};
 use super::quantity::with;
-use crate::recording::parse_column;
+use crate::recording::{axis_label, parse_column};
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ fn choice(run: &ComparedRun, channel: &ComparedChannel) -> Choice {
     let series = TimeSeries {
         name: format!("{} {}", run.name, channel.column),
         run: run.name.clone(),
-        y_label: name.as_ref().map_or(channel.column.clone(), |n| n.axis_label()),
+        y_label: axis_label(&channel.column),
         unit: name.map_or_else(String::new, |n| n.unit.symbol.to_owned()),
         time_s: run.time_s.clone(),
         lines: std::iter::once(line("measured", MEASURED, &channel.measured)).chain(models).collect(),

@@ -1,7 +1,7 @@
 //! A law outside the catalogue, as the page of a diagnosis shows it: symbols, name, curve, and what would do as well.
 
 use crate::diagnose::{Curve, NamedEffect};
-use crate::recording::parse_column;
+use crate::recording::axis_label;
 
 use super::axis::three_digits;
 use super::colour::BLUE;
@@ -56,7 +56,7 @@ fn plot(curve: &Curve, effect: &NamedEffect) -> Plot {
     let law = Series { label: "law".to_owned(), colour: BLUE, x: curve.x.clone(), y: curve.y.clone() };
     let panel = Panel {
         title: vec![format!("{} {}", effect.port, effect.acts)],
-        x_label: parse_column(&curve.variable).map_or_else(|_| curve.variable.clone(), |name| name.axis_label()),
+        x_label: axis_label(&curve.variable),
         y_label: if effect.acts == "scales" { "factor".to_owned() } else { "added (SI)".to_owned() },
         series: vec![law],
         ..Panel::default()

@@ -1,7 +1,7 @@
 //! Where, as a page of a diagnosis shows it: elements, stretches of time, states.
 
 use crate::diagnose::{CaseRun, Direction, Outcome};
-use crate::recording::parse_column;
+use crate::recording::{axis_label, parse_column};
 
 use super::axis::three_digits;
 use super::colour::VERMILION;
@@ -93,7 +93,7 @@ fn state_map(outcome: &Outcome, residuals: &[Vec<Vec<f64>>], range: (f64, f64)) 
         three_digits(name.as_ref().map_or(value, |n| n.unit.from_si(value)))
     };
     HeatMap {
-        x_label: name.as_ref().map_or_else(|| column.clone(), |n| n.axis_label()),
+        x_label: axis_label(column),
         columns: (0..LEVELS).map(middle).collect(),
         rows: rows.collect(),
         scale: [1.0, 30.0],

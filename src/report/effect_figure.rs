@@ -1,24 +1,21 @@
 //! The picture of `smam effects NAME`: what an effect does to each scene that can have it.
 
+use svg::node::Node as _;
+use svg::node::element::Group;
+
 use super::axis::three_digits;
 use super::colour::{BLUE, ORANGE, SILVER};
 use super::panel::{Panel, Series};
 use super::panel_svg::draw_legend;
 use super::quantity::with;
-use super::svg::{Anchor, Rect, Svg, cut_to};
-use crate::recording::parse_column;
+use super::svg::{Rect, cut_to, document, text};
+use crate::recording::{axis_label, parse_column};
 
 const CELL_WIDTH: f64 = 450.0;
-/// What changes is what there is to see: its row is the tall one.
-const CHANGE_HEIGHT: f64 = 290.0;
-const TIME_HEIGHT: f64 = 205.0;
-const LOOP_HEIGHT: f64 = 190.0;
 /// Between the x label of a row and the title of the next.
 const GAP: f64 = 14.0;
 const HEADER_HEIGHT: f64 = 110.0;
 const EDGE: f64 = 10.0;
-const LARGE: f64 = 16.0;
-const SMALL: f64 = 11.5;
 
 /// What the stock scene does, behind the coloured lines.
 const STOCK: &str = SILVER;
@@ -52,41 +49,33 @@ pub struct AffectedScene {
 pub fn effect_svg(title: &str, law: [&str; 2], sizes: &[String], scenes: &[AffectedScene]) -> String {
     let width = 2.0 * EDGE + CELL_WIDTH * scenes.len().max(2) as f64;
     let cell_width = (width - 2.0 * EDGE) / scenes.len().max(1) as f64;
-    let has_pressure = scenes.iter().any(|scene| scene.pressure.is_some());
-    let rows: Vec<(Draw, f64)> = [
-        (over_time as Draw, TIME_HEIGHT),
-        (change, CHANGE_HEIGHT),
-        (over_input, LOOP_HEIGHT),
-        (pressure_over_output, if has_pressure { LOOP_HEIGHT } else { 0.0 }),
-    ]
-    .into_iter()
-    .filter(|(_, height)| *height > 0.0)
-    .collect();
-    let height = HEADER_HEIGHT + rows.iter().map(|(_, height)| height + GAP).sum::<f64>() + EDGE;
-    let mut svg = Svg::new(width, height);
+    let mut svg = Group::new();
     draw_header(&mut svg, width, title, law, sizes);
-    for (column, scene) in scenes.iter().enumerate() {
-        let mut y = HEADER_HEIGHT;
-        for (draw, height) in &rows {
-            let area = Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height: *height };
-            if let Some(panel) = draw(scene) {
-                panel.draw(&mut svg, area);
-            }
+    let mut y = HEADER_HEIGHT;
+    // What changes is what there is to see: its row is the tall one.
+    let rows: [(Draw, f64); 4] =
+        [(over_time, 205.0), (change, 290.0), (over_input, 190.0), (pressure_over_output, 190.0)];
+    for (draw, height) in rows {
+        let panels: Vec<Option<Panel>> = scenes.iter().map(draw).collect();
+        for (column, panel) in panels.iter().enumerate() {
+            let area = Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height };
+            panel.iter().for_each(|panel| panel.draw(&mut svg, area));
+        }
+        if panels.iter().any(Option::is_some) {
             y += height + GAP;
         }
     }
-    svg.finish()
+    document(width, y + EDGE, svg)
 }
 
 /// A row of the figure; `None` where a scene has nothing to show in it.
 type Draw = fn(&AffectedScene) -> Option<Panel>;
 
-fn draw_header(svg: &mut Svg, width: f64, title: &str, law: [&str; 2], sizes: &[String]) {
+fn draw_header(svg: &mut Group, width: f64, title: &str, law: [&str; 2], sizes: &[String]) {
     let left = EDGE + 12.0;
     let room = width - 2.0 * left;
-    svg.text((left, 26.0), Anchor::Start, LARGE, &cut_to(title, LARGE, room));
-    for (line, y) in law.into_iter().zip([48.0, 67.0]) {
-        svg.text((left, y), Anchor::Start, SMALL, &cut_to(line, SMALL, room));
+    for (line, y, size) in [(title, 26.0, 16.0), (law[0], 48.0, 11.5), (law[1], 67.0, 11.5)] {
+        svg.append(text((left, y), "start", size, &cut_to(line, size, room)));
     }
     let coloured = sizes.iter().map(String::as_str).zip(COLOURS).map(|(size, colour)| (size, colour, 1.0));
     let entries: Vec<_> = std::iter::once(("stock scene, without it", STOCK, 1.0)).chain(coloured).collect();
@@ -162,10 +151,6 @@ fn output_over(x: &[f64], scene: &AffectedScene) -> Panel {
 
 fn line(x: &[f64], y: &[f64], colour: &'static str) -> Series {
     Series { label: String::new(), colour, x: x.to_vec(), y: y.to_vec() }
-}
-
-fn axis_label(column: &str) -> String {
-    parse_column(column).map_or_else(|_| column.to_owned(), |name| name.axis_label())
 }
 
 #[cfg(test)]

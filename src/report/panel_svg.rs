@@ -1,10 +1,13 @@
 //! Plots drawn as SVG: for documents and slides.
 
+use svg::node::Node as _;
+use svg::node::element::Group;
+
 use super::axis::Axis;
 use super::colour::GREY;
 use super::kit::decimate;
 use super::panel::{Panel, Series};
-use super::svg::{Anchor, Rect, Svg, cut_to, text_width};
+use super::svg::{Rect, cut_to, document, polyline, rectangle, text, text_up, text_width};
 use super::thin::{TOLERANCE_PX, thin};
 
 const TITLE_SIZE: f64 = 12.0;
@@ -23,10 +26,12 @@ const GRID: &str = "#e4e4e4";
 
 impl Panel {
     /// Draws title, axes and lines within a rectangle.
-    pub(super) fn draw(&self, svg: &mut Svg, outer: Rect) {
+    pub(super) fn draw(&self, svg: &mut Group, outer: Rect) {
         let (plot, y_axis) = self.plot_area(outer);
-        let x_axis =
-            Axis::over(self.all().flat_map(|s| s.x.iter().copied()), self.x_margin(), (plot.width / 70.0) as usize);
+        // Dots are not cut by the frame.
+        let margin = if self.points.is_empty() { 0.0 } else { 0.02 };
+        let x_values = self.all().flat_map(|s| s.x.iter().copied());
+        let x_axis = Axis::over(x_values, margin, (plot.width / 70.0) as usize);
         self.draw_text(svg, outer, plot);
         draw_x_ticks(svg, plot, &x_axis);
         draw_y_ticks(svg, plot, &y_axis);
@@ -37,21 +42,22 @@ impl Panel {
         for band in &self.bands {
             let (top, bottom) = (at(0.0, band.high).1, at(0.0, band.low).1);
             let rect = Rect { y: top, height: bottom - top, ..plot };
-            svg.fill(rect, band.colour, 0.25);
+            svg.append(rectangle(rect, band.colour).set("fill-opacity", 0.25));
         }
         for mark in &self.marks {
-            svg.line((at(mark.at, 0.0).0, plot.y), (at(mark.at, 0.0).0, plot.bottom()), mark.colour, 1.5);
+            let x = at(mark.at, 0.0).0;
+            svg.append(polyline(&[(x, plot.y), (x, plot.bottom())], mark.colour, 1.5));
         }
         for (series, width) in self.lines() {
             for piece in decimate(&series.x, &series.y, POINTS_PER_LINE) {
                 let points: Vec<_> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
-                svg.polyline(&thin(&points, TOLERANCE_PX), series.colour, width);
+                svg.append(polyline(&thin(&points, TOLERANCE_PX), series.colour, width));
             }
         }
         for (series, x, y) in self.points.iter().flat_map(dots) {
-            svg.polyline(&[at(x, y)], series.colour, DOT);
+            svg.append(polyline(&[at(x, y)], series.colour, DOT));
         }
-        svg.frame(plot, GREY);
+        svg.append(rectangle(plot, "none").set("stroke", GREY));
     }
 
     /// Every line with its width, px, in the order of drawing.
@@ -59,43 +65,30 @@ impl Panel {
         self.behind.iter().map(|s| (s, 3.6)).chain(self.series.iter().map(|s| (s, 1.2)))
     }
 
-    /// Dots are not cut by the frame.
-    fn x_margin(&self) -> f64 {
-        if self.points.is_empty() { 0.0 } else { 0.02 }
-    }
-
-    fn y_values(&self) -> impl Iterator<Item = f64> {
-        let lines = self.all().flat_map(|s| s.y.iter().copied());
-        lines.chain(self.bands.iter().flat_map(|b| [b.low, b.high]))
-    }
-
     /// The plot within the panel, and its y axis: how long the ticks are decides what room is left of them.
     fn plot_area(&self, outer: Rect) -> (Rect, Axis) {
         let above = LINE_HEIGHT * self.title.len() as f64 + 8.0;
         let label_room = if self.x_label.is_empty() { 0.0 } else { LINE_HEIGHT };
         let height = outer.height - above - TICK_ROOM - label_room;
-        let y_axis = Axis::over(self.y_values(), 0.05, (height / 32.0) as usize);
+        let edges = self.bands.iter().flat_map(|b| [b.low, b.high]);
+        let y_values = self.all().flat_map(|s| s.y.iter().copied()).chain(edges);
+        let y_axis = Axis::over(y_values, 0.05, (height / 32.0) as usize);
         let widest = y_axis.ticks().iter().map(|(_, text)| text_width(text, TEXT_SIZE)).fold(0.0, f64::max);
         let left = LEFT_MARGIN.max(widest + Y_LABEL_ROOM);
         let plot = Rect { x: outer.x + left, y: outer.y + above, width: outer.width - left - RIGHT_MARGIN, height };
         (plot, y_axis)
     }
 
-    fn draw_text(&self, svg: &mut Svg, outer: Rect, plot: Rect) {
-        for (index, line) in self.title.iter().enumerate() {
+    fn draw_text(&self, svg: &mut Group, outer: Rect, plot: Rect) {
+        for (index, title) in self.title.iter().enumerate() {
             let y = outer.y + LINE_HEIGHT * (index as f64 + 1.0) - 2.0;
             let size = if index == 0 { TITLE_SIZE } else { TEXT_SIZE };
-            let text = cut_to(line, size, plot.width);
-            svg.text((plot.x, y), Anchor::Start, size, &text);
+            svg.append(text((plot.x, y), "start", size, &cut_to(title, size, plot.width)));
         }
-        let middle_x = plot.x + plot.width / 2.0;
-        if !self.x_label.is_empty() {
-            let y = plot.bottom() + TICK_ROOM + LINE_HEIGHT - 4.0;
-            svg.text((middle_x, y), Anchor::Middle, TEXT_SIZE, &self.x_label);
-        }
-        let middle_y = plot.y + plot.height / 2.0;
+        let below = (plot.x + plot.width / 2.0, plot.bottom() + TICK_ROOM + LINE_HEIGHT - 4.0);
+        svg.append(text(below, "middle", TEXT_SIZE, &self.x_label));
         let label = cut_to(&self.y_label, TEXT_SIZE, plot.height + 24.0);
-        svg.text_up((outer.x + 12.0, middle_y), TEXT_SIZE, &label);
+        svg.append(text_up((outer.x + 12.0, plot.y + plot.height / 2.0), TEXT_SIZE, &label));
     }
 }
 
@@ -106,40 +99,37 @@ fn dots(series: &Series) -> impl Iterator<Item = (&Series, f64, f64)> {
     there.step_by(every).map(move |(x, y)| (series, *x, *y))
 }
 
-fn draw_x_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
-    for (value, text) in axis.ticks() {
+fn draw_x_ticks(svg: &mut Group, plot: Rect, axis: &Axis) {
+    for (value, words) in axis.ticks() {
         let x = plot.x + axis.share(value) * plot.width;
-        svg.line((x, plot.y), (x, plot.bottom()), GRID, 1.0);
+        svg.append(polyline(&[(x, plot.y), (x, plot.bottom())], GRID, 1.0));
         // At an end the text stays within the panel.
-        let half = text_width(&text, TEXT_SIZE) / 2.0;
-        let centre = x.min(plot.right() + RIGHT_MARGIN - half);
-        let y = plot.bottom() + 14.0;
-        svg.text((centre, y), Anchor::Middle, TEXT_SIZE, &text);
+        let centre = x.min(plot.right() + RIGHT_MARGIN - text_width(&words, TEXT_SIZE) / 2.0);
+        svg.append(text((centre, plot.bottom() + 14.0), "middle", TEXT_SIZE, &words));
     }
 }
 
-fn draw_y_ticks(svg: &mut Svg, plot: Rect, axis: &Axis) {
-    for (value, text) in axis.ticks() {
+fn draw_y_ticks(svg: &mut Group, plot: Rect, axis: &Axis) {
+    for (value, words) in axis.ticks() {
         let y = plot.bottom() - axis.share(value) * plot.height;
-        svg.line((plot.x, y), (plot.right(), y), GRID, 1.0);
-        svg.text((plot.x - 5.0, y + 4.0), Anchor::End, TEXT_SIZE, &text);
+        svg.append(polyline(&[(plot.x, y), (plot.right(), y)], GRID, 1.0));
+        svg.append(text((plot.x - 5.0, y + 4.0), "end", TEXT_SIZE, &words));
     }
 }
 
 /// Draws a legend from a point (px) to the right, in a new row where the next entry would pass `right`; returns the
 /// height of all rows after the first.
-pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), right: f64, entries: &[(&str, &'static str, f64)]) -> f64 {
+pub(super) fn draw_legend(svg: &mut Group, at: (f64, f64), right: f64, entries: &[(&str, &'static str, f64)]) -> f64 {
     let (mut x, mut y) = at;
     for (label, colour, opacity) in entries {
         let width = 28.0 + text_width(label, TEXT_SIZE);
         if x > at.0 && x + width > right {
             (x, y) = (at.0, y + LINE_HEIGHT);
         }
-        let is_line = *opacity >= 1.0;
-        let height = if is_line { 3.0 } else { 12.0 };
+        let height = if *opacity >= 1.0 { 3.0 } else { 12.0 };
         let swatch = Rect { x, y: y - 4.0 - height / 2.0, width: 22.0, height };
-        svg.fill(swatch, colour, *opacity);
-        svg.text((x + 28.0, y), Anchor::Start, TEXT_SIZE, label);
+        svg.append(rectangle(swatch, colour).set("fill-opacity", *opacity));
+        svg.append(text((x + 28.0, y), "start", TEXT_SIZE, label));
         x += width + 20.0;
     }
     y - at.1
@@ -167,7 +157,7 @@ pub(super) fn draw_legend(svg: &mut Svg, at: (f64, f64), right: f64, entries: &[
 pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
     const GAP: f64 = 10.0;
     const LEGEND_HEIGHT: f64 = 20.0;
-    let mut svg = Svg::new(width, GAP);
+    let mut svg = Group::new();
     let mut y = GAP;
     for panel in panels {
         let legend_at = (LEFT_MARGIN, y + panel_height + 12.0);
@@ -175,8 +165,7 @@ pub fn figure_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
         panel.draw(&mut svg, Rect { x: 0.0, y, width, height: panel_height });
         y += panel_height + LEGEND_HEIGHT + more_rows + GAP;
     }
-    svg.resize(width, y);
-    svg.finish()
+    document(width, y, svg)
 }
 
 #[cfg(test)]
@@ -186,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_long_legend_takes_another_row() {
-        let mut svg = Svg::new(200.0, 100.0);
+        let mut svg = Group::new();
         let entries = [("first line", BLUE, 1.0), ("second line", BLUE, 1.0), ("third line", BLUE, 1.0)];
         assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 1000.0, &entries), 0.0);
         assert_eq!(draw_legend(&mut svg, (0.0, 20.0), 150.0, &entries), 2.0 * LINE_HEIGHT);

@@ -22,5 +22,4 @@ pub use heat::HeatMap;
 pub use lanes::{Lane, Window};
 pub use page::{Choice, HtmlPage};
 pub use plot::{Area, Plot};
-pub(super) use text::escaped;
 pub use time_series::{Line, TimeSeries};

@@ -1,7 +1,7 @@
 //! Text on its way into a page.
 
-/// Text as SVG and HTML take it.
-pub(in crate::report) fn escaped(text: &str) -> String {
+/// Text as HTML takes it.
+pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -9,7 +9,7 @@ pub(in crate::report) fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // Neither format allows other control characters.
+            // It allows no other control characters.
             control if control.is_control() => out.push(' '),
             other => out.push(other),
         }
