@@ -361,3 +361,23 @@ fn a_candidate_law_of_the_scene_is_named_and_fitted() {
     let text = outcome.scene_text().expect("a fit").unwrap_or_else(|e| panic!("{e}"));
     assert!(text.contains("[[law]]") && !text.contains("candidate"), "{text}");
 }
+
+/// A wall that ages beside a relaxation of the silicone: a law alone had to stand for both, and effects of the catalogue only imitate the
+/// ageing. Both are found, where neither the law nor the relaxation is the best single explanation.
+#[test]
+fn a_law_is_found_together_with_the_effect_beside_it() {
+    let folder = specimen(None);
+    let set = |text: &str| Override::parse(text).unwrap_or_else(|e| panic!("{e}"));
+    let law = set("law.ageing={port=\"muscle.wall\", scales=\"1 + 0.03*(time_s/30)^2\"}");
+    let creep =
+        set("effect=[{name=\"viscoelasticity\", element=\"muscle\", stiffness_n_m=1.5, relaxation_time_s=1.0}]");
+    let hidden = Scene::load("muscle_bench", &[law, creep]).unwrap_or_else(|e| panic!("{e}"));
+    play_again(folder.path(), &hidden, &[("elongation_mm", 0.02), ("pressure_kpa", 5.0), ("force_n", 0.5)]);
+    let d = answer(folder.path());
+    assert_eq!((d.verdict, d.modelled), (Verdict::UnknownPhysics, Some(true)), "{}", d.summary);
+    let [listed, unlisted] = ["viscoelasticity", "muscle_wall"].map(|name| d.effects.iter().find(|e| e.name == name));
+    let (Some(listed), Some(unlisted)) = (listed, unlisted) else { panic!("{:?}", d.effects) };
+    assert!((listed.parameters["stiffness_n_m"].value - 1.5).abs() < 0.3, "{:?}", listed.parameters);
+    assert_eq!((unlisted.variables.as_slice(), d.effects.len()), (&["time_s".to_owned()][..], 2), "{:?}", d.effects);
+    assert!(d.fit.gap_closed > 0.95, "{}", d.fit.gap_closed);
+}

@@ -7,6 +7,7 @@ use super::error::DiagnoseError;
 use super::fit::{Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
 use super::unknown::hypothesis::{self, OneLaw, Tried};
+use super::unknown::pair::{self, Pair};
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
@@ -63,6 +64,16 @@ impl Search<'_> {
         noise: Vec<Noise>,
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
+        let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
+        let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
+            Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
+            Pair::Listed(two, tried) => {
+                let open = reweight::open_runs(case, &noise);
+                let Found { baseline, .. } = begun.found();
+                (Begun::again(&open, (baseline, two), self.variants, Vec::new(), self.say), *tried)
+            }
+            Pair::Part(tried) => (begun, *tried),
+        };
         let law = Bound(tried.law.as_ref());
         let open = reweight::open_runs(case, &noise);
         let found = begun.clone().finish(&open, self.variants, law, self.say);

@@ -3,11 +3,14 @@
 import functools
 import shutil
 import subprocess
+from pathlib import Path
 
 import explore
 
 # A page of three one-minute runs stays below this.
 MOST_BYTES = 3_000_000
+# Rows of the run of the proof that is kept.
+PROOF = Path(__file__).resolve().parents[2] / "proof"
 # No "/" can be in a file's name; the rest of what ends a script, an attribute or a tag can.
 EVIL = "\"'><img src=x onerror=broken=1><script>broken=1<!--.csv"
 
@@ -47,6 +50,8 @@ def pages(smam, folder):
     here("run", "muscle_bench", "--duration", 20, "--output", "loop.csv")
     here("identify", "loop.csv", "--model", "symmetric", "--out", "identification")
     here("reproduce", "4b", "4cd", "--out", "reproduction")
+    here("score", "--rows", PROOF / "rows.jsonl", "--out", "score")
+    here("trial", "--scene", "driven_axis", "--effect", "seal_friction", "--out", "trial")
     (file,) = folder.glob("diagnosis/report.html")
     if file.stat().st_size > MOST_BYTES:
         raise SystemExit(f"{file}: {file.stat().st_size} bytes, more than {MOST_BYTES}")
@@ -62,4 +67,6 @@ def pages(smam, folder):
         (folder / "sweep_3" / "sweep.html", [explore.cursor_reads, explore.keys_change, *points]),
         (folder / "identification" / "identify.html", [explore.cursor_reads, functools.partial(explore.zoom_and_back, which=1), explore.lines_off_and_on]),
         (folder / "reproduction" / "reproduce.html", [explore.cursor_reads, explore.zoom_and_back, explore.lines_off_and_on]),
+        (folder / "score" / "score.html", [explore.cursor_reads]),
+        (folder / "trial" / "trial.html", []),
     ]

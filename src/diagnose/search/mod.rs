@@ -12,6 +12,6 @@ mod screening;
 mod stepwise;
 
 pub(super) use creep::is_broad;
-pub(super) use refits::{foretells, foretells_runs};
+pub(super) use refits::{beside, foretells, foretells_runs};
 pub(super) use screening::{Screened, least_gain};
 pub(super) use stepwise::{Begun, Bound, Found, MOST_EFFECTS, leaves_much, settled};

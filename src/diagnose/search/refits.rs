@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::screening::{Screened, Screening, start_values};
+use super::screening::{Screened, Screening, least_gain, screen, start_values};
 use crate::diagnose::case::Step;
-use crate::diagnose::fit::{Fit, Placed, Problem, Sides};
+use crate::diagnose::fit::{Fit, Placed, Problem, Sides, Variant};
 
 /// Candidates that are refitted in full at every stage.
 const REFITTED: usize = 10;
@@ -68,6 +68,12 @@ pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Scre
     let mut fits: Vec<Fit> = finished.into_iter().flatten().chain(rough[close..].iter().cloned()).collect();
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits
+}
+
+/// The effects that do best beside a fit, refitted jointly; cheapest first.
+pub(in crate::diagnose) fn beside(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Fit> {
+    let Some(screening) = screen(problem, fit, variants) else { return Vec::new() };
+    refit(problem, &screening, &pick(&screening.screened, least_gain(problem.samples()), Swallowed::Any))
 }
 
 /// The same refits, cheapest first, those near the best also fitted from the scene's calibration: only where the best one gains by

@@ -47,11 +47,12 @@ impl Found {
 pub(in crate::diagnose) struct Bound<'a>(pub Option<&'a Fit>);
 
 impl Bound<'_> {
-    /// Whether the law leaves less than several effects do, and not much.
+    /// Whether the law leaves less than several effects do, and not much. A single law is not compared with a single effect: it bends.
     pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
         self.0.is_some_and(|law| {
+            let is_simpler = [several, law].iter().any(|fit| fit.model.effects.len() > 1);
             let is_lower = law.cost < several.cost - least_gain(problem.samples());
-            several.model.effects.len() > 1 && is_lower && !leaves_much(problem, baseline, law)
+            is_simpler && is_lower && !leaves_much(problem, baseline, law)
         })
     }
 }
@@ -95,6 +96,14 @@ impl Begun {
         let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
         let way = Way::at(settled.best, settled.rivals);
         Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
+    }
+
+    /// Goes on to so many effects, and no further.
+    pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
+        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (most, Bound(None)), say);
+        self.known = swaps.known;
+        self
     }
 
     /// What stands as far as it went.

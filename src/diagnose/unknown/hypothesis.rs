@@ -23,9 +23,9 @@ const SEEN: f64 = 3.0;
 /// A model with a law, the others that are as good, and where the misfit sits.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
-    best: Fit,
-    forms: Vec<Fit>,
-    located: Vec<Located>,
+    pub best: Fit,
+    pub forms: Vec<Fit>,
+    pub located: Vec<Located>,
 }
 
 /// What one law makes of the recordings before the catalogue has tried several effects.
@@ -73,15 +73,28 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let law = best.as_ref().map(|lawful| lawful.best.clone());
     let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
     let Some(lawful) = best.filter(is_all) else { return part };
+    match renewed(case, noise, lawful.beside(found), say) {
+        Some((found, noise)) => OneLaw::All(Box::new(found), noise),
+        None => part,
+    }
+}
+
+/// What explains all, with the weights and steps that it asks for; none where it leaves more than noise then.
+pub(super) fn renewed(
+    case: &mut Case,
+    noise: &[Noise],
+    found: Found,
+    say: &dyn Fn(String),
+) -> Option<(Found, Vec<Noise>)> {
     let former = case.runs.clone();
-    let (found, renewed) = renew(case, noise, lawful.beside(found));
-    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &renewed };
+    let (found, noise) = renew(case, noise, found);
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise: &noise };
     if leaves_something(&open, &found.best) {
         case.runs = former;
-        return part;
+        return None;
     }
     say(format!("{} explains it all", found.best.model.title()));
-    OneLaw::All(Box::new(found), renewed)
+    Some((found, noise))
 }
 
 /// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
@@ -98,7 +111,7 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
 /// catalogue explains a law must predict whole runs left out better than that does by itself.
-fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
     let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
         true => foretells(open, &found.baseline, lawful),
@@ -109,7 +122,7 @@ fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
 
 impl Lawful {
     /// What was found with the law in its place.
-    fn beside(self, found: &Found) -> Found {
+    pub fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
         let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
         let (rivals_against, forms) = (self.best.cost, self.forms);
@@ -142,14 +155,14 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_all = |lawful: &Option<Lawful>| lawful.as_ref().is_some_and(|l| !leaves_something(&open, &l.best));
     // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
-    let instead = tried.instead.filter(is_simpler).and_then(|l| go_on(&open, &found.baseline, l, say));
-    let search = |from: &Fit, begun| search(&open, &found.baseline, from, begun, say);
+    let search = Search { open: &open, found, is_open, say };
+    let instead = tried.instead.filter(is_simpler).and_then(|l| search.go_on(l));
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
-    let alone = if is_enough { None } else { search(&found.baseline, tried.proposals) };
+    let alone = if is_enough { None } else { search.from(&found.baseline, tried.proposals) };
     let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
-    let beside = if is_beside { search(&found.best, None) } else { None };
+    let beside = if is_beside { search.from(&found.best, None) } else { None };
     let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
     let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
     let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
@@ -204,7 +217,7 @@ fn other_places(open: &Problem, found: &mut Found) -> bool {
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.
-fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
@@ -216,66 +229,79 @@ fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     fit.cost - noise < EXPLAINED * (baseline.cost - noise)
 }
 
-/// Adds laws to a fit, one by one, as long as much is left; `baseline` is the calibration alone, `begun` what was proposed for the
-/// first with other weights.
-fn search(
-    open: &Problem,
-    baseline: &Fit,
-    from: &Fit,
-    begun: Option<Proposals>,
-    say: &dyn Fn(String),
-) -> Option<Lawful> {
-    add_laws(open, baseline, (from.clone(), None), begun, say)
+/// The search for laws in the place of what was found, or beside it where that leaves more than noise (`is_open`).
+struct Search<'a> {
+    open: &'a Problem<'a>,
+    found: &'a Found,
+    is_open: bool,
+    say: &'a dyn Fn(String),
 }
 
-/// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
-fn go_on(open: &Problem, baseline: &Fit, own: Lawful, say: &dyn Fn(String)) -> Option<Lawful> {
-    let fit = open.fit(&own.best.model, &own.best.x)?;
-    let last = fit.model.effects.len() - 1;
-    let before = match last {
-        0 => baseline.cost,
-        _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
-    };
-    let mut fits = with_elsewhere(open, fit, before);
-    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let (best, forms) = equally_good(open, &fits, before)?;
-    let here = best.clone();
-    add_laws(open, baseline, (here, Some(Lawful { best, forms, ..own })), None, say)
-}
-
-fn add_laws(
-    open: &Problem,
-    baseline: &Fit,
-    (mut here, mut lawful): (Fit, Option<Lawful>),
-    begun: Option<Proposals>,
-    say: &dyn Fn(String),
-) -> Option<Lawful> {
-    let mut begun = begun.map(|b| b.again(open));
-    for _ in usize::from(lawful.is_some())..MOST_LAWS {
-        let is_all = lawful.is_some() && !leaves_something(open, &here);
-        if is_explained(open, baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
-            break;
-        }
-        let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, say)) else { break };
-        let Some(first) = proposals.fits.first() else { break };
-        if lawful.is_none() && leaves_something(open, first) {
-            proposals.fits = wider(open, &here, proposals.fits, say);
-        }
-        let Some(first) = proposals.fits.first() else { break };
-        if here.cost - first.cost < least_gain(open.samples()) {
-            break;
-        }
-        let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
-        let (best, forms) = without_idle(open, best, forms);
-        here = best.clone();
-        let located = lawful.map_or(proposals.located, |l| l.located);
-        lawful = Some(Lawful { best, forms, located });
+impl Search<'_> {
+    /// Adds laws to a fit; `begun` is what was proposed for the first with other weights.
+    fn from(&self, from: &Fit, begun: Option<Proposals>) -> Option<Lawful> {
+        self.add_laws(from.clone(), None, begun)
     }
-    lawful
+
+    /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
+    fn go_on(&self, own: Lawful) -> Option<Lawful> {
+        let open = self.open;
+        let fit = open.fit(&own.best.model, &own.best.x)?;
+        let last = fit.model.effects.len() - 1;
+        let before = match last {
+            0 => self.found.baseline.cost,
+            _ => open.fit(&fit.model.without(last), &open.start_without(&fit, last))?.cost,
+        };
+        let mut fits = with_elsewhere(open, fit, before);
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let (best, forms) = equally_good(open, &fits, before)?;
+        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), None)
+    }
+
+    /// Adds laws one by one, as long as much is left.
+    fn add_laws(&self, mut here: Fit, mut lawful: Option<Lawful>, mut begun: Option<Proposals>) -> Option<Lawful> {
+        let open = self.open;
+        begun = begun.map(|b| b.again(open));
+        for _ in usize::from(lawful.is_some())..self.most() {
+            let is_all = lawful.is_some() && !leaves_something(open, &here);
+            if is_explained(open, &self.found.baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
+                break;
+            }
+            let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, self.say)) else {
+                break;
+            };
+            let Some(first) = proposals.fits.first() else { break };
+            if lawful.is_none() && leaves_something(open, first) && self.may_be_wider(first) {
+                proposals.fits = wider(open, &here, proposals.fits, self.say);
+            }
+            let Some(first) = proposals.fits.first() else { break };
+            if here.cost - first.cost < least_gain(open.samples()) {
+                break;
+            }
+            let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
+            let (best, forms) = without_idle(open, best, forms);
+            here = best.clone();
+            let located = lawful.map_or(proposals.located, |l| l.located);
+            lawful = Some(Lawful { best, forms, located });
+        }
+        lawful
+    }
+
+    /// Laws, at most: in the place of effects that leave nothing fewer than these are, or there is nothing in it.
+    fn most(&self) -> usize {
+        let fewer = self.found.best.model.effects.len().saturating_sub(1).max(1);
+        if self.is_open { MOST_LAWS } else { fewer.min(MOST_LAWS) }
+    }
+
+    /// Whether laws that remember or bend otherwise are worth trying. Beside effects that leave nothing they are where the same law
+    /// without memory explains nearly all.
+    fn may_be_wider(&self, plain: &Fit) -> bool {
+        self.is_open || !leaves_much(self.open, &self.found.baseline, plain)
+    }
 }
 
 /// A fit and its forms without the effects that the law which came last has made needless.
-fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
+pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
     let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
     let least = least_gain(open.samples());
     loop {

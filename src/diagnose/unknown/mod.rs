@@ -5,6 +5,7 @@
 mod elsewhere;
 mod forms;
 pub(super) mod hypothesis;
+pub(super) mod pair;
 mod shown;
 mod span;
 mod unlisted;
