@@ -306,11 +306,11 @@ fn an_effect_is_said_and_drawn() {
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     assert!(printed(&output).contains("Q_leak = G p_m") && said(&output).contains("picture: out/effects/leak.svg"));
     let svg = std::fs::read_to_string(here.path().join("out/effects/leak.svg")).expect("written");
-    for text in [">muscle_bench, leak in line<", ">bending_catheter, leak in line_1<", ">G = 2e-16 m³/(s Pa)<"] {
-        assert!(svg.contains(text), "no {text}");
+    let scenes = ["muscle_bench, leak in line", "bending_catheter, leak in line_1", "G = 2e-16 m³/(s Pa)"];
+    for text in scenes.into_iter().chain(["elongation (mm)", "change (°)", "time (s)", "pressure (kPa)"]) {
+        assert!(svg.lines().any(|line| line == text), "no {text}");
     }
-    assert!(svg.contains(">elongation (mm)<") && svg.contains(">change (°)<") && svg.contains(">time (s)<"));
-    assert!(svg.contains(">pressure (kPa)<") && svg.len() < 60_000, "{} bytes", svg.len());
+    assert!(svg.len() < 60_000, "{} bytes", svg.len());
     // Two laws share this name: each has its picture.
     let output = smam(&["effects", "sensor_lag", "--out", "new"], here.path());
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

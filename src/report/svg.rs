@@ -1,7 +1,7 @@
 //! What static figures are drawn with. Lengths are pixels, y points down.
 
 use svg::Document;
-use svg::node::element::{Group, Polyline, Rectangle, Text};
+use svg::node::element::{Group, Line, Polyline, Rectangle, Text};
 
 /// Width of a letter over the font size, on the wide side: room is reserved by it.
 const LETTER_WIDTH: f64 = 0.6;
@@ -29,6 +29,11 @@ impl Rect {
 /// A tenth of a pixel is as fine as anybody sees.
 fn px(length: f64) -> f64 {
     (10.0 * length).round() / 10.0
+}
+
+pub(super) fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line {
+    let ends = Line::new().set("x1", px(from.0)).set("y1", px(from.1)).set("x2", px(to.0)).set("y2", px(to.1));
+    ends.set("stroke", colour).set("stroke-width", width)
 }
 
 /// Filled with a colour, or with `none`.

@@ -96,7 +96,12 @@ impl Layer for Loop {
         };
         let range = range.map(|[low, high]| padded(low, high));
         out.log_static(self.entity("data"), &fit(range))?;
-        out.log_static(self.data_entity("curve"), &curve(self.trace.points()))?;
+        let drawn = self.trace.points();
+        match self.shown {
+            Shown::Channels(..) => out.log_static(self.data_entity("curve"), &curve(drawn))?,
+            // Where a run sticks and slips, lines from sample to sample would cut across the law.
+            Shown::Law(_) => out.log_static(self.data_entity("curve"), &dots(drawn))?,
+        }
         let scales = [Scale::new(range[0]), Scale::new(range[1])];
         out.log_static(self.entity("ticks"), &tick_lines(&scales))?;
         out.log_static(self.entity("labels"), &labels(&scales, &self.titles))?;
@@ -142,6 +147,12 @@ fn curve(points: &[[f64; 2]]) -> LineStrips2D {
     LineStrips2D::new(starts.clone().map(piece))
         .with_colors(starts.map(colour))
         .with_radii([Radius::new_ui_points(1.25)])
+}
+
+/// Every point, coloured like the pieces of a curve.
+fn dots(points: &[[f64; 2]]) -> Points2D {
+    let colours = (0..points.len()).map(|i| opaque(age(i as f64 / points.len() as f64)));
+    Points2D::new(points.iter().map(downwards)).with_colors(colours).with_radii([Radius::new_ui_points(1.5)])
 }
 
 fn tick_lines([x, y]: &[Scale; 2]) -> LineStrips2D {

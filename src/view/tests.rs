@@ -1,6 +1,6 @@
 //! Contract: what goes in comes out of the stream, value by value, whatever the stretches were.
 
-use rerun::components::{Scalar, Translation3D};
+use rerun::components::{Position2D, Scalar, Translation3D};
 use rerun::log::{Chunk, LogMsg};
 use rerun::sink::MemorySinkStorage;
 use rerun::{ComponentIdentifier, RecordingStreamBuilder};
@@ -73,6 +73,8 @@ fn a_law_is_drawn_over_time_and_over_its_variable() {
     let texts = component::<rerun::Text>(&chunks, "/law_curves/stiffer/labels", "Points2D:labels");
     let texts: Vec<&str> = texts.iter().map(|text| text.as_str()).collect();
     assert!(texts.contains(&"elongation (m)") && texts.contains(&"stiffer"), "{texts:?}");
+    let dots = component::<Position2D>(&chunks, "/law_curves/stiffer/data/curve", "Points2D:positions");
+    assert_eq!(dots.len(), FRAMES);
 }
 
 #[test]
