@@ -52,10 +52,9 @@ pub fn effect_svg(title: &str, law: [&str; 2], sizes: &[String], scenes: &[Affec
     let mut svg = Group::new();
     draw_header(&mut svg, width, title, law, sizes);
     let mut y = HEADER_HEIGHT;
-    // What changes is what there is to see: its row is the tall one.
-    let rows: [(Draw, f64); 4] =
-        [(over_time, 205.0), (change, 290.0), (over_input, 190.0), (pressure_over_output, 190.0)];
-    for (draw, height) in rows {
+    // What changes is what there is to see: its row is the tall one. A scene may have nothing to show in a row.
+    let rows: [fn(&AffectedScene) -> Option<Panel>; 4] = [over_time, change, over_input, pressure_over_output];
+    for (draw, height) in rows.into_iter().zip([205.0, 290.0, 190.0, 190.0]) {
         let panels: Vec<Option<Panel>> = scenes.iter().map(draw).collect();
         for (column, panel) in panels.iter().enumerate() {
             let area = Rect { x: EDGE + cell_width * column as f64, y, width: cell_width, height };
@@ -67,9 +66,6 @@ pub fn effect_svg(title: &str, law: [&str; 2], sizes: &[String], scenes: &[Affec
     }
     document(width, y + EDGE, svg)
 }
-
-/// A row of the figure; `None` where a scene has nothing to show in it.
-type Draw = fn(&AffectedScene) -> Option<Panel>;
 
 fn draw_header(svg: &mut Group, width: f64, title: &str, law: [&str; 2], sizes: &[String]) {
     let left = EDGE + 12.0;

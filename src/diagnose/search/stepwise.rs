@@ -144,8 +144,13 @@ impl Begun {
                 continue;
             }
             say(format!("once more, beginning with {}", other.model.title()));
-            let way =
-                climb(&mut swaps, &baseline, Way::at(other, Vec::new()), &mut self.seen, (MOST_EFFECTS, law), say);
+            let mut way = Way::at(other, Vec::new());
+            for most in 2..=MOST_EFFECTS {
+                way = climb(&mut swaps, &baseline, way, &mut self.seen, (most, law), say);
+                if self.seen.is_behind(&way.best) {
+                    break;
+                }
+            }
             if way.best.cost < self.way.best.cost - least_gain(problem.samples()) {
                 (self.way.best, self.way.rivals) = (way.best, way.rivals);
             }
@@ -205,6 +210,12 @@ struct Seen(Vec<Fit>);
 impl Seen {
     fn contains(&self, fit: &Fit) -> bool {
         self.0.iter().any(|other| is_same(other, fit))
+    }
+
+    /// Whether a way has come further with as many effects.
+    fn is_behind(&self, fit: &Fit) -> bool {
+        let is_as_simple = |other: &&Fit| other.model.effects.len() <= fit.model.effects.len();
+        self.0.iter().filter(is_as_simple).any(|other| other.cost < fit.cost)
     }
 
     /// Whether no way has been here before; from now on one has.
