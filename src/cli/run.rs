@@ -5,14 +5,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use smam::files::write_whole;
 use smam::identify::LeadIn;
 use smam::recording::{Recording, read_recording, survey};
 use smam::scene::{Scene, ViewSpec};
-use smam::system::{
-    InputSource, RunError, Schedule, Simulation, Verdict, judge, run as run_simulation, with_half_steps,
-};
+use smam::system::{InputSource, RunError, Schedule, Simulation, run as run_simulation, with_half_steps};
 
+use super::CliError;
 use super::angles::Angles;
 use super::changes::Changes;
 use super::files::is_same_file;
@@ -20,7 +18,10 @@ use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
 use super::steps::check_steps;
-use super::{CliError, junit};
+
+mod judged;
+
+use judged::{check, print_energy};
 
 /// Arguments of `smam run`.
 #[derive(Args)]
@@ -327,30 +328,6 @@ fn say_what_to_open(arguments: &RunArguments, name: &str) {
     }
 }
 
-/// Share of the turnover that may be unaccounted for, %.
-const MOST_UNACCOUNTED: f64 = 1.0;
-
-fn print_energy(book: &smam::system::EnergyBook) {
-    say!("energy book, mJ:");
-    for (name, joule) in book.lines() {
-        say!("  {name:<28} {:>14.6}", joule * 1e3);
-    }
-    let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
-    say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
-    for (line, joule) in book.supplying_laws() {
-        let name = line.strip_prefix("law_").unwrap_or(line);
-        eprintln!(
-            "warning: [[law]] \"{name}\" supplies {:.6} mJ at a port that only takes energy; remedy: look at its sign",
-            joule * 1e3
-        );
-    }
-    if share > MOST_UNACCOUNTED {
-        eprintln!(
-            "warning: more than {MOST_UNACCOUNTED} % of the turnover is unaccounted for: the steps are too long; remedy: see --check-steps"
-        );
-    }
-}
-
 /// A server goes on until it is interrupted.
 fn hold_server(arguments: &RunArguments) {
     if arguments.serve {
@@ -359,28 +336,4 @@ fn hold_server(arguments: &RunArguments) {
             std::thread::sleep(std::time::Duration::from_millis(100));
         }
     }
-}
-
-fn check(arguments: &RunArguments, simulation: &Simulation, recording: &Recording) -> Result<ExitCode, CliError> {
-    let scene = simulation.scene();
-    let verdicts = judge(scene, recording)?;
-    if verdicts.is_empty() {
-        say!("{}: no [[expect]] in this scene", scene.file.name);
-    }
-    for verdict in &verdicts {
-        say!("{}", line(verdict));
-    }
-    if let Some(path) = &arguments.junit {
-        let text = junit::report(&scene.file.name, &verdicts);
-        write_whole(path, &text).map_err(|source| CliError::Write { file: path.clone(), source })?;
-    }
-    let failed = verdicts.iter().filter(|v| !v.passed).count();
-    say!("{}: {} passed, {failed} failed", scene.file.name, verdicts.len() - failed);
-    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
-}
-
-fn line(v: &Verdict) -> String {
-    let source = if v.source.is_empty() { String::new() } else { format!("   ({})", v.source) };
-    let mark = if v.passed { "ok  " } else { "FAIL" };
-    format!("{mark} {:<34} {:>12.5} {:<4} expected {}{source}", v.name, v.value, v.unit, v.bounds)
 }

@@ -3,15 +3,21 @@
 use std::sync::Arc;
 
 use super::address::Address;
-use super::law::{Law, Memory, Parameter, Programs, State, StateTrees, Symbol};
+use super::law::{Law, Parameter, Programs, State, Symbol};
 use super::port::{Port, PortSpec};
 use super::quantity::{QUANTITIES, Quantity, Variable};
 use super::syntax::{SyntaxError, parse};
-use super::table::{LawTable, ParameterTable, StateTable};
+use super::table::{LawTable, StateTable};
 use super::tree::{Function, Node, Operator};
 use super::units::{Unit, said, unit_of};
 use super::{Acts, Dimension};
 use crate::nearest::did_you_mean;
+
+mod parameters;
+mod states;
+
+use parameters::parameter;
+use states::memory;
 
 /// What is wrong with a [`LawTable`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -309,94 +315,12 @@ impl<'a> Reader<'a> {
         ))
     }
 
-    fn state(&self, name: &str, table: &StateTable, used: &mut Used) -> Result<(StateTrees, Unit), LawError> {
-        let given = [&table.rate, &table.greatest, &table.play_of].into_iter().flatten().count();
-        if given != 1 {
-            return Err(refuse(
-                format!("state.{name}: exactly one of rate, greatest and play_of is needed"),
-                format!(
-                    "write state.{name} = {{ rate = \"(elongation_m - {name}) / tau_s\", start = \"elongation_m\" }}"
-                ),
-            ));
-        }
-        if table.play_of.is_some() != table.width.is_some() {
-            let remedy = format!("write state.{name} = {{ play_of = \"plunger_m\", width = \"width_m\" }}");
-            return Err(refuse(format!("state.{name}: play_of and width go together"), remedy));
-        }
-        let mut part = |key: &str, text: &Option<String>| match text {
-            Some(text) => self.tree(&format!("state.{name}.{key}"), text, used),
-            None => Ok(Node::number(0.0)),
-        };
-        let rate = part("rate", &table.rate)?;
-        let greatest = part("greatest", &table.greatest)?;
-        let play = part("play_of", &table.play_of)?;
-        let width = part("width", &table.width)?;
-        let start = part("start", &table.start)?;
-        let follows = if table.greatest.is_some() { greatest } else { play };
-        let unit = self.unit_of_state(name, table, (&start, &follows), used)?;
-        Ok((StateTrees { rate, start, follows, width }, unit))
-    }
-
-    /// As said, as the name ends, as what it starts from or follows; else it is open.
-    fn unit_of_state(
-        &self,
-        name: &str,
-        table: &StateTable,
-        (start, follows): (&Node, &Node),
-        used: &Used,
-    ) -> Result<Unit, LawError> {
-        if let Some(text) = &table.unit {
-            let unit = Dimension::parse(text).map_err(|e| refuse(format!("state.{name}.unit: {e}"), "use SI units"))?;
-            return Ok(Unit::Known(unit));
-        }
-        if let Some(unit) = Dimension::of_name(name) {
-            return Ok(Unit::Known(unit));
-        }
-        let open = vec![Unit::Open; self.states.len()];
-        let told = |node: &Node| self.unit(node, used, &open).ok().filter(|u| matches!(u, Unit::Known(_)));
-        let by_start = table.start.as_ref().and_then(|_| told(start));
-        Ok(by_start.or_else(|| told(follows)).unwrap_or(Unit::Open))
-    }
-
-    fn check_state(&self, name: &str, tree: &StateTrees, used: &Used, units: &[Unit]) -> Result<(), LawError> {
-        let own = units[self.states.iter().position(|(s, _)| *s == name).unwrap_or(0)];
-        let second = Dimension::of_name("x_s").unwrap_or(Dimension::NONE);
-        for (key, part, per_second) in
-            [("rate", &tree.rate, true), ("start", &tree.start, false), ("width", &tree.width, false)]
-        {
-            let key = format!("state.{name}.{key}");
-            let unit = self.unit(part, used, units).map_err(|e| self.wrong_unit(&key, &e))?;
-            let Unit::Known(own) = own else { continue };
-            let wanted = if per_second { own / second } else { own };
-            if !unit.can_be(wanted) {
-                return Err(self.wrong_unit(&key, &format!("{wanted} is wanted, the expression is in {}", said(unit))));
-            }
-        }
-        let follows =
-            self.unit(&tree.follows, used, units).map_err(|e| self.wrong_unit(&format!("state.{name}"), &e))?;
-        match (own, follows) {
-            (Unit::Known(own), follows) if !follows.can_be(own) => Err(self.wrong_unit(
-                &format!("state.{name}"),
-                &format!("it is in {own}, what it follows in {}", said(follows)),
-            )),
-            _ => Ok(()),
-        }
-    }
-
     /// A parameter that stands in no expression is a slip of the pen.
     fn check_used(&self, used: &Used) -> Result<(), LawError> {
         match self.parameters.iter().find(|p| !used.names.contains(&p.name)) {
             Some(p) => Err(refuse(format!("parameter.{} stands in no expression", p.name), "use it, or remove it")),
             None => Ok(()),
         }
-    }
-}
-
-fn memory(table: &StateTable) -> Memory {
-    match (&table.rate, &table.greatest) {
-        (Some(_), _) => Memory::Rate,
-        (None, Some(_)) => Memory::Greatest,
-        (None, None) => Memory::Play,
     }
 }
 
@@ -408,32 +332,4 @@ fn gated(acts: Acts, value: Node, gate: Option<Node>) -> Node {
     let beyond = Node::two(Operator::Subtract, value, Node::number(neutral));
     let gated = Node::Where(Box::new([is_met, Node::number(0.0), beyond, Node::number(0.0)]));
     Node::two(Operator::Add, gated, Node::number(neutral))
-}
-
-fn parameter(name: &str, table: &ParameterTable) -> Result<Parameter, LawError> {
-    let at = |message: String, remedy: &str| refuse(format!("parameter.{name}: {message}"), remedy);
-    let dimension = match &table.unit {
-        Some(unit) => Dimension::parse(unit).map_err(|e| at(format!("unit: {e}"), "use SI units"))?,
-        None => match Dimension::with_prefix(name) {
-            Some((ending, own)) => {
-                let message = format!("a number's name ends in its SI unit, and _{ending} is none");
-                return Err(at(message, &format!("name it {own}, with its value in that unit, or say unit = \"1\"")));
-            }
-            None => Dimension::of_name(name).unwrap_or(Dimension::NONE),
-        },
-    };
-    let (min, max) = (table.min.unwrap_or(f64::NEG_INFINITY), table.max.unwrap_or(f64::INFINITY));
-    if !table.value.is_finite() {
-        return Err(at(format!("value = {} must be finite", table.value), "give a number in SI units"));
-    }
-    if min.is_nan() || max.is_nan() || min >= max {
-        return Err(at(format!("min = {min} must be < max = {max}"), "give the smaller number as min"));
-    }
-    if table.value < min || table.value > max {
-        return Err(at(
-            format!("value = {} is outside {min} to {max}", table.value),
-            "move the value, or widen the range",
-        ));
-    }
-    Ok(Parameter { name: name.to_owned(), value: table.value, min, max, dimension })
 }
