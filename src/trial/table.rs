@@ -94,8 +94,13 @@ fn one_cell(row: &Row) -> String {
 }
 
 fn not_right(text: &mut String, rows: &[Row]) {
+    let wrong: Vec<&Row> = rows.iter().filter(|r| r.judgement != Judgement::Right).collect();
+    if wrong.is_empty() {
+        let _ = writeln!(text, "Every answer is right.");
+        return;
+    }
     let _ = writeln!(text, "### Answers that are not right\n\n| case | excess | answer |\n|---|---|---|");
-    for row in rows.iter().filter(|r| r.judgement != Judgement::Right) {
+    for row in wrong {
         let answer: Vec<String> = row.answer.iter().map(|(words, p)| format!("{words} {p:.2}")).collect();
         let verdict = format!("{:?}", row.judgement).to_lowercase();
         let _ = writeln!(

@@ -38,9 +38,10 @@ def pages(smam, folder):
     """File and explorations of each page."""
     here = functools.partial(run, smam, folder)
     here("conceal", "--seed", 7, "--hiding", "one", "--out", "hidden")
-    case = folder / "hidden" / "case_7"
-    here("diagnose", case, "--out", "diagnosis")
-    here("compare", case, "--out", "comparison")
+    inside = Path("hidden", "case_7")
+    case = folder / inside
+    here("diagnose", inside, "--out", "diagnosis")
+    here("compare", inside, "--out", "comparison")
     here("compare", evil_recordings(folder, case), "--out", "evil_comparison")
     short = ["--duration", 2, "--measure", "range_mm=range(elongation_mm)", "--measure", "peak_kpa=max(pressure_kpa)"]
     keys = ["muscles.friction.m0_n=0.05:0.3:6", "hydraulics.line.bore_m=0.3e-3,0.5e-3,0.8e-3", "tube_c1_pa=0.2e6,0.3e6"]
