@@ -43,7 +43,7 @@ function drawExploration(place, points) {
   const tagOf = { best: new Set(points.best), faint: new Set(points.faint) };
   const group = row => (tagOf.best.has(row) ? "best" : tagOf.faint.has(row) ? "faint" : "plain");
   const columns = [
-    ...points.keys.map(key => ({ name: key.name, short: key.name.split(".").pop(), label: key.label, marks: key.marks, values: shownValues(key) })),
+    ...points.keys.map(key => ({ name: key.name, short: key.label.split(".").pop(), label: key.label, marks: key.marks, values: shownValues(key) })),
     ...points.measures.map(m => ({ name: m.name, short: m.name, label: m.label, values: m.values })),
   ];
   const picked = pickedPoint(points);

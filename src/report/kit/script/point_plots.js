@@ -16,7 +16,7 @@ function pointPlot(host, [x, y], { rowsOf, state, pick, index, height }) {
   const own = element("figure", {}, element("figcaption"));
   host.append(own);
   const marks = (x.marks ?? []).map(([label, at]) => ({ label, at, colour: "grey" }));
-  const figure = { x_label: x.label, y_label: y.label, marks, title: `${y.name} over ${x.name}`, file: `${y.short}_over_${x.short}.csv` };
+  const figure = { x_label: x.label, y_label: y.label, marks, title: `${y.name} over ${x.name}`, file: `${y.name}_over_${x.name.split(".").pop()}.csv` };
   const around = frame(own, figure, () => csvOf([[x.name, y.name], ...index.map((_, row) => [x.values[row], y.values[row]])]));
   const keptOf = rows => rows.filter(row => state.isKept(row));
   const dataOf = rows => [keptOf(rows).map(row => x.values[row]), keptOf(rows).map(row => y.values[row])];
