@@ -15,7 +15,7 @@ const LEAST_SHARE: f64 = 1.0 / 3.0;
 pub(in crate::diagnose) enum Pair {
     /// A law with its partner explains all that is more than noise. With the noise that it leaves.
     All(Box<Found>, Vec<Noise>),
-    /// The laws only stood for two effects of the catalogue that explain as much: the search goes on from there.
+    /// The laws only stood for two effects of the catalogue that leave little: the search goes on from there.
     Listed(Fit, Box<Tried>),
     /// Neither.
     Part(Box<Tried>),
@@ -87,6 +87,7 @@ fn law_last(open: &Problem, fit: &Fit) -> Option<Fit> {
     open.fit(&alone.model.plus(&law, &fit.model.values[0]), &x)
 }
 
+/// A law that leaves much with what does best beside it; none where that does little.
 fn with_partner(
     open: &Problem,
     (baseline, law): (&Fit, &Fit),
