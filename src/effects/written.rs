@@ -151,7 +151,9 @@ mod tests {
         };
         let by_symbol: Vec<f64> = written.law.symbols.iter().map(read).collect();
         let programs = &written.law.programs;
-        (programs.value.value(&by_symbol), programs.slopes.value(&by_symbol))
+        let mut registers = vec![0.0; programs.value.registers()];
+        programs.value.run(programs.value.symbols().iter().map(|s| by_symbol[*s]), &mut registers);
+        (programs.value.output(0, &registers), programs.value.output(1, &registers))
     }
 
     #[test]

@@ -84,10 +84,8 @@ pub struct Law {
 /// The expressions of a law, compiled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programs {
-    /// What is added, or scales.
+    /// What is added, or scales; after it its derivatives to [`SLOPES`], then to each state.
     pub value: Program,
-    /// Its derivatives to [`SLOPES`], then to each state.
-    pub slopes: Program,
     /// Of each state its rate; 0 for those that follow an expression.
     pub rates: Program,
     /// Of each state the derivatives of its rate: to itself, to elongation and to speed.
@@ -108,6 +106,11 @@ pub(super) struct StateTrees {
 }
 
 impl Programs {
+    /// Those of its states.
+    pub fn of_states(&self) -> [&Program; 5] {
+        [&self.rates, &self.rate_slopes, &self.starts, &self.follows, &self.widths]
+    }
+
     pub(super) fn new(value: &Node, states: &[StateTrees], symbols: &[Symbol]) -> Self {
         let own = |quantity| {
             let wanted = Symbol::Variable(Variable { quantity, of: None });
@@ -116,7 +119,8 @@ impl Programs {
         let state = |i: usize| symbols.iter().position(|s| *s == Symbol::State(i));
         let slope = |node: &Node, symbol: Option<usize>| symbol.map_or(Node::number(0.0), |s| node.derivative(s));
         let to_quantities = SLOPES.iter().map(|q| slope(value, own(*q)));
-        let slopes: Vec<Node> = to_quantities.chain((0..states.len()).map(|i| slope(value, state(i)))).collect();
+        let slopes = to_quantities.chain((0..states.len()).map(|i| slope(value, state(i))));
+        let value_and_slopes: Vec<Node> = std::iter::once(value.clone()).chain(slopes).collect();
         let rate_slopes: Vec<Node> = states
             .iter()
             .enumerate()
@@ -128,8 +132,7 @@ impl Programs {
             Program::new(&states.iter().map(|s| part(s).clone()).collect::<Vec<_>>())
         };
         Self {
-            value: Program::new(std::slice::from_ref(value)),
-            slopes: Program::new(&slopes),
+            value: Program::new(&value_and_slopes),
             rates: all(|s| &s.rate),
             rate_slopes: Program::new(&rate_slopes),
             starts: all(|s| &s.start),

@@ -14,9 +14,8 @@ enum Code {
     TimesNumber,
     /// The number less the operand.
     NumberLess,
-    /// The number over the operand, and the operand over the number.
+    /// The number over the operand.
     NumberOver,
-    OverNumber,
     /// The operand times the number, and the offset.
     Affine,
     PowerWhole(i32),
@@ -40,6 +39,8 @@ struct Instruction {
 pub struct Program {
     symbols: Vec<usize>,
     instructions: Vec<Instruction>,
+    /// How many of the instructions the first output needs.
+    first: usize,
     outputs: Vec<u16>,
 }
 
@@ -48,10 +49,13 @@ impl Program {
     pub fn new(expressions: &[Node]) -> Self {
         let mut symbols = Vec::new();
         expressions.iter().for_each(|node| collect(node, &mut symbols));
-        let mut program = Self { symbols, instructions: Vec::new(), outputs: Vec::new() };
+        let mut program = Self { symbols, instructions: Vec::new(), first: 0, outputs: Vec::new() };
         for node in expressions {
             let register = program.compile(node);
             program.outputs.push(register);
+            if program.outputs.len() == 1 {
+                program.first = program.instructions.len();
+            }
         }
         program
     }
@@ -61,17 +65,38 @@ impl Program {
         &self.symbols
     }
 
-    /// Evaluates with the values of its symbols; afterwards [`Program::output`] reads the results from the registers.
+    /// Number of registers that it needs.
+    pub fn registers(&self) -> usize {
+        self.symbols.len() + self.instructions.len()
+    }
+
+    /// Evaluates with the values of its symbols; afterwards [`Program::output`] reads the results from the registers, which must be
+    /// [`Program::registers`] at least.
     #[inline]
-    pub fn run<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut Vec<D>) {
-        let count = self.symbols.len() + self.instructions.len();
-        if registers.len() < count {
-            registers.resize(count, D::constant(0.0));
-        }
-        let registers = &mut registers[..count];
+    pub fn run<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut [D]) {
+        self.run_first(values, registers);
+        self.run_rest(registers);
+    }
+
+    /// Evaluates the first output alone, and returns it.
+    #[inline]
+    pub fn run_first<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut [D]) -> D {
         registers.iter_mut().zip(values).for_each(|(register, value)| *register = value);
-        for (i, instruction) in self.instructions.iter().enumerate() {
-            registers[self.symbols.len() + i] = instruction.result(registers);
+        self.run_from(0, self.first, registers);
+        self.output(0, registers)
+    }
+
+    /// Evaluates the other outputs from the registers as [`Program::run_first`] left them.
+    #[inline]
+    pub fn run_rest<D: Scalar>(&self, registers: &mut [D]) {
+        self.run_from(self.first, self.instructions.len(), registers);
+    }
+
+    #[inline]
+    fn run_from<D: Scalar>(&self, from: usize, to: usize, registers: &mut [D]) {
+        let symbols = self.symbols.len();
+        for (i, instruction) in self.instructions[from..to].iter().enumerate() {
+            registers[symbols + from + i] = instruction.result(registers);
         }
     }
 
@@ -81,11 +106,17 @@ impl Program {
         registers[usize::from(self.outputs[index])]
     }
 
-    /// The only result, of plain numbers by symbol.
+    /// Whether a result is 0 whatever the symbols are.
+    #[inline]
+    pub fn is_nothing(&self, index: usize) -> bool {
+        let at = usize::from(self.outputs[index]).checked_sub(self.symbols.len()).map(|i| &self.instructions[i]);
+        at.is_some_and(|i| i.code == Code::Constant && i.number == 0.0)
+    }
+
+    /// The first result, of plain numbers by symbol.
     pub fn value(&self, by_symbol: &[f64]) -> f64 {
-        let mut registers = Vec::new();
-        self.run(self.symbols.iter().map(|s| by_symbol[*s]), &mut registers);
-        self.output(0, &registers)
+        let mut registers = vec![0.0; self.registers()];
+        self.run_first(self.symbols.iter().map(|s| by_symbol[*s]), &mut registers)
     }
 
     fn compile(&mut self, node: &Node) -> u16 {
@@ -111,7 +142,7 @@ impl Program {
         let one = |program: &mut Self, code, x: &Node, number: f64| {
             let (x, number) = match (code, x) {
                 // The sign goes with the number.
-                (Code::TimesNumber | Code::OverNumber, Node::Of(Function::Negate, x)) => (&**x, -number),
+                (Code::TimesNumber, Node::Of(Function::Negate, x)) => (&**x, -number),
                 _ => (x, number),
             };
             let x = program.compile(x);
@@ -135,7 +166,7 @@ impl Program {
             (O::Multiply, Some(x), _) => one(self, Code::TimesNumber, b, x),
             (O::Multiply, _, Some(y)) => one(self, Code::TimesNumber, a, y),
             (O::Divide, Some(x), _) => one(self, Code::NumberOver, b, x),
-            (O::Divide, _, Some(y)) => one(self, Code::OverNumber, a, y),
+            (O::Divide, _, Some(y)) if y.recip().is_finite() => one(self, Code::TimesNumber, a, y.recip()),
             (O::Power, _, Some(y)) if y.fract() == 0.0 && y.abs() <= 64.0 => {
                 one(self, Code::PowerWhole(y as i32), a, 0.0)
             }
@@ -199,7 +230,6 @@ impl Instruction {
             Code::TimesNumber => at(0) * self.number,
             Code::NumberLess => -at(0) + self.number,
             Code::NumberOver => at(0).recip() * self.number,
-            Code::OverNumber => at(0) / self.number,
             Code::Affine => at(0) * self.number + self.offset,
             Code::PowerWhole(2) => at(0) * at(0),
             Code::PowerWhole(3) => at(0) * at(0) * at(0),
@@ -288,11 +318,11 @@ mod tests {
                 let program = Program::new(std::slice::from_ref(&node));
                 let at = [x, y, z];
                 let plain = program.value(&at);
-                let mut lanes = Vec::new();
+                let mut lanes = vec![Lanes([0.0; 2]); program.registers()];
                 program.run(program.symbols().iter().map(|s| Lanes([at[*s], 0.3])), &mut lanes);
                 prop_assert_eq!(program.output(0, &lanes).0[0].to_bits(), plain.to_bits(), "{}", text);
                 for symbol in 0..3 {
-                    let mut duals = Vec::new();
+                    let mut duals = vec![Dual64::from(0.0); program.registers()];
                     let dual = |s: &usize| Dual64::new(at[*s], f64::from(u8::from(*s == symbol)));
                     program.run(program.symbols().iter().map(dual), &mut duals);
                     let exact = program.output(0, &duals);
@@ -327,6 +357,6 @@ mod tests {
         // abs, over, exp, and one for the rest.
         let program = Program::new(&[read("1 + 0.4*exp(-abs(x)/2e-3)")]);
         assert_eq!(program.instructions.len(), 4);
-        assert_eq!(program.value(&[-3e-3, 0.0, 0.0]).to_bits(), (1.0 + 0.4 * (-(3e-3_f64) / 2e-3).exp()).to_bits());
+        assert!((program.value(&[-3e-3, 0.0, 0.0]) - (1.0 + 0.4 * (-(3e-3_f64) / 2e-3).exp())).abs() < 1e-15);
     }
 }

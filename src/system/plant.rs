@@ -381,8 +381,9 @@ impl<D: Scalar> Plant<D> {
         let pressure = self.pressure(muscle, now);
         let (elongation, speed) = (m.elongation_m::<N>(now.at.y()), dot::<_, N>(&m.jacobian, now.at.w()));
         let (slow, greatest) = (m.slow(&now.at), now.state.greatest_j[muscle]);
-        let stock = m.forces_and_elastic(elongation, speed, pressure, z, slow, greatest);
-        m.forces_under(stock, &acts.muscles[muscle], z, slow, greatest)
+        let (mut forces, law) = m.forces_and_elastic(elongation, speed, pressure, z, slow, greatest);
+        m.put_under((&mut forces, &law), &acts.muscles[muscle], z, slow, greatest);
+        forces
     }
 
     /// Forces of one muscle without laws.

@@ -40,6 +40,8 @@ pub(in crate::diagnose) enum OneLaw {
 #[derive(Default)]
 pub(in crate::diagnose) struct Tried {
     pub proposals: Option<Proposals>,
+    /// Single laws that remember, multiply or bend otherwise.
+    pub wide: Option<Proposals>,
     /// The best law that is clearly better than any single effect.
     pub law: Option<Fit>,
     /// The law in the place of the best single effect, or beside it, however much that leaves.
@@ -71,7 +73,7 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let better = instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1).filter(is_better);
     let best = alone.into_iter().chain(better).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
     let law = best.as_ref().map(|lawful| lawful.best.clone());
-    let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead }));
+    let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead, ..Tried::default() }));
     let Some(lawful) = best.filter(is_all) else { return part };
     match renewed(case, noise, lawful.beside(found), say) {
         Some((found, noise)) => OneLaw::All(Box::new(found), noise),
@@ -160,9 +162,9 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
-    let alone = if is_enough { None } else { search.from(&found.baseline, tried.proposals) };
+    let alone = if is_enough { None } else { search.from(&found.baseline, tried.proposals, tried.wide) };
     let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
-    let beside = if is_beside { search.from(&found.best, None) } else { None };
+    let beside = if is_beside { search.from(&found.best, None, None) } else { None };
     let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
     let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
     let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
@@ -238,9 +240,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Adds laws to a fit; `begun` is what was proposed for the first with other weights.
-    fn from(&self, from: &Fit, begun: Option<Proposals>) -> Option<Lawful> {
-        self.add_laws(from.clone(), None, begun)
+    /// Adds laws to a fit; `plain` and `wide` are what was proposed for the first with other weights.
+    fn from(&self, from: &Fit, plain: Option<Proposals>, wide: Option<Proposals>) -> Option<Lawful> {
+        self.add_laws(from.clone(), None, (plain, wide))
     }
 
     /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
@@ -255,13 +257,18 @@ impl Search<'_> {
         let mut fits = with_elsewhere(open, fit, before);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let (best, forms) = equally_good(open, &fits, before)?;
-        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), None)
+        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), (None, None))
     }
 
     /// Adds laws one by one, as long as much is left.
-    fn add_laws(&self, mut here: Fit, mut lawful: Option<Lawful>, mut begun: Option<Proposals>) -> Option<Lawful> {
+    fn add_laws(
+        &self,
+        mut here: Fit,
+        mut lawful: Option<Lawful>,
+        (plain, mut wide): (Option<Proposals>, Option<Proposals>),
+    ) -> Option<Lawful> {
         let open = self.open;
-        begun = begun.map(|b| b.again(open));
+        let mut begun = plain.map(|b| b.again(open));
         for _ in usize::from(lawful.is_some())..self.most() {
             let is_all = lawful.is_some() && !leaves_something(open, &here);
             if is_explained(open, &self.found.baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
@@ -272,7 +279,7 @@ impl Search<'_> {
             };
             let Some(first) = proposals.fits.first() else { break };
             if lawful.is_none() && leaves_something(open, first) && self.may_be_wider(first) {
-                proposals.fits = wider(open, &here, proposals.fits, self.say);
+                proposals.fits = wider(open, &here, proposals.fits, wide.take(), self.say);
             }
             let Some(first) = proposals.fits.first() else { break };
             if here.cost - first.cost < least_gain(open.samples()) {
@@ -316,8 +323,9 @@ pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -
 }
 
 /// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
-fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, say: &dyn Fn(String)) -> Vec<Fit> {
-    let Some(wide) = propose(open, from, Reach::Wide, say) else { return plain };
+fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>, say: &dyn Fn(String)) -> Vec<Fit> {
+    let wide = known.map(|wide| wide.again(open)).or_else(|| propose(open, from, Reach::Wide, say));
+    let Some(wide) = wide else { return plain };
     let criterion = Criterion::of(open, plain.first().into_iter().chain(wide.fits.first()));
     let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
     if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }

@@ -2,7 +2,7 @@
 
 use super::forms::equally_good;
 use super::hypothesis::{Lawful, Tried, is_clearly_better, leaves_something, renewed, without_idle};
-use super::unlisted::propose;
+use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
@@ -34,8 +34,19 @@ pub(in crate::diagnose) fn pair(
     let first = tried.proposals.as_ref().and_then(|p| p.fits.first()).cloned();
     // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
-    let law = first.filter(|_| is_asked && leaves_something(&open, &found.best));
-    let Some(lawful) = law.and_then(|law| with_partner(&open, (&found.baseline, &law), variants, say)) else {
+    let Some(law) = first.filter(|_| is_asked && leaves_something(&open, &found.best)) else {
+        return Pair::Part(Box::new(tried));
+    };
+    // One law that remembers or depends on two variables is simpler than two things.
+    tried.wide = propose(&open, &found.baseline, Reach::Wide, say);
+    let single = tried.wide.as_ref().and_then(|wide| explains_all(&open, found, wide));
+    if let Some(lawful) = single
+        && let Some((found, noise)) = renewed(case, noise, lawful.beside(found), say)
+    {
+        return Pair::All(Box::new(found), noise);
+    }
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    let Some(lawful) = with_partner(&open, (&found.baseline, &law), variants, say) else {
         return Pair::Part(Box::new(tried));
     };
     if !lawful.best.model.effects.iter().any(|e| e.entry.hypothetical) {
@@ -55,6 +66,13 @@ pub(in crate::diagnose) fn pair(
         tried.instead = Some(lawful);
     }
     Pair::Part(Box::new(tried))
+}
+
+/// The best of proposals, where it leaves nothing and is clearly better than what was found.
+fn explains_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<Lawful> {
+    let (best, forms) = equally_good(open, &proposals.fits, found.baseline.cost)?;
+    let is_all = !leaves_something(open, &best) && is_clearly_better(open, found, &best);
+    is_all.then(|| Lawful { best, forms, located: proposals.located.clone() })
 }
 
 /// Of two things, the same with an effect of the catalogue in the place of a law, where that leaves little. It is sought where the law

@@ -36,12 +36,12 @@ impl<D: Scalar> Act<D> {
         }
     }
 
-    /// What laws of a sense do.
+    /// The only law there.
     #[inline]
-    pub fn of(&self, sense: Sense) -> D {
+    pub fn set(&mut self, sense: Sense, value: D) {
         match sense {
-            Sense::Adds => self.add,
-            Sense::Scales => self.scale,
+            Sense::Adds => self.add = value,
+            Sense::Scales => self.scale = value,
         }
     }
 
@@ -117,7 +117,10 @@ pub struct Acts<D> {
     pub travel_m: Vec<D>,
     /// Of each muscle: what laws of the plunger add to the piston's speed, m/s.
     pub piston_m_s: Vec<D>,
+    /// Of each law at each element: its value's program as it was run last, for the slopes at the same instant.
     pub(super) registers: Vec<D>,
+    /// For all other programs.
+    pub(super) scratch: Vec<D>,
 }
 
 impl<D: Scalar> Acts<D> {
@@ -132,6 +135,7 @@ impl<D: Scalar> Acts<D> {
             travel_m: vec![zero; cables],
             piston_m_s: vec![zero; muscles],
             registers: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 }

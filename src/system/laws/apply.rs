@@ -64,24 +64,23 @@ impl<D: Scalar> MusclePlant<D> {
         }
     }
 
-    /// The stock forces, of the elastic law beside them, with what laws do to each of their terms.
+    /// Does to each term of the stock forces, of the elastic law beside them, what laws do to it.
     #[inline(always)]
-    pub(in crate::system) fn forces_under(
+    pub(in crate::system) fn put_under(
         &self,
-        (stock, elastic): (MuscleForces<D>, ElasticPoint<D>),
+        (forces, elastic): (&mut MuscleForces<D>, &ElasticPoint<D>),
         acts: &MuscleActs<D>,
         z: D,
         slow: &[D],
         greatest_j: D,
-    ) -> MuscleForces<D> {
-        let mut forces = stock;
+    ) {
         if acts.stand_at(ELASTIC) {
-            self.elastic_under((&mut forces, elastic), acts, slow, greatest_j);
+            self.elastic_under((forces, elastic), acts, slow, greatest_j);
         }
         if acts.stand_at(DRY) {
-            let level = self.friction.as_ref().map_or(D::constant(0.0), |f| f.level_n(stock.pressure_pa));
+            let level = self.friction.as_ref().map_or(D::constant(0.0), |f| f.level_n(forces.pressure_pa));
             forces.friction_n = acts.at(Port::Friction).on(level) * z;
-            forces.damping_n = acts.at(Port::Damping).on(stock.damping_n);
+            forces.damping_n = acts.at(Port::Damping).on(forces.damping_n);
         }
         if acts.stand_at(&[Port::Pull]) {
             let whole = acts.at(Port::Pull);
@@ -101,21 +100,20 @@ impl<D: Scalar> MusclePlant<D> {
                 forces.port.compliance_m3_pa += acts.at(Port::LineCompliance).on(last) - last;
             }
         }
-        forces
     }
 
     /// Wall, coil and pressure under their laws. What relaxation, preload and the like add has no port of its own and stays.
     #[inline(never)]
     fn elastic_under(
         &self,
-        (forces, before): (&mut MuscleForces<D>, ElasticPoint<D>),
+        (forces, before): (&mut MuscleForces<D>, &ElasticPoint<D>),
         acts: &MuscleActs<D>,
         slow: &[D],
         greatest_j: D,
     ) {
         let (e, v, p) = (forces.elongation_m, forces.speed_m_s, forces.pressure_pa);
         let longer = acts.at(Port::RestLength).add;
-        let law = if acts.stand_at(&[Port::RestLength]) { self.seen(e - longer, p, slow, greatest_j) } else { before };
+        let law = if acts.stand_at(&[Port::RestLength]) { self.seen(e - longer, p, slow, greatest_j) } else { *before };
         let terms = Terms::new(self, &law, e - longer - self.extras.set_m(slow), v, p);
         let area = acts.at(Port::Area).on(terms.area_m2);
         let (wall, coil) = (acts.at(Port::Wall), acts.at(Port::Coil));

@@ -67,7 +67,7 @@ impl PlantLaws<f64> {
     fn is_given_nonsense(&self, instance: &Instance, plant: &Plant<f64>, now: &Instant<f64>, acts: &Acts<f64>) -> bool {
         let variables = self.laws[instance.law].symbols.iter().zip(&instance.sources);
         let mut of_variables = variables.filter(|(symbol, _)| matches!(symbol, Symbol::Variable(_)));
-        of_variables.any(|(_, source)| !self.read(*source, instance, plant, now, acts).is_finite())
+        of_variables.any(|(_, source)| !self.read(*source, instance, plant, now, &acts.tension_n).is_finite())
     }
 
     /// The first law that cannot be followed at a state.
@@ -76,7 +76,7 @@ impl PlantLaws<f64> {
         let mut acts = self.afresh(plant, &now);
         for instance in &self.instances {
             let law = &self.laws[instance.law];
-            let value = self.evaluate(&law.programs.value, instance, plant, &now, &mut acts, 0);
+            let value = self.value(instance, plant, &now, &mut acts);
             let (at, port) = (instance.at, instance.port);
             let states = &now.at.law_states()[instance.state_at..][..law.states.len()];
             let is_turned = self.coefficient(plant, &acts, port, at).is_some_and(|c| c <= 0.0);
@@ -93,7 +93,7 @@ impl PlantLaws<f64> {
             if let Some(what) = fault {
                 let values = law.symbols.iter().enumerate().filter_map(|(i, symbol)| match symbol {
                     Symbol::Variable(v) => {
-                        let value = self.read(instance.sources[i], instance, plant, &now, &acts);
+                        let value = self.read(instance.sources[i], instance, plant, &now, &acts.tension_n);
                         Some(format!("{} = {value:.4e}", v.name()))
                     }
                     _ => None,

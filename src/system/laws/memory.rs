@@ -38,7 +38,7 @@ impl<D: Scalar> PlantLaws<D> {
             }
             self.run(&law.programs.rates, instance, plant, now, acts);
             for s in 0..law.states.len() {
-                out[instance.state_at + s] = law.programs.rates.output(s, &acts.registers);
+                out[instance.state_at + s] = law.programs.rates.output(s, &acts.scratch);
             }
         }
         self.travel_rates(plant, now, acts, out);

@@ -16,7 +16,9 @@ mod slopes;
 mod tangents;
 mod visited;
 
-use crate::laws::{Carrier, Law, Port, Quantity};
+use std::sync::Arc;
+
+use crate::laws::{Acts as Sense, Carrier, Law, Port, Program, Programs, Quantity};
 use crate::scalar::Scalar;
 
 use super::install::Site;
@@ -30,14 +32,16 @@ pub use power::law_powers;
 pub(super) use power::line_drop;
 pub(super) use sensor::LawSensor;
 pub(super) use slopes::MuscleSlopes;
+use slopes::Slopes;
 pub(super) use tangents::LawTangents;
 pub(super) use visited::Visit;
 
 /// A law at one element.
 #[derive(Clone, Debug, PartialEq)]
 struct Instance {
-    /// Index of the law, and its port.
+    /// Index of the law, how it acts, and its port.
     law: usize,
+    sense: Sense,
     port: Port,
     /// The port's: asked for at every stage.
     carrier: Carrier,
@@ -45,8 +49,12 @@ struct Instance {
     is_alone: bool,
     /// Muscle, cable or direction.
     at: usize,
-    /// Where each symbol of the law is read.
+    /// Where each symbol of the law is read, and those that its value needs, in the order of the program.
     sources: Vec<Source>,
+    reads: Vec<Source>,
+    programs: Arc<Programs>,
+    /// Where the registers of its value begin among those of all.
+    registers_at: usize,
     /// Where its states begin among those of all laws.
     state_at: usize,
 }
@@ -69,6 +77,8 @@ pub struct PlantLaws<D> {
     rubs: bool,
     joint_sites: Vec<usize>,
     states: usize,
+    /// Number of registers that all values need.
+    registers: usize,
 }
 
 impl<D: Scalar> PlantLaws<D> {
@@ -87,6 +97,7 @@ impl<D: Scalar> PlantLaws<D> {
             rubs: false,
             joint_sites: Vec::new(),
             states: 0,
+            registers: 0,
         }
     }
 
@@ -104,7 +115,20 @@ impl<D: Scalar> PlantLaws<D> {
             let (port, carrier) = (law.address.port, law.address.port.spec().carrier);
             let is_alone = !self.instances.iter().any(|i| i.port == port && i.at == at);
             self.instances.iter_mut().filter(|i| i.port == port && i.at == at).for_each(|i| i.is_alone = false);
-            self.instances.push(Instance { law: index, port, carrier, is_alone, at, sources, state_at: self.states });
+            self.instances.push(Instance {
+                law: index,
+                sense: law.acts,
+                port,
+                carrier,
+                is_alone,
+                at,
+                reads: law.programs.value.symbols().iter().map(|symbol| sources[*symbol]).collect(),
+                sources,
+                programs: law.programs.clone(),
+                registers_at: self.registers,
+                state_at: self.states,
+            });
+            self.registers += law.programs.value.registers();
             self.states += law.states.len();
         }
         if law.address.port == Port::Lever && self.travel_at.is_none() {
@@ -143,12 +167,14 @@ impl<D: Scalar> PlantLaws<D> {
             rubs: self.rubs,
             joint_sites: self.joint_sites.clone(),
             states: self.states,
+            registers: self.registers,
         }
     }
 
     /// Room for what they do.
     pub fn room(&self, plant: &Plant<D>) -> Acts<D> {
         let mut acts = Acts::new(plant.muscles.len(), plant.cables.len(), self.rig.directions.len());
+        acts.registers.resize(self.registers, D::constant(0.0));
         for instance in &self.instances {
             let (port, at) = (instance.port, instance.at);
             match instance.carrier {
@@ -157,6 +183,8 @@ impl<D: Scalar> PlantLaws<D> {
                 Carrier::Joint => acts.joints[at].note(port),
                 Carrier::Sensor => {}
             }
+            let scratch = instance.programs.of_states().map(Program::registers).into_iter().max().unwrap_or(0);
+            acts.scratch.resize(scratch.max(acts.scratch.len()), D::constant(0.0));
         }
         acts
     }
@@ -185,9 +213,9 @@ impl<D: Scalar> PlantLaws<D> {
 
     /// Evaluates the first so many laws.
     fn act_first<const N: usize>(&self, count: usize, plant: &Plant<D>, now: &Instant<D, N>, acts: &mut Acts<D>) {
-        for instance in &self.instances {
-            self.clear(instance, acts);
-        }
+        // Where a law is alone, its value takes the place of the last one.
+        let is_cleared = |i: &&Instance| !i.is_alone || i.law >= count || i.port == Port::Plunger;
+        self.instances.iter().filter(is_cleared).for_each(|i| self.clear(i, acts));
         let wanted = || self.instances.iter().filter(|i| i.law < count);
         let is_cable = |i: &&Instance| i.carrier == Carrier::Cable;
         if !plant.cables.is_empty() {
@@ -228,18 +256,42 @@ impl<D: Scalar> PlantLaws<D> {
         if instance.port == Port::Plunger {
             return self.move_piston(instance, plant, now, acts);
         }
-        let law = &self.laws[instance.law];
-        let value = self.evaluate(&law.programs.value, instance, plant, now, acts, 0);
-        if let Some(act) = Self::act_of_mut(instance, acts) {
-            act.join(law.acts, value);
+        let value = self.value(instance, plant, now, acts);
+        let sense = instance.sense;
+        match Self::act_of_mut(instance, acts) {
+            Some(act) if instance.is_alone => act.set(sense, value),
+            Some(act) => act.join(sense, value),
+            None => {}
         }
+    }
+
+    /// Value of a law; its registers are kept for the slopes.
+    #[inline]
+    fn value<const N: usize>(
+        &self,
+        instance: &Instance,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        acts: &mut Acts<D>,
+    ) -> D {
+        let tension_n = &acts.tension_n;
+        let read = |source: &Source| self.read(*source, instance, plant, now, tension_n);
+        instance.programs.value.run_first(instance.reads.iter().map(read), &mut acts.registers[instance.registers_at..])
+    }
+
+    /// Slopes of a law whose value was evaluated last at the same instant, by [`crate::laws::SLOPES`] and then its states; `registers` are those of the acts.
+    fn slopes<'a>(instance: &'a Instance, registers: &'a mut [D]) -> Slopes<'a, D> {
+        let program = &instance.programs.value;
+        let registers = &mut registers[instance.registers_at..];
+        program.run_rest(registers);
+        Slopes { program, registers }
     }
 
     /// Runs a program of a law and reads one of its results.
     #[inline]
     fn evaluate<const N: usize>(
         &self,
-        program: &crate::laws::Program,
+        program: &Program,
         instance: &Instance,
         plant: &Plant<D>,
         now: &Instant<D, N>,
@@ -247,34 +299,33 @@ impl<D: Scalar> PlantLaws<D> {
         output: usize,
     ) -> D {
         self.run(program, instance, plant, now, acts);
-        program.output(output, &acts.registers)
+        program.output(output, &acts.scratch)
     }
 
-    /// Runs a program of a law; its results stand in the registers of the acts.
+    /// Runs a program of a law's states; its results stand in the scratch registers of the acts.
     #[inline]
     fn run<const N: usize>(
         &self,
-        program: &crate::laws::Program,
+        program: &Program,
         instance: &Instance,
         plant: &Plant<D>,
         now: &Instant<D, N>,
         acts: &mut Acts<D>,
     ) {
-        let mut registers = std::mem::take(&mut acts.registers);
-        let read = |symbol: &usize| self.read(instance.sources[*symbol], instance, plant, now, acts);
-        program.run(program.symbols().iter().map(read), &mut registers);
-        acts.registers = registers;
+        let tension_n = &acts.tension_n;
+        let read = |symbol: &usize| self.read(instance.sources[*symbol], instance, plant, now, tension_n);
+        program.run(program.symbols().iter().map(read), &mut acts.scratch);
     }
 
-    /// Value of a symbol at an instant.
-    #[inline]
+    /// Value of a symbol at an instant; `tension_n` are those of the cables.
+    #[inline(always)]
     fn read<const N: usize>(
         &self,
         source: Source,
         instance: &Instance,
         plant: &Plant<D>,
         now: &Instant<D, N>,
-        acts: &Acts<D>,
+        tension_n: &[D],
     ) -> D {
         let at = &now.at;
         match source {
@@ -287,7 +338,7 @@ impl<D: Scalar> PlantLaws<D> {
             Source::InputSpeed(i) => D::constant(now.inputs[i].slope),
             Source::FrictionState(m) => at.z(m),
             Source::Stretch(c) => plant.cables[c].stretch_and_rate(now).0,
-            Source::Tension(c) => acts.tension_n[c],
+            Source::Tension(c) => tension_n[c],
             Source::Along(d) => dot::<_, N>(&self.rig.directions[d].direction, at.y()),
             Source::AlongSpeed(d) => dot::<_, N>(&self.rig.directions[d].direction, at.w()),
             Source::Time => D::constant(now.time_s()),

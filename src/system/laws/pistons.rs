@@ -62,18 +62,18 @@ impl<D: Scalar> PlantLaws<D> {
             Drive::Hydraulic { plunger, .. } => now.inputs[*plunger].slope,
             Drive::Pressure { .. } => 0.0,
         };
-        self.run(&programs.slopes, instance, plant, now, acts);
-        let slope = |i: usize| programs.slopes.output(i, &acts.registers);
+        self.value(instance, plant, now, acts);
+        let slopes = Self::slopes(instance, &mut acts.registers);
         let mut moves = Moves {
-            by_input_m_s: slope(TIME) + slope(PLUNGER) * plunger_m_s,
+            by_input_m_s: slopes.to(TIME) + slopes.to(PLUNGER) * plunger_m_s,
             by_states_m_s: D::constant(0.0),
-            by_pressure_m_pa: slope(PRESSURE),
+            by_pressure_m_pa: slopes.to(PRESSURE),
         };
         let states = self.laws[instance.law].states.len();
         if states > 0 {
-            let by_state: Vec<D> = (0..states).map(|i| slope(SLOPES.len() + i)).collect();
+            let by_state: Vec<D> = (0..states).map(|i| slopes.to(SLOPES.len() + i)).collect();
             self.run(&programs.rates, instance, plant, now, acts);
-            let rate = |i: usize| programs.rates.output(i, &acts.registers);
+            let rate = |i: usize| programs.rates.output(i, &acts.scratch);
             moves.by_states_m_s = by_state.into_iter().enumerate().map(|(i, slope)| slope * rate(i)).sum();
         }
         moves
@@ -81,7 +81,7 @@ impl<D: Scalar> PlantLaws<D> {
 
     /// `f` of one law at an instant, m.
     fn ahead_m(&self, instance: &Instance, plant: &Plant<D>, now: &Instant<D>, acts: &mut Acts<D>) -> D {
-        self.evaluate(&self.laws[instance.law].programs.value, instance, plant, now, acts, 0)
+        self.value(instance, plant, now, acts)
     }
 
     /// Where each law of a plunger puts its piston: index of the law, of the muscle, m.

@@ -91,6 +91,7 @@ impl<D: Scalar> LawSensor<D> {
 
     fn evaluate(&mut self, program: &Program, output: usize, time_s: f64, reading: D) -> D {
         let mut registers = std::mem::take(&mut self.registers);
+        registers.resize(program.registers().max(registers.len()), D::constant(0.0));
         let read = |symbol: &usize| match self.law.symbols[*symbol] {
             Symbol::Variable(v) if v.quantity == Quantity::Reading => reading,
             Symbol::Variable(_) => D::constant(time_s),

@@ -31,8 +31,9 @@ impl PlantLaws<f64> {
         let mut frame = |instance: &Instance| {
             let law = &self.laws[instance.law];
             let first = law.symbols.iter().position(|s| matches!(s, Symbol::Variable(_)));
-            let variable = first.map_or(f64::NAN, |i| self.read(instance.sources[i], instance, plant, &now, &acts));
-            LawFrame { value: self.evaluate(&law.programs.value, instance, plant, &now, &mut acts, 0), variable }
+            let variable =
+                first.map_or(f64::NAN, |i| self.read(instance.sources[i], instance, plant, &now, &acts.tension_n));
+            LawFrame { value: self.value(instance, plant, &now, &mut acts), variable }
         };
         self.instances.iter().map(&mut frame).collect()
     }

@@ -3,7 +3,7 @@
 //! They decide over stability alone: the method is of second order whatever stands in for the Jacobian. A law's dependence on
 //! the element's own elongation, speed, pressure, angle and state is kept, that on its neighbours is left out.
 
-use crate::laws::{Acts as Sense, Carrier, Memory, Port, SLOPES};
+use crate::laws::{Acts as Sense, Carrier, Memory, Port, Program, SLOPES};
 use crate::scalar::Scalar;
 use crate::system::plant::{Drive, Instant, MuscleForces, Plant};
 
@@ -107,34 +107,51 @@ impl<D: Scalar> Muscle<D> {
     }
 }
 
-impl<D: Scalar> PlantLaws<D> {
-    /// Change of what acts at an instance's port with one of the outputs of its slopes, which have been run.
-    fn change(&self, instance: &Instance, value: D, acts: &Acts<D>, output: usize, total: D) -> Act<D> {
-        let law = &self.laws[instance.law];
-        let slope = law.programs.slopes.output(output, &acts.registers);
-        let zero = D::constant(0.0);
-        match law.acts {
-            Sense::Adds => Act { add: slope, scale: zero },
-            // Of a product: the others as they are.
-            Sense::Scales if value.is_at(0.0) => Act { add: zero, scale: slope },
-            Sense::Scales => Act { add: zero, scale: slope * (total / value) },
-        }
+/// Slopes of a law's value at an instant.
+pub(super) struct Slopes<'a, D> {
+    pub program: &'a Program,
+    pub registers: &'a [D],
+}
+
+impl<D: Scalar> Slopes<'_, D> {
+    /// To a quantity or a state, in the order of [`SLOPES`].
+    #[inline]
+    pub fn to(&self, index: usize) -> D {
+        self.program.output(1 + index, self.registers)
     }
 
-    /// The value of a law whose slopes are wanted: where it is the only one at its port it is what acts there.
+    /// Whether there is one.
     #[inline]
-    fn value_in_slope<const N: usize>(
-        &self,
-        instance: &Instance,
-        plant: &Plant<D>,
-        now: &Instant<D, N>,
-        acts: &mut Acts<D>,
-    ) -> D {
-        let law = &self.laws[instance.law];
-        match Self::act_of_mut(instance, acts) {
-            Some(act) if instance.is_alone => act.of(law.acts),
-            _ => self.evaluate(&law.programs.value, instance, plant, now, acts, 0),
+    fn depends_on(&self, index: usize) -> bool {
+        !self.program.is_nothing(1 + index)
+    }
+}
+
+/// How what acts at a port changes with what one of its laws depends on.
+struct Change<'a, D> {
+    sense: Sense,
+    /// What the other laws there scale by.
+    others: Option<D>,
+    slopes: Slopes<'a, D>,
+}
+
+impl<D: Scalar> Change<'_, D> {
+    fn with(&self, index: usize) -> Act<D> {
+        let (slope, zero) = (self.slopes.to(index), D::constant(0.0));
+        match self.sense {
+            Sense::Adds => Act { add: slope, scale: zero },
+            Sense::Scales => Act { add: zero, scale: self.others.map_or(slope, |others| slope * others) },
         }
+    }
+}
+
+impl<D: Scalar> PlantLaws<D> {
+    /// Of an instance whose law was evaluated last at the same instant; `total` is what all laws at its port scale by.
+    fn change<'a>(instance: &'a Instance, total: D, registers: &'a mut [D]) -> Change<'a, D> {
+        let slopes = Self::slopes(instance, registers);
+        let value = slopes.program.output(0, slopes.registers);
+        let others = (!instance.is_alone && !value.is_at(0.0)).then(|| total / value);
+        Change { sense: instance.sense, others, slopes }
     }
 
     fn at<'a>(&'a self, wanted: Carrier, at: usize) -> impl Iterator<Item = &'a Instance> + 'a {
@@ -190,24 +207,26 @@ impl<D: Scalar> PlantLaws<D> {
         let muscle = self.muscle(i, plant, forces, now.at.z(i), &acts.muscles[i], memory);
         for instance in self.at(Carrier::Muscle, i).filter(|x| x.port != Port::Plunger) {
             let (port, law) = (instance.port, &self.laws[instance.law]);
-            let value = self.value_in_slope(instance, plant, now, acts);
-            self.run(&law.programs.slopes, instance, plant, now, acts);
-            let total = acts.muscles[i].at(port).scale;
-            let change = |output: usize| self.change(instance, value, acts, output, total);
-            slopes.pull_n_m += muscle.pull_per(port, &change(ELONGATION));
-            slopes.pull_n_s_m += muscle.pull_per(port, &change(SPEED));
-            slopes.pull_n_pa += muscle.pull_per(port, &change(PRESSURE));
+            let change = Self::change(instance, acts.muscles[i].at(port).scale, &mut acts.registers);
+            let pull_per = |output: usize| muscle.pull_per(port, &change.with(output));
+            for (slope, output) in
+                [(&mut slopes.pull_n_m, ELONGATION), (&mut slopes.pull_n_s_m, SPEED), (&mut slopes.pull_n_pa, PRESSURE)]
+            {
+                if change.slopes.depends_on(output) {
+                    *slope += pull_per(output);
+                }
+            }
             match port {
-                Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change(PRESSURE).add,
-                Port::Outflow => slopes.conductance_m3_s_pa[1] += change(PRESSURE).add,
+                Port::SyringeFlow => slopes.conductance_m3_s_pa[0] += change.with(PRESSURE).add,
+                Port::Outflow => slopes.conductance_m3_s_pa[1] += change.with(PRESSURE).add,
                 Port::Resistance | Port::PressureDrop => {
-                    slopes.drop_pa_s_m3 += line_slope(port, &acts.muscles[i], plant, i, now, &change(FLOW));
+                    let by_flow = change.with(FLOW);
+                    slopes.drop_pa_s_m3 += line_slope(port, &acts.muscles[i], plant, i, now, &by_flow);
                 }
                 _ => {}
             }
             if !law.states.is_empty() {
-                let pulls: Vec<D> =
-                    (0..law.states.len()).map(|s| muscle.pull_per(port, &change(SLOPES.len() + s))).collect();
+                let pulls: Vec<D> = (0..law.states.len()).map(|s| pull_per(SLOPES.len() + s)).collect();
                 self.state_tangents(instance, plant, now, acts, (g, states, &pulls));
             }
         }
@@ -225,7 +244,7 @@ impl<D: Scalar> PlantLaws<D> {
         let law = &self.laws[instance.law];
         self.run(&law.programs.rate_slopes, instance, plant, now, acts);
         for (s, _) in law.states.iter().enumerate().filter(|(_, s)| s.memory == Memory::Rate) {
-            let slope = |k: usize| law.programs.rate_slopes.output(3 * s + k, &acts.registers) * g;
+            let slope = |k: usize| law.programs.rate_slopes.output(3 * s + k, &acts.scratch) * g;
             let is_muscle = instance.carrier == Carrier::Muscle;
             states[instance.state_at + s] = StateTangent {
                 damper: (-slope(0) + 1.0).recip(),
@@ -275,10 +294,8 @@ impl<D: Scalar> PlantLaws<D> {
             let stretched = cable.stiffness_n_m * pull.stretch_m;
             let sum = elastic.on(stretched) + cable.damping_n_s_m * pull.rate_m_s;
             for instance in self.at(Carrier::Cable, i) {
-                let (port, law) = (instance.port, &self.laws[instance.law]);
-                let value = self.value_in_slope(instance, plant, now, acts);
-                self.run(&law.programs.slopes, instance, plant, now, acts);
-                let change = self.change(instance, value, acts, STRETCH, own.at(port).scale);
+                let port = instance.port;
+                let change = Self::change(instance, own.at(port).scale, &mut acts.registers).with(STRETCH);
                 stiffness += match port {
                     Port::CableStiffness => (stretched * change.scale + change.add) * whole.scale,
                     Port::Tension => sum * change.scale + change.add,
@@ -308,10 +325,8 @@ impl<D: Scalar> PlantLaws<D> {
         let mut slopes = JointSlopes { by_position: D::constant(0.0), by_speed: D::constant(0.0) };
         let whole = own.at(Port::Torque).scale;
         for instance in self.at(Carrier::Joint, site) {
-            let (port, law) = (instance.port, &self.laws[instance.law]);
-            let value = self.value_in_slope(instance, plant, now, acts);
-            self.run(&law.programs.slopes, instance, plant, now, acts);
-            let change = |output: usize| self.change(instance, value, acts, output, own.at(port).scale);
+            let port = instance.port;
+            let change = Self::change(instance, own.at(port).scale, &mut acts.registers);
             let torque = |act: Act<D>| match port {
                 Port::JointStiffness => -((spring * act.scale + act.add) * whole),
                 Port::JointDamping => -((damper * act.scale + act.add) * whole),
@@ -320,8 +335,8 @@ impl<D: Scalar> PlantLaws<D> {
                     -(sum * act.scale) + act.add
                 }
             };
-            slopes.by_position += torque(change(position));
-            slopes.by_speed += torque(change(speed));
+            slopes.by_position += torque(change.with(position));
+            slopes.by_speed += torque(change.with(speed));
         }
         slopes
     }

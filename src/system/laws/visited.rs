@@ -38,7 +38,7 @@ impl Visit {
             let symbol = self.probe.laws[law].symbols.iter().position(is_variable);
             let instance = self.probe.instances.iter().find(|i| i.law == law);
             let (Some(symbol), Some(instance)) = (symbol, instance) else { continue };
-            series.push(self.probe.read(instance.sources[symbol], instance, plant, &now, &acts));
+            series.push(self.probe.read(instance.sources[symbol], instance, plant, &now, &acts.tension_n));
         }
     }
 }
