@@ -76,7 +76,7 @@ impl Begun {
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
         let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
         let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
-        let way = climb(&mut swaps, &baseline, way, &mut seen, (1, Bound(None)), say);
+        let way = climb(&mut swaps, &baseline, way, &mut seen, (Up::to(1), Bound(None)), say);
         Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
     }
 
@@ -98,10 +98,11 @@ impl Begun {
         Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
     }
 
-    /// Goes on to so many effects, and no further.
+    /// Goes on to so many effects one by one, and no further.
     pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
         let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
-        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (most, Bound(None)), say);
+        let singly = Up { most, is_singly: true };
+        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (singly, Bound(None)), say);
         self.known = swaps.known;
         self
     }
@@ -130,7 +131,7 @@ impl Begun {
         if self.is_new && self.way.best.model.effects.is_empty() {
             self.way = several_to_begin(&mut swaps, self.way, say);
         }
-        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (MOST_EFFECTS, law), say);
+        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (Up::to(MOST_EFFECTS), law), say);
         let best = &self.way.best;
         let is_done = law.outdoes(problem, &baseline, best) || !leaves_much(problem, &baseline, best);
         if !self.is_new || best.model.effects.len() < 2 || is_done {
@@ -146,7 +147,7 @@ impl Begun {
             say(format!("once more, beginning with {}", other.model.title()));
             let mut way = Way::at(other, Vec::new());
             for most in 2..=MOST_EFFECTS {
-                way = climb(&mut swaps, &baseline, way, &mut self.seen, (most, law), say);
+                way = climb(&mut swaps, &baseline, way, &mut self.seen, (Up::to(most), law), say);
                 if self.seen.is_behind(&way.best) {
                     break;
                 }
@@ -193,13 +194,15 @@ struct Way {
     first: Vec<Fit>,
     /// What the effects promise at `best`, where that is known.
     screening: Option<Screening>,
+    /// The refits with one effect more, where that has been tried and none does its share by itself.
+    none_alone: Option<Vec<Fit>>,
     /// Whether nothing that can be added helps.
     is_at_end: bool,
 }
 
 impl Way {
     fn at(best: Fit, rivals: Vec<Vec<Fit>>) -> Self {
-        Self { best, rivals, first: Vec::new(), screening: None, is_at_end: false }
+        Self { best, rivals, first: Vec::new(), screening: None, none_alone: None, is_at_end: false }
     }
 }
 
@@ -244,20 +247,48 @@ fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &d
     Some(next)
 }
 
-/// Adds effect by effect up to so many, and settles after each, until nothing helps, a law outdoes them or another way has been there.
+/// How far up a way goes.
+#[derive(Clone, Copy)]
+struct Up {
+    most: usize,
+    /// Whether several effects at once, where none helps by itself, are left for later: they are the dearest step of all.
+    is_singly: bool,
+}
+
+impl Up {
+    fn to(most: usize) -> Self {
+        Self { most, is_singly: false }
+    }
+}
+
+/// Adds effect by effect, and settles after each, until nothing helps, a law outdoes them or another way has been there.
 fn climb(
     swaps: &mut Swaps,
     baseline: &Fit,
     mut way: Way,
     seen: &mut Seen,
-    (most, law): (usize, Bound),
+    (up, law): (Up, Bound),
     say: &dyn Fn(String),
 ) -> Way {
     let problem = swaps.problem;
-    while !way.is_at_end && way.best.model.effects.len() < most && !law.outdoes(problem, baseline, &way.best) {
+    while !way.is_at_end && way.best.model.effects.len() < up.most && !law.outdoes(problem, baseline, &way.best) {
         let best = &way.best;
-        let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants));
-        let next = screening.and_then(|screening| step_up(swaps, baseline, best, &screening, &mut way.first, say));
+        let tried = way.none_alone.take().map(Tried::NoneAlone).or_else(|| {
+            let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants))?;
+            Some(step_up(swaps, baseline, best, &screening, &mut way.first, say))
+        });
+        let next = match tried {
+            Some(Tried::Better(next)) => Some(next),
+            Some(Tried::NoneAlone(refits)) if up.is_singly && !best.model.effects.is_empty() => {
+                way.none_alone = Some(refits);
+                break;
+            }
+            Some(Tried::NoneAlone(refits)) if !best.model.effects.is_empty() => {
+                together(swaps, best, &refits, least_of(problem, baseline, best), say)
+            }
+            // From the calibration alone: [`several_to_begin`].
+            Some(Tried::NoneAlone(_)) | None => None,
+        };
         match next {
             Some(next) => {
                 (way.best, way.rivals) = (next.best, next.rivals);
@@ -269,8 +300,19 @@ fn climb(
     way
 }
 
-/// The best with one effect more, settled, or with several; none where nothing helps. `first` gets the refits where there was none
-/// before: several to begin with are for [`several_to_begin`].
+/// What comes of one effect more.
+enum Tried {
+    Better(Settled),
+    /// None does its share by itself; with the refits of all that were tried, of which several together may.
+    NoneAlone(Vec<Fit>),
+}
+
+/// Fall of chi² that is worth an effect beside a fit.
+fn least_of(problem: &Problem, baseline: &Fit, best: &Fit) -> f64 {
+    least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0))
+}
+
+/// The best with one effect more, settled. `first` gets the refits where there was none before.
 fn step_up(
     swaps: &mut Swaps,
     baseline: &Fit,
@@ -278,9 +320,9 @@ fn step_up(
     screening: &Screening,
     first: &mut Vec<Fit>,
     say: &dyn Fn(String),
-) -> Option<Settled> {
+) -> Tried {
     let problem = swaps.problem;
-    let least = least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0));
+    let least = least_of(problem, baseline, best);
     let refits = refit(problem, screening, &pick(&screening.screened, least, Swallowed::Any));
     let refits = afresh(problem, refits);
     if best.model.effects.is_empty() {
@@ -291,14 +333,14 @@ fn step_up(
         .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
     swaps.keep_in_mind(best, &refits, least);
     let Some(winner) = first_that_foretells(problem, best, worthy, say).cloned() else {
-        return if best.model.effects.is_empty() { None } else { together(swaps, best, &refits, least, say) };
+        return Tried::NoneAlone(refits);
     };
     say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
     if winner.model.effects.len() > 1 {
-        return Some(swaps.settle(winner, least, Some(Stage { before: best, refits: &refits }), say));
+        return Tried::Better(swaps.settle(winner, least, Some(Stage { before: best, refits: &refits }), say));
     }
     let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
-    Some(Settled { best: winner, rivals: vec![rivals] })
+    Tried::Better(Settled { best: winner, rivals: vec![rivals] })
 }
 
 /// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which
