@@ -10,11 +10,8 @@ use super::{Twin, TwinRun, TwinSetting};
 /// Steps in each interval of a [`TwinRun`]; the first entry is that of the first interval.
 pub type StepPlan = Arc<[u16]>;
 
-/// Longest steps, s: the first that does over the whole run, the last wherever nothing else does. At rest long ones can flutter about
-/// zero speed, and what is held by friction creeps, by less in one interval than any tolerance.
-const LONGEST_S: [f64; 2] = [5.0e-3, 2.5e-3];
-/// What a plan may leave out over a whole run, root mean square, in tolerances over one interval.
-const WHOLE: f64 = 5.0;
+/// Longest step, s: at rest longer ones flutter about zero speed, and what is held by friction creeps.
+const LONGEST_S: f64 = 2.5e-3;
 /// Where nothing rubs, nothing does.
 const LONGEST_SMOOTH_S: f64 = 2.0e-2;
 
@@ -29,8 +26,7 @@ const MOST: u16 = 256;
 
 impl Twin {
     /// Plans the steps of a run so that twice as many would change no output by more than its tolerance (in its
-    /// column's unit, by output; outputs with none are not looked at) over any one interval, and by more than a few over the whole run
-    /// unless that would take steps that are shorter than is ever needed.
+    /// column's unit, by output; outputs with none are not looked at) over any one interval.
     ///
     /// The plan is made at one setting and then kept for others nearby: a response that is planned anew at every
     /// setting would not be smooth. `None` when the simulation diverges.
@@ -38,34 +34,6 @@ impl Twin {
         if self.standalone.is_some() {
             return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
         }
-        let (longer, shortest) = match self.prepare(setting).0.may_rub() {
-            true => LONGEST_S.split_at(LONGEST_S.len() - 1),
-            false => (&[][..], &[LONGEST_SMOOTH_S][..]),
-        };
-        let plan = |longest_s: &f64| self.plan_with(*longest_s, run, setting, tolerance);
-        let holds = |plan: &StepPlan| self.holds(plan, run, setting, tolerance);
-        longer.iter().find_map(|longest_s| plan(longest_s).filter(holds)).or_else(|| shortest.iter().find_map(plan))
-    }
-
-    /// Whether twice as many steps would change little over the whole run.
-    fn holds(&self, plan: &StepPlan, run: &TwinRun, setting: &TwinSetting<f64>, tolerance: &[Option<f64>]) -> bool {
-        let play = |plan: StepPlan| self.simulate(&TwinRun { plan: Some(plan), ..run.clone() }, setting);
-        let doubled = plan.iter().map(|steps| 2 * steps).collect();
-        let (Some(coarse), Some(fine)) = (play(plan.clone()), play(doubled)) else { return false };
-        coarse.iter().zip(&fine).zip(tolerance).all(|((coarse, fine), tolerance)| {
-            let sum: f64 = coarse.iter().zip(fine).map(|(a, b)| (a - b).powi(2)).sum();
-            tolerance.is_none_or(|t| sum <= coarse.len() as f64 * (WHOLE * t).powi(2))
-        })
-    }
-
-    /// The plan whose steps are nowhere longer than this.
-    fn plan_with(
-        &self,
-        longest_s: f64,
-        run: &TwinRun,
-        setting: &TwinSetting<f64>,
-        tolerance: &[Option<f64>],
-    ) -> Option<StepPlan> {
         let (mut plant, state) = self.prepare(setting);
         let mut course = Course::new(&mut plant, state, run);
         let shown = |plant: &Plant<f64>, course: &Course<f64>| -> Vec<f64> {
@@ -73,6 +41,7 @@ impl Twin {
         };
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
+        let longest_s = if plant.may_rub() { LONGEST_S } else { LONGEST_SMOOTH_S };
         let greatest: Vec<f64> = run.inputs.iter().map(|x| greatest_slope(x, &run.times_s)).collect();
         let mut corner_s = run.times_s.first().copied().unwrap_or(0.0);
         for k in 1..run.times_s.len() {
