@@ -223,6 +223,13 @@ fn sets_are_found_where_no_effect_leads_to_them() {
     }
 }
 
+/// What a search says that may not ask for laws.
+fn answer_of_the_catalogue(folder: &Path) -> Diagnosis {
+    let mut case = Case::load(&[folder], None, &[]).unwrap_or_else(|e| panic!("{e}"));
+    case.leave_out(Step::OpenSet);
+    diagnose(case, Options { seed: 1 }, &|_| {}).unwrap_or_else(|e| panic!("{e}")).diagnosis
+}
+
 fn names_what_is_hidden(d: &Diagnosis, drawn: &Drawn) {
     assert_eq!(d.verdict, Verdict::MissingPhysics, "{}", d.summary);
     let mut named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
@@ -239,11 +246,7 @@ fn an_effect_that_two_runs_want_at_sizes_far_apart_stands_in_for_something_else(
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (name, drawn) = concealed(Hiding::Unlisted, [2028, 58], folder.path());
     assert_eq!(drawn.truth.secrets[0].name, "rate_stiffening");
-    let listed_only = {
-        let mut case = Case::load(&[folder.path().join(&name).as_path()], None, &[]).unwrap_or_else(|e| panic!("{e}"));
-        case.leave_out(Step::OpenSet);
-        diagnose(case, Options { seed: 1 }, &|_| {}).unwrap_or_else(|e| panic!("{e}")).diagnosis
-    };
+    let listed_only = answer_of_the_catalogue(&folder.path().join(&name));
     let stands_in = |w: &String| w.contains("than in chirp.csv, by more than");
     assert!(listed_only.warnings.iter().any(stands_in), "{:?}", listed_only.warnings);
     let d = answer(&folder.path().join(name));
@@ -264,13 +267,17 @@ fn what_two_effects_only_imitate_is_unknown() {
 }
 
 /// What two sensor effects of altered form leave over looks like plastic set, in some runs; the held-out one would have the set undo itself.
+/// A search that may ask for laws as well does not come by it.
 #[test]
 fn an_effect_that_a_run_would_have_at_an_impossible_size_is_taken_back() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (name, drawn) = concealed(Hiding::Several, [2026, 490], folder.path());
     let d = answer(&folder.path().join(name));
     names_what_is_hidden(&d, &drawn);
-    assert!(d.warnings.iter().any(|w| w.contains("a size in triangle.csv that it cannot have")), "{:?}", d.warnings);
+    let closed = answer_of_the_catalogue(&folder.path().join(name));
+    names_what_is_hidden(&closed, &drawn);
+    let takes_back = |w: &String| w.contains("a size in triangle.csv that it cannot have");
+    assert!(closed.warnings.iter().any(takes_back), "{:?}", closed.warnings);
 }
 
 /// A line that warms up, of altered form, and a weight: no motion within the stroke tells the weight for sure from a coil wound
@@ -281,8 +288,9 @@ fn an_open_answer_asks_for_the_sensor_that_would_decide() {
     let (name, drawn) = concealed(Hiding::Several, [2026, 352], folder.path());
     let d = answer(&folder.path().join(&name));
     assert_eq!(d.verdict, Verdict::Ambiguous);
-    let named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
-    assert_eq!(named, ["thermal_expansion", "gravity_load", "coil_preload"]);
+    let mut named: Vec<&str> = d.effects.iter().map(|e| e.name.as_str()).collect();
+    named.sort_unstable();
+    assert_eq!(named, ["coil_preload", "gravity_load", "thermal_expansion"]);
     let next = &d.next_experiment;
     assert_eq!(next.sensor.as_deref(), Some("force_n"), "{next:?}");
     let with_sensor = next.sensor_sigma.expect("a promise");
