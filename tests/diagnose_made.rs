@@ -272,7 +272,7 @@ fn what_two_effects_only_imitate_is_unknown() {
 fn an_effect_that_a_run_would_have_at_an_impossible_size_is_taken_back() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (name, drawn) = concealed(Hiding::Several, [2026, 490], folder.path());
-    let d = answer(&folder.path().join(name));
+    let d = answer(&folder.path().join(&name));
     names_what_is_hidden(&d, &drawn);
     let closed = answer_of_the_catalogue(&folder.path().join(name));
     names_what_is_hidden(&closed, &drawn);
