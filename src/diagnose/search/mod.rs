@@ -10,8 +10,10 @@ mod refits;
 pub(super) mod reweight;
 mod screening;
 mod stepwise;
+mod way;
 
 pub(super) use creep::is_broad;
 pub(super) use refits::{beside, foretells, foretells_runs};
 pub(super) use screening::{Screened, least_gain};
-pub(super) use stepwise::{Begun, Bound, Found, MOST_EFFECTS, leaves_much, settled};
+pub(super) use stepwise::{Begun, Found, settled};
+pub(super) use way::{Bound, MOST_EFFECTS, leaves_much};

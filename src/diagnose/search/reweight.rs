@@ -1,7 +1,8 @@
 //! Weights and steps of the search: set by the baseline, renewed around what was found.
 
 use super::screening::least_gain;
-use super::stepwise::{Begun, Bound, Found};
+use super::stepwise::{Begun, Found};
+use super::way::Bound;
 use crate::diagnose::case::{Case, Noise, RunSet, noise};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 
