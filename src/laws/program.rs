@@ -74,14 +74,14 @@ impl Program {
     /// [`Program::registers`] at least.
     #[inline]
     pub fn run<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut [D]) {
-        self.run_first(values, registers);
-        self.run_rest(registers);
+        fill(registers, values);
+        self.run_from(0, self.instructions.len(), registers);
     }
 
     /// Evaluates the first output alone, and returns it.
     #[inline]
     pub fn run_first<D: Scalar>(&self, values: impl Iterator<Item = D>, registers: &mut [D]) -> D {
-        registers.iter_mut().zip(values).for_each(|(register, value)| *register = value);
+        fill(registers, values);
         self.run_from(0, self.first, registers);
         self.output(0, registers)
     }
@@ -191,6 +191,11 @@ impl Program {
         });
         (self.symbols.len() + at) as u16
     }
+}
+
+#[inline]
+fn fill<D>(registers: &mut [D], values: impl Iterator<Item = D>) {
+    registers.iter_mut().zip(values).for_each(|(register, value)| *register = value);
 }
 
 /// The parts of `factor * x + offset`, whichever way round it is written.
@@ -354,7 +359,7 @@ mod tests {
 
     #[test]
     fn signs_and_constants_are_folded() {
-        // abs, over, exp, and one for the rest.
+        // abs, the quotient, exp, and one for the rest.
         let program = Program::new(&[read("1 + 0.4*exp(-abs(x)/2e-3)")]);
         assert_eq!(program.instructions.len(), 4);
         assert!((program.value(&[-3e-3, 0.0, 0.0]) - (1.0 + 0.4 * (-(3e-3_f64) / 2e-3).exp())).abs() < 1e-15);

@@ -138,6 +138,7 @@ impl Begun {
 /// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
+
 /// The best fits with one effect that no way has come by, each effect once.
 fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
     let worth = baseline.cost - BEGINNING_WORTH * (baseline.cost - first.first().map_or(0.0, |f| f.cost));

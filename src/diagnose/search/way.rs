@@ -133,15 +133,14 @@ pub(super) fn climb(
         });
         let next = match tried {
             Some(Tried::Better(next)) => Some(next),
-            Some(Tried::NoneAlone(refits)) if up.is_singly && !best.model.effects.is_empty() => {
+            // [`several_to_begin`] goes on from there.
+            Some(Tried::NoneAlone(_)) if best.model.effects.is_empty() => None,
+            Some(Tried::NoneAlone(refits)) if up.is_singly => {
                 way.none_alone = Some(refits);
                 break;
             }
-            Some(Tried::NoneAlone(refits)) if !best.model.effects.is_empty() => {
-                together(swaps, best, &refits, least_of(problem, baseline, best), say)
-            }
-            // From the calibration alone: [`several_to_begin`].
-            Some(Tried::NoneAlone(_)) | None => None,
+            Some(Tried::NoneAlone(refits)) => together(swaps, best, &refits, least_of(problem, baseline, best), say),
+            None => None,
         };
         match next {
             Some(next) => {

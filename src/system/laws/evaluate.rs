@@ -87,7 +87,8 @@ impl<D: Scalar> PlantLaws<D> {
         instance.programs.value.run_first(instance.reads.iter().map(read), &mut acts.registers[instance.registers_at..])
     }
 
-    /// Slopes of a law whose value was evaluated last at the same instant, by [`crate::laws::SLOPES`] and then its states; `registers` are those of the acts.
+    /// Slopes of a law whose value was evaluated last at the same instant, by [`crate::laws::SLOPES`] and then its states;
+    /// `registers` are those of the acts.
     pub(super) fn slopes<'a>(instance: &'a Instance, registers: &'a mut [D]) -> Slopes<'a, D> {
         let program = &instance.programs.value;
         let registers = &mut registers[instance.registers_at..];

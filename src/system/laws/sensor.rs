@@ -99,8 +99,15 @@ impl<D: Scalar> LawSensor<D> {
             Symbol::State(s) => self.states[s],
             Symbol::Constant(x) => D::constant(x),
         };
-        program.run(program.symbols().iter().map(read), &mut registers);
-        let value = program.output(output, &registers);
+        let values = program.symbols().iter().map(read);
+        let value = match output {
+            // A value's slopes are not asked for.
+            0 => program.run_first(values, &mut registers),
+            _ => {
+                program.run(values, &mut registers);
+                program.output(output, &registers)
+            }
+        };
         self.registers = registers;
         value
     }
