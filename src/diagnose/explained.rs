@@ -8,6 +8,7 @@ use super::fit::{Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
 use super::unknown::hypothesis::{self, OneLaw, Tried};
 use super::unknown::pair::{self, Pair};
+use super::unknown::stand_ins;
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
@@ -168,6 +169,7 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
 fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
     let Explained { found, mut proof, noise, mut of_found, .. } = explained;
     let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
+    stand_ins::of_several(case, &noise, &mut found);
     say("full scene".to_owned());
     let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &noise };
     proof.placebo_gap_closed = confirm::placebos(&held_out, &found, seed);

@@ -158,7 +158,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         next_experiment: experiment.next,
         warnings,
     };
-    diagnosis.summary = summary::summary(&diagnosis, &caveats::caveats(&case, &complete, &noise, &contradicted));
+    let caveats = caveats::caveats(&case, (&complete, &diagnosis.effects), &noise, &contradicted);
+    diagnosis.summary = summary::summary(&diagnosis, &caveats);
     let rivals = verdict::lost(&found);
     Ok(Outcome {
         diagnosis,

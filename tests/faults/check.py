@@ -4,7 +4,7 @@
     tests/faults/check.py --smam target/release/smam                  what CI runs
     tests/faults/check.py --smam target/release/smam --kills 100      what docs/reliability.md reports
     tests/faults/check.py --smam target/release/smam --part kills --only diagnose
-    tests/faults/check.py --smam target/release/smam --part determinism --other target/checked/smam
+    tests/faults/check.py --smam target/release/smam --part determinism --other PATH   another build, the same bytes
 
 A check that needs what is not here (root for a small disk, strace, libfaketime) says that it is skipped. Exit code 77: nothing can be checked
 here, because this is no Linux.

@@ -1,6 +1,7 @@
 //! What an answer has to be read with: it stands in the verdict's own words, not in a list below.
 
 use crate::diagnose::case::{Case, Noise, noise};
+use crate::diagnose::diagnosis::NamedEffect;
 use crate::diagnose::fit::Fit;
 
 /// So near to an end of its range, in shares of the range, a number stands on it.
@@ -8,8 +9,14 @@ const ON_BOUND: f64 = 1e-6;
 
 /// Clauses for an answer whose scene has the numbers of `fit`; `contradicted` are numbers of which single runs say
 /// otherwise.
-pub(in crate::diagnose) fn caveats(case: &Case, fit: &Fit, noise: &[Noise], contradicted: &[String]) -> Vec<String> {
+pub(in crate::diagnose) fn caveats(
+    case: &Case,
+    (fit, effects): (&Fit, &[NamedEffect]),
+    noise: &[Noise],
+    contradicted: &[String],
+) -> Vec<String> {
     let clauses = [
+        counted("what these recordings do not tell from a law elsewhere (see forms)", &with_stand_ins(effects)),
         counted(
             "channels with next to no noise, of whose range a hundred-thousandth is taken for it",
             &without_noise(case, noise),
@@ -26,6 +33,15 @@ fn counted(words: &str, names: &[String]) -> Option<String> {
     let (shown, more) = names.split_at(names.len().min(2));
     let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
     (!shown.is_empty()).then(|| format!("{words}: {}{more}", shown.join(", ")))
+}
+
+/// Effects of the catalogue that laws at other ports would explain as well, with the first of these.
+fn with_stand_ins(effects: &[NamedEffect]) -> Vec<String> {
+    let words = |e: &NamedEffect| {
+        let other = e.forms.iter().find(|form| form.port != e.port).filter(|_| !e.hypothetical)?;
+        Some(format!("{} from one of {}", e.name, other.port))
+    };
+    effects.iter().filter_map(words).collect()
 }
 
 /// Columns whose noise is the least that is believed.

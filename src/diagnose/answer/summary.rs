@@ -9,19 +9,19 @@ pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
 }
 
 fn verdict(d: &Diagnosis) -> String {
-    let effects: Vec<String> = d
-        .effects
-        .iter()
-        .map(|e| match &e.channel {
-            Some(channel) => format!("{} on {channel}", e.name),
-            None => format!("{} in {}", e.name, e.element),
-        })
-        .collect();
+    let effects: Vec<String> = d.effects.iter().map(title).collect();
     let said = said(d, &effects);
     if d.calibration.is_empty() && d.verdict != Verdict::UnusableData {
         return format!("{said} The scene names nothing to calibrate, so every number of it was taken as measured.");
     }
     said
+}
+
+fn title(e: &NamedEffect) -> String {
+    match &e.channel {
+        Some(channel) => format!("{} on {channel}", e.name),
+        None => format!("{} in {}", e.name, e.element),
+    }
 }
 
 fn said(d: &Diagnosis, effects: &[String]) -> String {
@@ -50,11 +50,15 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
 /// Probability from which laws at other ports are worth a word.
 const WORTH_A_WORD: f64 = 0.05;
 
-/// Laws at other ports, where the effects that are named leave them a probability, in words.
+/// Laws at other ports, where an effect and its rivals leave them a probability, in words.
 fn or_laws(d: &Diagnosis) -> &'static str {
-    let named: f64 = d.effects.iter().map(|e| e.probability).sum();
-    let has_forms = d.effects.iter().any(|e| e.forms.iter().any(|form| form.port != e.port));
-    if has_forms && 1.0 - named > WORTH_A_WORD { ", or a law elsewhere (see forms)" } else { "" }
+    let is_rival = |e: &NamedEffect, own: &NamedEffect| own.rivals.contains(&title(e));
+    let named = |own: &NamedEffect| -> f64 {
+        d.effects.iter().filter(|e| title(e) == title(own) || is_rival(e, own)).map(|e| e.probability).sum()
+    };
+    let has_forms = |e: &&NamedEffect| e.forms.iter().any(|form| form.port != e.port);
+    let is_open = d.effects.iter().filter(has_forms).any(|e| 1.0 - named(e) > WORTH_A_WORD);
+    if is_open { ", or a law elsewhere (see forms)" } else { "" }
 }
 
 /// What comes nearest, and what hypothesis takes it further.

@@ -97,6 +97,15 @@ impl Model {
         model
     }
 
+    /// The same with one of the effects behind the others.
+    pub fn with_last(&self, index: usize) -> Self {
+        let mut model = self.without(index);
+        model.effects.push(self.effects[index].clone());
+        model.values.push(self.values[index].clone());
+        model.fitted.push(self.fitted[index].clone());
+        model
+    }
+
     /// Number of fitted numbers of the effects.
     pub fn effect_numbers(&self) -> usize {
         self.fitted.iter().map(Vec::len).sum()

@@ -25,6 +25,22 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The same with one of the effects behind the others.
+    pub fn with_last(&self, effect: usize) -> Self {
+        let calibration = self.x.len() - self.model.effect_numbers();
+        let places = self.model.places();
+        let (own, others): (Vec<usize>, Vec<usize>) =
+            (calibration..self.x.len()).partition(|i| places[i - calibration].0 == effect);
+        let order: Vec<usize> = (0..calibration).chain(others).chain(own).collect();
+        let covariance = &self.covariance;
+        Self {
+            model: self.model.with_last(effect),
+            x: order.iter().map(|&i| self.x[i]).collect(),
+            covariance: DMatrix::from_fn(order.len(), order.len(), |i, j| covariance[(order[i], order[j])]),
+            ..self.clone()
+        }
+    }
+
     /// Half width of the 95 % interval of a number.
     pub fn half_width(&self, number: usize) -> f64 {
         1.96 * self.covariance[(number, number)].max(0.0).sqrt()
@@ -214,5 +230,37 @@ impl Problem<'_> {
         let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
         x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
         x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::fit::Placed;
+    use crate::effects::{Element, ElementKind, find};
+
+    /// Calibration, two numbers of one effect, one of another.
+    #[test]
+    fn an_effect_goes_behind_the_others_with_its_numbers() {
+        let placed = |id: &str| {
+            let entry = find(id).expect("of the catalogue");
+            (Placed { entry, element: Element::of(ElementKind::Muscle, 0, 1), channel: None }, entry.typical())
+        };
+        let [(first, two), (second, one)] = ["viscoelasticity", "coil_preload"].map(placed);
+        let model = Model::baseline().plus(&first, &two).plus(&second, &one);
+        let n = 1 + model.effect_numbers();
+        let own = model.fitted[0].len();
+        let x: Vec<f64> = (0..n).map(|i| i as f64).collect();
+        let covariance = DMatrix::from_fn(n, n, |i, j| (10 * i.min(j) + i.max(j)) as f64);
+        let fit = Fit { model, x, cost: 1.0, covariance, on_bound: Vec::new() };
+        let moved = fit.with_last(0);
+        assert_eq!(moved.model.effects, [second, first]);
+        assert_eq!(moved.x[..2], [0.0, (1 + own) as f64]);
+        assert_eq!(moved.x[2..], fit.x[1..=own]);
+        for (i, &from) in moved.x.iter().enumerate() {
+            assert_eq!(moved.half_width(i), fit.half_width(from as usize));
+        }
+        let back = moved.with_last(0);
+        assert_eq!((back.model, back.x, back.covariance), (fit.model, fit.x, fit.covariance));
     }
 }

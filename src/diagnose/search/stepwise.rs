@@ -16,8 +16,8 @@ pub struct Found {
     pub rivals_against: f64,
     /// What the baseline's residual promised of every effect.
     pub screened: Vec<Screened>,
-    /// Other shapes and places of the last law that explain as much.
-    pub forms: Vec<Fit>,
+    /// For each effect of the best: laws of other shapes or at other places that explain as much in its place, the last effect of each.
+    pub forms: Vec<Vec<Fit>>,
     /// Elements of the slots that were screened for laws, with the fall of chi² that each promised.
     pub located: Vec<(String, f64)>,
     /// What predicts held-out runs worse than the calibration, or cannot be played: known, and not put into the scene.
@@ -25,6 +25,17 @@ pub struct Found {
 }
 
 impl Found {
+    /// Those of one effect.
+    pub fn forms_of(&self, effect: usize) -> &[Fit] {
+        self.forms.get(effect).map_or(&[], Vec::as_slice)
+    }
+
+    /// The same with these for the last effect, and none for the others.
+    pub fn with_last_forms(self, forms: Vec<Fit>) -> Self {
+        let others = self.best.model.effects.len().saturating_sub(1);
+        Self { forms: std::iter::repeat_n(Vec::new(), others).chain([forms]).collect(), ..self }
+    }
+
     /// Effects that were worth fitting.
     pub(super) fn known(&self) -> Vec<Placed> {
         let rivals = self.rivals.iter().flatten().filter_map(|f| f.model.effects.last());

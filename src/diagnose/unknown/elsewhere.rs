@@ -5,8 +5,9 @@
 
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
-use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::fit::{Fit, Placed, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, slots, variant};
+use crate::diagnose::verdict;
 
 /// Share of what an effect does that a slot's curve must imitate.
 const AS_MUCH: f64 = 0.97;
@@ -19,13 +20,13 @@ const SHAPES: usize = 3;
 pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
     let Some(mut shown) = Shown::last_effect(problem, fit) else { return Vec::new() };
     let all = alike(problem, fit);
-    let own = all.iter().find(|slot| is_law_of(fit, slot));
+    let own = all.iter().find(|slot| is_place_of(fit, slot));
     let more = own.and_then(|slot| shape(problem, fit, slot));
     if let Some(own) = own {
         shown.keep(&all, own, more);
     }
     let located = shown.locate(&all, more);
-    let does_the_same = |l: &&Located| l.gain > AS_MUCH * shown.whole() && !is_law_of(fit, &l.slot);
+    let does_the_same = |l: &&Located| l.gain > AS_MUCH * shown.whole() && !is_place_of(fit, &l.slot);
     let mut places: Vec<&Slot> = Vec::new();
     for own in located.iter().filter(does_the_same) {
         let of_address = places.iter().filter(|p| p.address == own.slot.address).count();
@@ -36,6 +37,15 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
     places.extend(&bent);
     shown.refits(&all, &places, SHAPES)
+}
+
+/// Whether a slot is where the last effect of a fit acts, over what that depends on.
+fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
+    let is_listed_there = |e: &Placed| {
+        let is_over = e.spec().variables.contains(&slot.variable) && slot.reading == Reading::Plain;
+        e.spec().unlisted().is_none() && is_over && slot.address == verdict::port(e)
+    };
+    is_law_of(fit, slot) || fit.model.effects.last().is_some_and(is_listed_there)
 }
 
 /// The shape of a fit's last law, which is one of this slot, and its scale.

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::elsewhere::elsewhere;
-use super::forms::{Criterion, equally_good, other_forms, tie, with_elsewhere};
+use super::forms::{Criterion, equally_good, with_elsewhere};
 use super::shown::Located;
+use super::stand_ins::other_places;
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
@@ -17,7 +17,7 @@ const MOST_LAWS: usize = 2;
 /// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
-const CLEARLY: f64 = 20.0;
+pub(super) const CLEARLY: f64 = 20.0;
 /// Standard errors from which what is left is more than noise.
 const SEEN: f64 = 3.0;
 /// A model with a law, the others that are as good, and where the misfit sits.
@@ -127,8 +127,8 @@ impl Lawful {
     pub fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
         let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
-        let (rivals_against, forms) = (self.best.cost, self.forms);
-        Found { rivals_against, best: self.best, rivals, forms, located, ..found.clone() }
+        let found = Found { rivals_against: self.best.cost, best: self.best, rivals, located, ..found.clone() };
+        found.with_last_forms(self.forms)
     }
 }
 
@@ -185,37 +185,16 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
         return (found, noise.to_vec());
     };
     let open = reweight::open_runs(case, &renewed.noise);
-    let again: Vec<Option<Fit>> = found.forms.par_iter().map(|f| open.fit(&f.model, &f.x)).collect();
-    let mut fits: Vec<Fit> = again.into_iter().flatten().collect();
+    let again = found.forms.last().map_or(&[][..], Vec::as_slice).par_iter().filter_map(|f| open.fit(&f.model, &f.x));
+    let mut fits: Vec<Fit> = again.collect();
     fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
-        (found.rivals_against, found.best, found.forms) = (best.cost, best, forms);
+        (found.rivals_against, found.best) = (best.cost, best);
+        found = found.with_last_forms(forms);
     }
     found.baseline = renewed.baseline;
     (found, renewed.noise)
-}
-
-/// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
-/// them clearly better, so that the effect only stands in for a law.
-fn other_places(open: &Problem, found: &mut Found) -> bool {
-    let [effect] = &found.best.model.effects[..] else { return false };
-    let variables: Vec<&str> = effect.spec().variables.iter().map(String::as_str).collect();
-    if effect.channel.is_some() || effect.spec().unlisted().is_some() || variables.is_empty() {
-        return false;
-    }
-    let criterion = Criterion::of(open, [&found.best]);
-    let tie = tie(open, &found.best, found.baseline.cost);
-    let own = &effect.spec().port;
-    let others = elsewhere(open, &found.best);
-    let is_better = others.first().is_some_and(|f| criterion.at(f) < criterion.at(&found.best) - CLEARLY);
-    let is_elsewhere = |fit: &&Fit| match fit.model.effects.last().and_then(|e| e.spec().unlisted()) {
-        Some(written) => written.law.address.port.spec().name() != *own,
-        None => false,
-    };
-    let near = others.iter().filter(|f| f.cost <= found.best.cost + tie).filter(is_elsewhere);
-    found.forms = other_forms(&found.best, near);
-    is_better
 }
 
 /// Whether a fit leaves more than noise, and more than a search would still take up.

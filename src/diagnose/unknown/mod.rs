@@ -8,6 +8,7 @@ pub(super) mod hypothesis;
 pub(super) mod pair;
 mod shown;
 mod span;
+pub(super) mod stand_ins;
 mod unlisted;
 
 pub(super) use forms::{SAME, equally_good};

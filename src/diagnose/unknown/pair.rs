@@ -92,17 +92,9 @@ fn listed_instead(open: &Problem, baseline: &Fit, two: &Fit, variants: &[Variant
 }
 
 /// The same with the law behind the listed effect, where it stands before it: forms are of the last.
-fn law_last(open: &Problem, fit: &Fit) -> Option<Fit> {
+fn law_last(fit: &Fit) -> Option<Fit> {
     let [law, listed] = &fit.model.effects[..] else { return None };
-    if !law.entry.hypothetical || listed.entry.hypothetical {
-        return None;
-    }
-    let law = law.clone();
-    let alone = Fit { model: fit.model.without(0), x: open.start_without(fit, 0), ..fit.clone() };
-    let numbers = fit.model.places().into_iter().zip(&fit.x[open.case.parameters.len()..]);
-    let own = numbers.filter(|((effect, _), _)| *effect == 0).map(|(_, value)| *value);
-    let x: Vec<f64> = alone.x.iter().copied().chain(own).collect();
-    open.fit(&alone.model.plus(&law, &fit.model.values[0]), &x)
+    (law.entry.hypothetical && !listed.entry.hypothetical).then(|| fit.with_last(0))
 }
 
 /// A law that leaves much with what does best beside it; none where that does little.
@@ -130,7 +122,7 @@ fn with_partner(
         listed = Some(again);
     }
     let (best, forms) = listed.map_or((best, forms), |listed| (listed, Vec::new()));
-    let (best, forms) = law_last(open, &best).map_or((best, forms), |fit| (fit, Vec::new()));
+    let (best, forms) = law_last(&best).map_or((best, forms), |fit| (fit, Vec::new()));
     say(format!("{}: chi2 {:.0}", best.model.title(), best.cost));
     Some(Lawful { best, forms, located: proposals.located })
 }

@@ -85,7 +85,8 @@ fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -
     let mut laws = laws(&open, found, say);
     laws.retain(|fit| distance(fit) < least - SAME);
     if let Some((best, forms)) = equally_good(&open, &laws, found.baseline.cost) {
-        return Some(Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], forms, ..found.clone() });
+        let lawful = Found { rivals_against: best.cost, best, rivals: vec![Vec::new()], ..found.clone() };
+        return Some(lawful.with_last_forms(forms));
     }
     let (place, fit) = nearest?;
     let mut other = found.clone();
@@ -103,17 +104,16 @@ fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
     fits
 }
 
-/// Where another fit stands beside the answer.
+/// Where another fit stands beside the answer, in the place of its last effect.
 #[derive(Clone, Copy)]
 enum Place {
     Form(usize),
-    /// Of the last effect.
     Rival(usize),
 }
 
 fn as_good(found: &Found) -> Vec<(Place, Fit)> {
     let near = found.best.cost + SAME;
-    let forms = found.forms.iter().enumerate().map(|(i, fit)| (Place::Form(i), fit));
+    let forms = found.forms.last().into_iter().flatten().enumerate().map(|(i, fit)| (Place::Form(i), fit));
     let rivals = found.rivals.last().into_iter().flatten().enumerate().map(|(i, fit)| (Place::Rival(i), fit));
     forms.chain(rivals).filter(|(_, fit)| fit.cost <= near).map(|(place, fit)| (place, fit.clone())).collect()
 }
@@ -122,7 +122,11 @@ fn as_good(found: &Found) -> Vec<(Place, Fit)> {
 fn exchange(found: &mut Found, other: Place, own: Fit) {
     let was = std::mem::replace(&mut found.best, own);
     match other {
-        Place::Form(i) => found.forms[i] = was,
+        Place::Form(i) => {
+            if let Some(forms) = found.forms.last_mut() {
+                forms[i] = was;
+            }
+        }
         Place::Rival(i) => {
             found.rivals_against = found.best.cost;
             if let Some(rivals) = found.rivals.last_mut() {

@@ -9,4 +9,4 @@ mod written;
 
 pub(super) use misfit::{Excess, Residuals, misfit};
 pub(super) use named::{Confirmed, Open, is_loud, is_said, is_unknown, lost, named, open, unit, verdict};
-pub(super) use written::curve;
+pub(super) use written::{curve, port};

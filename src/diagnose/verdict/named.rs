@@ -96,8 +96,8 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
                 ..NamedEffect::default()
             };
             written::describe(&mut named, rival, source, at);
-            if is_best && index + 1 == found.best.model.effects.len() {
-                named.forms = written::forms(&found.forms, found.best.cost, unit_of(found, left));
+            if is_best {
+                named.forms = written::forms(found.forms_of(index), found.best.cost, unit_of(found, left));
             }
             effects.push(named);
         }
@@ -111,13 +111,13 @@ const UNLISTED: f64 = 0.02;
 /// Logarithm of odds beyond which nothing is surer: what is lower by any chi² has a finite weight.
 const CERTAIN: f64 = 50.0;
 
-/// Forms of the last effect at other ports, the best of each, with their weights beside 1 of the effect.
-fn elsewhere(found: &Found, left: f64) -> Vec<(f64, &Fit)> {
-    let Some(own) = found.best.model.effects.last() else { return Vec::new() };
+/// Forms of an effect at other ports, the best of each, with their weights beside 1 of the effect.
+fn elsewhere(found: &Found, index: usize, left: f64) -> Vec<(f64, &Fit)> {
+    let own = &found.best.model.effects[index];
     let (unit, prior) = (unit_of(found, left), if own.entry.hypothetical { 1.0 } else { UNLISTED });
     let mut ports = vec![written::port(own)];
     let mut forms = Vec::new();
-    for fit in &found.forms {
+    for fit in found.forms_of(index) {
         let Some(port) = fit.model.effects.last().map(written::port).filter(|port| !ports.contains(port)) else {
             continue;
         };
@@ -148,11 +148,8 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
             continue;
         }
         rivals.extend(standing.iter().filter(|(p, _, _)| !p.says_the_same(placed)).map(|(_, _, fit)| *fit));
-        if index + 1 == found.best.model.effects.len() {
-            let forms = elsewhere(found, left);
-            rivals
-                .extend(forms.into_iter().filter(|(weight, _)| weight * own >= LEAST_PROBABILITY).map(|(_, fit)| fit));
-        }
+        let forms = elsewhere(found, index, left).into_iter();
+        rivals.extend(forms.filter(|(weight, _)| weight * own >= LEAST_PROBABILITY).map(|(_, fit)| fit));
     }
     Open { rivals, unit: unit_of(found, left) }
 }
@@ -212,8 +209,7 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
         all.push((own.clone(), (-(rival.cost - found.rivals_against).max(0.0) / (2.0 * unit)).exp(), rival));
     }
     // The same at another port is another answer, if not another line.
-    let is_last = index + 1 == best.model.effects.len();
-    let others: f64 = if is_last { elsewhere(found, left).iter().map(|(w, _)| w).sum() } else { 0.0 };
+    let others: f64 = elsewhere(found, index, left).iter().map(|(w, _)| w).sum();
     let sum: f64 = all.iter().map(|(_, w, _)| w).sum::<f64>() + others;
     all.iter_mut().for_each(|(_, w, _)| *w /= sum);
     all.retain(|(p, w, _)| *w >= LEAST_PROBABILITY || p == placed);
