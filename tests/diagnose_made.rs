@@ -370,6 +370,35 @@ fn a_candidate_law_of_the_scene_is_named_and_fitted() {
     assert!(text.contains("[[law]]") && !text.contains("candidate"), "{text}");
 }
 
+/// A sensor whose reading bends: proposed by the scene it is named with its size, and made up where nothing in the rig explains what the
+/// channel shows.
+#[test]
+fn a_bent_channel_is_named_as_a_candidate_and_as_a_law() {
+    let folder = specimen(None);
+    let law = |a: f64, candidate: bool| {
+        let text = format!(
+            "law.bent={{port=\"sensor.pressure_kpa\", scales=\"1 - a*abs(reading)/1e6\", candidate={candidate}, \
+             parameter={{a={{value={a:?}}}}}}}"
+        );
+        Override::parse(&text).expect("a law")
+    };
+    let hidden = Scene::load("muscle_bench", &[law(0.2, false)]).unwrap_or_else(|e| panic!("{e}"));
+    play_again(folder.path(), &hidden, &[("elongation_mm", 0.02), ("pressure_kpa", 5.0), ("force_n", 0.5)]);
+    let case = Case::load(&[folder.path()], None, &[law(0.05, true)]).unwrap_or_else(|e| panic!("{e}"));
+    let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
+    let d = &outcome.diagnosis;
+    let [named] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+    assert_eq!((named.name.as_str(), named.channel.as_deref()), ("bent", Some("pressure_kpa")), "{}", d.summary);
+    let a = &named.parameters["a"];
+    assert!(a.ci95[0] < 0.2 && 0.2 < a.ci95[1], "{a:?}");
+    let text = outcome.scene_text().expect("a fit").unwrap_or_else(|e| panic!("{e}"));
+    assert!(text.contains("sensor.pressure_kpa") && !text.contains("candidate"), "{text}");
+    let d = answer(folder.path());
+    let [named] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+    assert_eq!((named.port.as_str(), d.modelled), ("sensor.pressure_kpa", Some(true)), "{}", d.summary);
+    assert!(d.fit.gap_closed > 0.95, "{}", d.fit.gap_closed);
+}
+
 /// A wall that ages beside a relaxation of the silicone: a law alone had to stand for both, and effects of the catalogue only imitate the
 /// ageing. Both are found, where neither the law nor the relaxation is the best single explanation.
 #[test]

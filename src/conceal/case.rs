@@ -95,9 +95,10 @@ pub struct Drawn {
 
 /// Stroke of that programme over that of the others.
 const LARGER: f64 = 1.5;
-/// How many seeds are tried for a plant that can be followed, and how far apart they are.
+/// How many seeds are tried for a plant that can be followed, and how far apart they are: no stride of a campaign, whose next seed would
+/// otherwise hold the same case again.
 const MOST_SEEDS: u64 = 8;
-const NEXT_SEED: u64 = 1_000_003;
+const NEXT_SEED: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Draws a case and makes its recordings.
 ///
@@ -128,7 +129,7 @@ pub fn draw(name: &str, rig: Rig, hiding: Hiding, seed: u64) -> Result<Drawn, Co
         if !matches!(drawn, Err(ConcealError::Solver(_))) {
             break;
         }
-        drawn = draw_once(name, rig, hiding, seed.wrapping_add(further * NEXT_SEED));
+        drawn = draw_once(name, rig, hiding, seed.wrapping_add(further.wrapping_mul(NEXT_SEED)));
     }
     drawn
 }

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use toml::Table;
 
-use crate::laws::{Address, Carrier, Dimension, Law, LawTable, Port, Surroundings};
-use crate::recording::parse_column;
+use crate::laws::{Address, Carrier, Law, LawTable, Port, Surroundings};
 
 use super::overrides::child;
 use super::{SceneError, SceneFile, calibration_key};
@@ -58,13 +57,9 @@ pub struct Candidate {
 /// A law of a scene, a candidate too.
 pub(super) fn read(scene: &SceneFile, table: &LawTable) -> Result<Law, (String, String)> {
     let channel = table.port.trim().strip_prefix("sensor.").map(str::to_owned);
-    let around = Surroundings { conditions: conditions(scene), channel: channel.as_deref().and_then(channel_unit) };
+    let own = channel.as_deref().map(Surroundings::of_channel).unwrap_or_default();
+    let around = Surroundings { conditions: conditions(scene), ..own };
     table.law(&around).map_err(|e| (e.message, e.remedy))
-}
-
-fn channel_unit(channel: &str) -> Option<Dimension> {
-    let unit = parse_column(channel).ok()?.unit;
-    Dimension::of_name(&format!("x_{}", unit.si_suffix))
 }
 
 /// The run's conditions that set one number, each with the value that the scene has for it.

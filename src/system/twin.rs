@@ -197,7 +197,7 @@ impl Twin {
                 series.push(sensors.show(output, run.times_s[k], output.read(plant, state, spans, &mut room)));
             }
         })?;
-        output::are_shown(&self.outputs, &series).then_some(series)
+        output::are_shown(&self.outputs, setting, &series).then_some(series)
     }
 
     /// Series of the first variable of each law over a run, SI; empty where the rig cannot have the law. `None` when the model

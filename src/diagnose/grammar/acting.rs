@@ -25,11 +25,29 @@ pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
     })
 }
 
+/// How laws act that are tried at a place.
+#[derive(Clone, Debug)]
+pub struct Action {
+    pub acts: Acts,
+    pub unit: String,
+    /// The size that is plain to see.
+    pub typical: f64,
+    /// What such a law may know.
+    pub around: Surroundings,
+}
+
+impl Action {
+    pub fn at(port: Port) -> Option<Self> {
+        let (acts, unit, typical) = action(port)?;
+        Some(Self { acts, unit: unit.to_owned(), typical, around: Surroundings::default() })
+    }
+}
+
 /// A law at a port whose only number is what acts there.
-pub fn injected(case: &Case, address: &str, port: Port) -> Option<(Placed, f64)> {
-    let (acts, unit, typical) = action(port)?;
-    let (adds, scales) = does(acts, "u".to_owned());
-    let number = ParameterTable { unit: Some(unit.to_owned()), ..ParameterTable::default() };
+pub fn injected(case: &Case, address: &str, action: &Action) -> Option<Placed> {
+    let Action { acts, unit, typical, around } = action;
+    let (adds, scales) = does(*acts, "u".to_owned());
+    let number = ParameterTable { unit: Some(unit.clone()), ..ParameterTable::default() };
     let table = LawTable {
         name: "injected".to_owned(),
         port: address.to_owned(),
@@ -38,9 +56,9 @@ pub fn injected(case: &Case, address: &str, port: Port) -> Option<(Placed, f64)>
         parameter: BTreeMap::from([("u".to_owned(), number)]),
         ..LawTable::default()
     };
-    let law = table.law(&Surroundings::default()).ok()?;
+    let law = table.law(around).ok()?;
     let range = Range { min: -1e3 * typical, max: 1e3 * typical };
-    Some((written(case, &table, &law, &[Fitted { typical, range, is_fitted: true }], 0), typical))
+    Some(written(case, &table, &law, &[Fitted { typical: *typical, range, is_fitted: true }], 0))
 }
 
 /// A law as something that a model can hold.
@@ -52,7 +70,8 @@ pub fn written(case: &Case, table: &LawTable, law: &Law, numbers: &[Fitted], siz
         _ => case.scene.file.muscle.len(),
     };
     let count = if number.is_some() { count } else { 1 };
-    Placed { entry, element: Element::of(entry.element, number.unwrap_or(0), count), channel: None }
+    let channel = law.address.of.clone().filter(|_| law.address.port == Port::Sensor);
+    Placed { entry, element: Element::of(entry.element, number.unwrap_or(0), count), channel }
 }
 
 /// The expression that a law adds, or that it scales by.

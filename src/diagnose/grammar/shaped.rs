@@ -2,18 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::acting::{action, does, written};
+use super::acting::{Action, does, written};
 use super::shapes::{P, P_RANGE, Shape};
 use super::slots::Slot;
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::Variant;
 use crate::effects::{Fitted, Range};
-use crate::laws::{LawTable, ParameterTable, QUANTITIES, Surroundings};
+use crate::laws::{LawTable, ParameterTable, Port, QUANTITIES};
 use crate::scene::Candidate;
 
 /// The law of a slot in a shape, its scale so many times the slot's; none where the port cannot have it.
 pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<Variant> {
-    let (acts, unit, typical) = action(slot.port)?;
+    let Action { acts, unit, typical, around: known } = &slot.action;
+    let (acts, typical) = (*acts, *typical);
     let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
     let name = format!("scale{ending}");
     let x = slot.reading.text(&slot.variable, &name);
@@ -21,7 +22,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let mut parameter = BTreeMap::new();
     parameter.insert("a".to_owned(), number(typical, Some(unit)));
     if !slot.is_constant() {
-        parameter.insert(name.clone(), number(scale, ending.is_empty().then_some("1")));
+        parameter.insert(name.clone(), number(scale, unit_of_scale(slot, ending)));
     }
     if shape.has_number {
         parameter.insert("p".to_owned(), number(P, Some("1")));
@@ -38,7 +39,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
         state: slot.reading.states(&slot.variable),
         ..LawTable::default()
     };
-    let law = table.law(&Surroundings::default()).ok()?;
+    let law = table.law(known).ok()?;
     let size = law.parameter("a")?;
     let numbers: Vec<Fitted> = law
         .parameters
@@ -61,19 +62,20 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
 
 /// A slot's law as a curve: the sum of the shapes of its basis, each with a size of its own, at the slot's scale.
 pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
-    let (acts, unit, typical) = action(slot.port)?;
+    let Action { acts, unit, typical, around: known } = &slot.action;
+    let (acts, typical) = (*acts, *typical);
     let ending = ending(&slot.variable);
     let scale = format!("scale{ending}");
     let x = slot.reading.text(&slot.variable, &scale);
     let terms: Vec<String> = slot.basis().zip(SIZES).map(|(s, a)| format!("{a} * {}", spelled(s.text, &x))).collect();
     let mut parameter: BTreeMap<String, ParameterTable> =
         SIZES.iter().take(terms.len()).map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
-    parameter.insert(scale, number(slot.scale, ending.is_empty().then_some("1")));
+    parameter.insert(scale, number(slot.scale, unit_of_scale(slot, ending)));
     let sum = terms.join(" + ");
     let (adds, scales) = does(acts, sum);
     let port = slot.address.clone();
     let table = LawTable { name: slot.name(), port, adds, scales, parameter, ..LawTable::default() };
-    let law = table.law(&Surroundings::default()).ok()?;
+    let law = table.law(known).ok()?;
     let own = Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true };
     let fixed = Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false };
     let is_size = |name: &str| SIZES.contains(&name);
@@ -85,6 +87,12 @@ pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
 
 fn number(value: f64, unit: Option<&str>) -> ParameterTable {
     ParameterTable { value, unit: unit.map(str::to_owned), ..ParameterTable::default() }
+}
+
+/// Unit of the scale of a slot's variable, where its name does not say it: that of what a channel shows is the channel's.
+fn unit_of_scale<'a>(slot: &'a Slot, ending: &str) -> Option<&'a str> {
+    let plain = if slot.port == Port::Sensor { slot.action.unit.as_str() } else { "1" };
+    ending.is_empty().then_some(plain)
 }
 
 /// Sizes of a curve's shapes.

@@ -1,11 +1,14 @@
 //! Laws that nobody listed: every port of the scene, every variable that it can depend on, in shapes that a law may have.
 
-use super::acting::{action, injected};
+use super::acting::{Action, action, injected};
 use super::reading::{Reading, readings};
 use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
-use crate::diagnose::case::Case;
+use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
-use crate::laws::{Acts, Address, Carrier, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings};
+use crate::laws::{
+    Acts, Address, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
+};
+use crate::recording::parse_column;
 
 /// How far the grammar reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +17,8 @@ pub enum Reach {
     Plain,
     /// More shapes, products of two variables, and what is remembered of one.
     Wide,
+    /// What channels show, bent: a shape over the reading.
+    Channels,
 }
 
 /// Variables that are tried at a port without a number in the name.
@@ -43,9 +48,9 @@ pub struct Slot {
     pub scale: f64,
     /// The variable in each open run.
     pub series: Vec<Vec<f64>>,
-    /// A law whose only number is what acts at the port, and the size that is plain to see.
+    pub action: Action,
+    /// A law whose only number is what acts at the port.
     pub injected: Placed,
-    pub typical: f64,
 }
 
 impl Slot {
@@ -102,8 +107,12 @@ impl PartialEq for Slot {
 
 /// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.
 pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
+    if reach == Reach::Channels {
+        return on_channels(case, from);
+    }
     let mut slots = over_variables(case, from);
     match reach {
+        Reach::Channels => {}
         Reach::Plain => slots.extend(constants(case)),
         Reach::Wide => {
             let more = slots.iter().flat_map(|slot| beyond(case, slot, &slots)).collect::<Vec<_>>();
@@ -143,13 +152,40 @@ fn constants(case: &Case) -> Vec<Slot> {
     let each =
         PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
     let slot = |(port, address): (Port, String)| {
-        let (injected, typical) = injected(case, &address, port)?;
+        let action = Action::at(port)?;
+        let injected = injected(case, &address, &action)?;
         let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();
         let shapes = std::slice::from_ref(&CONSTANT);
         let (variable, reading) = (String::new(), Reading::Plain);
-        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, injected, typical })
+        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, action, injected })
     };
     each.filter_map(slot).collect()
+}
+
+/// Share of the greatest reading that is plain to see.
+const PLAIN_ON_A_CHANNEL: f64 = 0.02;
+
+/// Slots on what each channel shows. A straight line is a gain, which the catalogue has.
+fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
+    let open = case.runs.iter().filter(|run| !run.is_held_out);
+    let shown = open.map(|run| run.twin.simulate(&run.drive, &from.model.setting(case, run, &from.x)));
+    let Some(shown) = shown.collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let slot = |channel: &CaseChannel| {
+        let unit = parse_column(&channel.column).ok()?.unit;
+        let series: Vec<Vec<f64>> =
+            shown.iter().map(|run| run[channel.output].iter().map(|x| unit.to_si(*x)).collect()).collect();
+        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let around = Surroundings::of_channel(&channel.column);
+        let own = around.channel.filter(|d| *d != Dimension::NONE);
+        let unit = own.map_or_else(|| "1".to_owned(), |d| d.to_string());
+        let action = Action { acts: Acts::Adds, unit, typical: PLAIN_ON_A_CHANNEL * greatest, around };
+        let address = format!("sensor.{}", channel.column);
+        let injected = injected(case, &address, &action)?;
+        let (port, variable) = (Port::Sensor, Quantity::Reading.spec().name());
+        let (reading, shapes, scale) = (Reading::Plain, &SHAPES[1..], 0.5 * greatest);
+        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, action, injected })
+    };
+    case.channels.iter().filter_map(slot).collect()
 }
 
 /// Slots whose variable moves in the open runs.
@@ -184,9 +220,10 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
     let slot = |(i, (_, address, port, variable)): (usize, (Law, String, Port, String))| {
         let series: Vec<Vec<f64>> = visited.iter().map(|run| run[i].clone()).collect();
         let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let (injected, typical) = injected(case, &address, port)?;
+        let action = Action::at(port)?;
+        let injected = injected(case, &address, &action)?;
         let (reading, shapes, scale) = (Reading::Plain, &SHAPES[..], 0.5 * greatest);
-        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, injected, typical })
+        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, action, injected })
     };
     asked.into_iter().enumerate().filter_map(slot).collect()
 }

@@ -39,7 +39,10 @@ pub(in crate::diagnose) fn pair(
     };
     // One law that remembers or depends on two variables is simpler than two things.
     tried.wide = propose(&open, &found.baseline, Reach::Wide, say);
-    let single = tried.wide.as_ref().and_then(|wide| explains_all(&open, found, wide));
+    // A bend of what a channel shows imitates anything that is still: a law in the rig comes before it.
+    let bent =
+        || propose(&open, &found.baseline, Reach::Channels, say).and_then(|bent| explains_all(&open, found, &bent));
+    let single = tried.wide.as_ref().and_then(|wide| explains_all(&open, found, wide)).or_else(bent);
     if let Some(lawful) = single
         && let Some((found, noise)) = renewed(case, noise, lawful.beside(found), say)
     {

@@ -8,6 +8,8 @@ use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Model, Number, Problem, Rows, Sides, Underway, Variant, orthogonal};
 use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
 use crate::effects::Effect;
+use crate::laws::{Address, Port};
+use crate::recording::parse_column;
 use crate::system::{Change, Signals};
 
 /// Scales of a shape that are tried, in those of the slot.
@@ -124,7 +126,7 @@ impl<'a> Shown<'a> {
                 let own: Vec<DVector<f64>> = own.into_iter().collect::<Option<_>>()?;
                 let sizes = sizes(&own, &self.left);
                 let mut own = curve(self.problem.case, slot)?;
-                own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.typical);
+                own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.action.typical);
                 Some(self.with(&own))
             })
             .collect();
@@ -183,7 +185,7 @@ impl<'a> Shown<'a> {
                 let signature = signature?;
                 let length = signature.norm().max(f64::MIN_POSITIVE);
                 let amplitude = signature.dot(&self.left) / length;
-                Some((amplitude * amplitude, amplitude / length * w.slot.typical, *w))
+                Some((amplitude * amplitude, amplitude / length * w.slot.action.typical, *w))
             })
             .collect();
         promised.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -258,27 +260,45 @@ impl<'a> Shown<'a> {
     fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
         let setting = self.along.model.setting(self.problem.case, run, &self.along.x);
         let mut ports: Vec<(&Slot, Vec<usize>)> = Vec::new();
+        let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
+        let signal = |w: &Wanted| -> Vec<f64> { w.slot.series[r].iter().map(|x| (w.shape.at)(x / w.scale)).collect() };
         for (i, w) in wanted.iter().enumerate() {
+            if w.slot.port == Port::Sensor {
+                found[i] = Some(self.on_channel(run, w.slot, signal(w)));
+                continue;
+            }
             match ports.iter_mut().find(|(port, _)| port.injected == w.slot.injected) {
                 Some((_, own)) => own.push(i),
                 None => ports.push((w.slot, vec![i])),
             }
         }
+        if ports.is_empty() {
+            return found;
+        }
         let at: Vec<Effect<f64>> = ports.iter().map(|(port, _)| port.injected.with(&[0.0])).collect();
-        let signal = |&i: &usize| -> Vec<f64> {
-            let w = &wanted[i];
-            w.slot.series[r].iter().map(|x| (w.shape.at)(x / w.scale)).collect()
-        };
-        let signals =
-            ports.iter().zip(&at).map(|((_, own), at)| Signals { at, values: own.iter().map(signal).collect() });
+        let signals = ports
+            .iter()
+            .zip(&at)
+            .map(|((_, own), at)| Signals { at, values: own.iter().map(|&i| signal(&wanted[i])).collect() });
         let changes = run.twin.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
-        let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
         for ((port, own), changes) in ports.iter().zip(changes) {
             for (&i, change) in own.iter().zip(changes) {
-                found[i] = change.map(|change| self.weighted(run, &change, port.typical));
+                found[i] = change.map(|change| self.weighted(run, &change, port.action.typical));
             }
         }
         found
+    }
+
+    /// What a signal changes that is added to what a channel shows: that channel.
+    fn on_channel(&self, run: &CaseRun, slot: &Slot, signal_si: Vec<f64>) -> Vec<f64> {
+        let channels = &self.problem.case.channels;
+        let own = channels.iter().find(|c| slot.injected.channel.as_ref() == Some(&c.column));
+        let count = channels.iter().map(|c| c.output + 1).max().unwrap_or(0);
+        let mut change = vec![vec![0.0; signal_si.len()]; count];
+        if let Some((channel, unit)) = own.and_then(|c| Some((c, parse_column(&c.column).ok()?.unit))) {
+            change[channel.output] = signal_si.into_iter().map(|x| unit.from_si(x)).collect();
+        }
+        self.weighted(run, &change, slot.action.typical)
     }
 
     /// What a signal of this size changes, in units of the noise.
@@ -299,7 +319,7 @@ fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> 
             (other.port, &other.variable, other.reading.word()) == (slot.port, &slot.variable, slot.reading.word());
         is_same && other.reading.is_like(&slot.reading) && other.address != slot.address
     };
-    let is_whole = crate::laws::Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
+    let is_whole = slot.port != Port::Sensor && Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
     let others: Vec<&Slot> = if is_whole { all.iter().filter(is_part).collect() } else { Vec::new() };
     if others.is_empty() { vec![slot].into_iter() } else { others.into_iter() }
 }

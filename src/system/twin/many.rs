@@ -46,7 +46,7 @@ impl Twin {
         let series = self.bodies(run, &bodies);
         let shown = |(setting, body): (&TwinSetting<f64>, &usize)| {
             let shown = self.through_sensors(run, setting, series[*body].as_ref()?);
-            super::output::are_shown(&self.outputs, &shown).then_some(shown)
+            super::output::are_shown(&self.outputs, setting, &shown).then_some(shown)
         };
         settings.iter().zip(&body_of).map(shown).collect()
     }

@@ -146,8 +146,12 @@ fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
 }
 
 /// Whether all channels with laws on them show numbers.
-pub(super) fn are_shown<D: Scalar>(outputs: &[TwinOutput], series: &[Vec<D>]) -> bool {
-    let lawful = outputs.iter().zip(series).filter(|(output, _)| !output.laws.is_empty());
+pub(super) fn are_shown<D: Scalar>(outputs: &[TwinOutput], setting: &TwinSetting<D>, series: &[Vec<D>]) -> bool {
+    let has_law = |output: &TwinOutput| {
+        let mut own = setting.effects.iter().filter(|e| e.channel.as_ref() == Some(&output.column));
+        !output.laws.is_empty() || own.any(|e| e.entry.unlisted().is_some())
+    };
+    let lawful = outputs.iter().zip(series).filter(|(output, _)| has_law(output));
     lawful.flat_map(|(_, values)| values).all(Scalar::is_finite)
 }
 
@@ -176,7 +180,12 @@ impl<D: Scalar> Sensors<D> {
                 (output.column.clone(), LawSensor::new(law, values, output.factor))
             })
         });
-        Self { effects: effects.collect(), laws: laws.collect() }
+        let written = setting.effects.iter().filter_map(|e| {
+            let output = outputs.iter().find(|o| e.channel.as_ref() == Some(&o.column))?;
+            let own = e.entry.unlisted()?;
+            Some((output.column.clone(), LawSensor::new(&own.law, own.values(&e.values), output.factor)))
+        });
+        Self { effects: effects.collect(), laws: laws.chain(written).collect() }
     }
 
     /// The value as the channel's sensors show it.
