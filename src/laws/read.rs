@@ -51,15 +51,6 @@ pub struct Surroundings {
     pub channel: Option<Dimension>,
 }
 
-impl Surroundings {
-    /// Those of a law on what a channel shows.
-    pub fn of_channel(column: &str) -> Self {
-        let unit = crate::recording::parse_column(column).ok().map(|name| name.unit);
-        let channel = unit.and_then(|unit| Dimension::of_name(&format!("x_{}", unit.si_suffix)));
-        Self { channel, ..Self::default() }
-    }
-}
-
 impl LawTable {
     /// Reads the expressions, checks names and units, and compiles.
     ///

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use toml::Table;
 
-use crate::laws::{Address, Carrier, Law, LawTable, Port, Surroundings};
+use crate::laws::{Address, Carrier, Dimension, Law, LawTable, Port, Surroundings};
+use crate::recording::parse_column;
 
 use super::overrides::child;
 use super::{SceneError, SceneFile, calibration_key};
@@ -57,9 +58,16 @@ pub struct Candidate {
 /// A law of a scene, a candidate too.
 pub(super) fn read(scene: &SceneFile, table: &LawTable) -> Result<Law, (String, String)> {
     let channel = table.port.trim().strip_prefix("sensor.").map(str::to_owned);
-    let own = channel.as_deref().map(Surroundings::of_channel).unwrap_or_default();
+    let own = channel.as_deref().map(on_channel).unwrap_or_default();
     let around = Surroundings { conditions: conditions(scene), ..own };
     table.law(&around).map_err(|e| (e.message, e.remedy))
+}
+
+/// What a law may know that acts on what a channel shows.
+pub fn on_channel(column: &str) -> Surroundings {
+    let unit = parse_column(column).ok().map(|name| name.unit);
+    let channel = unit.and_then(|unit| Dimension::of_name(&format!("x_{}", unit.si_suffix)));
+    Surroundings { channel, ..Surroundings::default() }
 }
 
 /// The run's conditions that set one number, each with the value that the scene has for it.

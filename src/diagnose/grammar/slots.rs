@@ -9,6 +9,7 @@ use crate::laws::{
     Acts, Address, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
 };
 use crate::recording::parse_column;
+use crate::scene::on_channel;
 
 /// How far the grammar reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,7 +176,7 @@ fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
         let series: Vec<Vec<f64>> =
             shown.iter().map(|run| run[channel.output].iter().map(|x| unit.to_si(*x)).collect()).collect();
         let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let around = Surroundings::of_channel(&channel.column);
+        let around = on_channel(&channel.column);
         let own = around.channel.filter(|d| *d != Dimension::NONE);
         let unit = own.map_or_else(|| "1".to_owned(), |d| d.to_string());
         let action = Action { acts: Acts::Adds, unit, typical: PLAIN_ON_A_CHANNEL * greatest, around };
