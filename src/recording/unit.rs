@@ -47,8 +47,6 @@ pub const KNOWN_UNITS: &[Unit] = &[
     unit("n", "N", "n", 1.0),
     unit("mn", "mN", "n", 1e-3),
     unit("nm", "N m", "nm", 1.0),
-    unit("nm_rad", "N m/rad", "nm_rad", 1.0),
-    unit("mnm_rad", "mN m/rad", "nm_rad", 1e-3),
     unit("s", "s", "s", 1.0),
     unit("ms", "ms", "s", 1e-3),
     unit("v", "V", "v", 1.0),
@@ -147,7 +145,6 @@ mod tests {
     fn rate_is_no_duration() {
         let name = parse_column("drive_deg_s").unwrap();
         assert_eq!((name.base, name.unit.suffix), ("drive", "deg_s"));
-        assert_eq!(axis_label("stiffness_rest_mnm_rad"), "stiffness rest (mN m/rad)");
     }
 
     #[test]
