@@ -39,7 +39,7 @@ fn counted(words: &str, names: &[String]) -> Option<String> {
 fn with_stand_ins(effects: &[NamedEffect]) -> Vec<String> {
     let words = |e: &NamedEffect| {
         let other = e.forms.iter().find(|form| form.port != e.port).filter(|_| !e.hypothetical)?;
-        Some(format!("{} from one of {}", e.name, other.port))
+        Some(format!("{} from one at {}", e.name, other.port))
     };
     effects.iter().filter_map(words).collect()
 }

@@ -108,19 +108,16 @@ impl PartialEq for Slot {
 
 /// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.
 pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
-    if reach == Reach::Channels {
-        return on_channels(case, from);
-    }
-    let mut slots = over_variables(case, from);
-    match reach {
-        Reach::Channels => {}
-        Reach::Plain => slots.extend(constants(case)),
+    let mut slots = match reach {
+        Reach::Plain => [over_variables(case, from), constants(case)].concat(),
         Reach::Wide => {
-            let more = slots.iter().flat_map(|slot| beyond(case, slot, &slots)).collect::<Vec<_>>();
-            slots.iter_mut().for_each(|slot| slot.shapes = slot.more_shapes());
-            slots.extend(more);
+            let mut own = over_variables(case, from);
+            let more = own.iter().flat_map(|slot| beyond(case, slot, &own)).collect::<Vec<_>>();
+            own.iter_mut().for_each(|slot| slot.shapes = slot.more_shapes());
+            [own, more].concat()
         }
-    }
+        Reach::Channels => on_channels(case, from),
+    };
     slots.retain(|slot| case.has_clock || !slot.needs_clock());
     slots
 }
