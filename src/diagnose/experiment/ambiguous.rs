@@ -1,7 +1,7 @@
 //! Step 8 for an ambiguous answer: what would settle it, programme and sensor together.
 
 use super::design::{
-    ALL, Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
+    Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
 };
 use super::discrimination::{More, Question};
 use crate::diagnose::diagnosis::{NextExperiment, SETTLES_SIGMA};
@@ -11,6 +11,8 @@ use crate::recording::RecordingError;
 
 /// Durations that are looked at, one after the other, until one is sure to settle what is open, s.
 const DURATIONS_S: [f64; 3] = [DURATION_S, 180.0, 300.0];
+/// Programmes of a minute that are looked at for longer as well.
+const PLAYED_LONGER: usize = 3;
 /// Separation to aim at, standard errors: laws are idealisations, and what just settles on paper often does not on a rig.
 const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
 
@@ -22,7 +24,7 @@ const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
 /// Input columns without a known unit.
 pub fn settle<'a>(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Result<Experiment, RecordingError> {
     let Some(mut question) = Question::of_open(whole, best, open) else { return Ok(none_to_play()) };
-    let minute = candidates(whole, best, &question, (ALL, DURATION_S))?;
+    let minute = candidates(whole, best, &question, DURATION_S, |_, _| true)?;
     let alike = leave_out_alike(&mut question, &minute);
     let untold = (!alike.is_empty()).then(|| untold(&alike));
     if let Some(untold) = untold.as_ref().filter(|_| question.is_empty()) {
@@ -56,11 +58,12 @@ fn settle_what_can_be(
 ) -> Result<Experiment, RecordingError> {
     let mut tried = vec![minute];
     let mut firsts = Vec::from_iter(first(question, &tried[0]));
+    let worth_longer = worth_longer(question, &tried[0]);
     for duration_s in &DURATIONS_S[1..] {
         if firsts.last().is_none_or(|(_, promise)| promise.sigma > SURE_SIGMA) {
             break;
         }
-        tried.push(candidates(whole, best, question, (ALL, *duration_s))?);
+        tried.push(candidates(whole, best, question, *duration_s, |_, name| worth_longer.contains(&name))?);
         match first(question, &tried[tried.len() - 1]) {
             Some(longer) => firsts.push(longer),
             None => break,
@@ -82,6 +85,15 @@ fn settle_what_can_be(
             proposal(best, true, (same, alone), Some(sensor))
         }
     })
+}
+
+/// The programmes of a minute that set apart most, and that which does so with one more sensor: others are not played longer.
+fn worth_longer(question: &Question, minute: &[Candidate]) -> Vec<&'static str> {
+    let sigma = |c: &Candidate| question.least(&c.foreseen, More::Nothing).map_or(0.0, |(sigma, _)| sigma);
+    let mut best: Vec<&Candidate> = minute.iter().collect();
+    best.sort_by(|a, b| sigma(b).total_cmp(&sigma(a)));
+    let sensed = best_sensor(question, minute, 0.0).map(|sensed| &minute[sensed.candidate]);
+    best.into_iter().take(PLAYED_LONGER).chain(sensed).map(|c| c.name).collect()
 }
 
 /// The first that is sure to settle; else the greatest that should; else the first.

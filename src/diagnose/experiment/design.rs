@@ -55,7 +55,7 @@ pub fn confirm<'a>(
         return Ok(Experiment { next: NextExperiment::none(why), inputs: None });
     };
     let question = Question::of_nearest(whole, best, nearest);
-    let mut programmes = candidates(whole, best, &question, (USUAL, DURATION_S))?;
+    let mut programmes = candidates(whole, best, &question, DURATION_S, |i, _| i < USUAL)?;
     let Some((at, promise)) = first(&question, &programmes) else { return Ok(none_to_play()) };
     let winner = programmes.swap_remove(at);
     let sensor = best_sensor(&question, std::slice::from_ref(&winner), promise.sigma);
@@ -80,9 +80,8 @@ pub(super) fn first<'a>(question: &Question<'a>, programmes: &[Candidate]) -> Op
     all.rev().max_by(|(_, a), (_, b)| a.sigma.total_cmp(&b.sigma))
 }
 
-/// Programmes that every proposal looks at, and those that look closely at the ends of the stroke as well.
+/// Programmes that every proposal looks at; the others look closely at the ends of the stroke.
 const USUAL: usize = 6;
-pub(super) const ALL: usize = usize::MAX;
 
 pub(super) fn none_to_play() -> Experiment {
     let why = "no programme within the recorded strokes can be simulated";
@@ -115,12 +114,13 @@ pub(super) fn proposal(
     Experiment { next, inputs: Some(winner.inputs) }
 }
 
-/// The first `most` programmes of a duration with what they would show; one that cannot be simulated is left out.
+/// Programmes of a duration, those that are `wanted` by place and name, with what they would show; one that cannot be simulated is left out.
 pub(super) fn candidates(
     whole: &Problem,
     best: &Fit,
     question: &Question,
-    (most, duration_s): (usize, f64),
+    duration_s: f64,
+    wanted: impl Fn(usize, &str) -> bool,
 ) -> Result<Vec<Candidate>, RecordingError> {
     let case = whole.case;
     let inputs = recorded_inputs(case);
@@ -131,7 +131,9 @@ pub(super) fn candidates(
         let foreseen = run.and_then(|run| question.foresee(&run));
         Ok(foreseen.map(|foreseen| Candidate { name, inputs, foreseen }))
     };
-    let all: Vec<_> = programmes.into_par_iter().take(most).map(candidate).collect::<Result<_, _>>()?;
+    let wanted = programmes.into_iter().enumerate().filter(|(i, (name, _))| wanted(*i, name));
+    let wanted: Vec<_> = wanted.map(|(_, programme)| programme).collect();
+    let all: Vec<_> = wanted.into_par_iter().map(candidate).collect::<Result<_, _>>()?;
     Ok(all.into_iter().flatten().collect())
 }
 

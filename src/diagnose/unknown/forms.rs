@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::elsewhere::elsewhere;
 use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::search::least_gain;
 use crate::diagnose::verdict::{self, misfit};
 
 /// Fits are called equally good within so many units of chi²: odds of one to twenty.
@@ -12,6 +13,10 @@ pub(in crate::diagnose) const SAME: f64 = 6.0;
 const SAME_LAW: f64 = 0.01;
 /// Rough fits are fitted to the end within so many times what makes fits equally good.
 const NEARLY: f64 = 20.0;
+/// A rough fit leaves at most so many times what it leaves when it is fitted to the end.
+const STILL_TO_COME: f64 = 2.0;
+/// Standard errors from which what is left is more than noise.
+const SEEN: f64 = 3.0;
 /// What a letter of a law costs among forms that are equally good, in units of the criterion.
 const PER_LETTER: f64 = 0.02;
 /// Forms that an answer names beside its own, at most.
@@ -35,6 +40,13 @@ impl Criterion {
     }
 }
 
+/// Whether a fit leaves more than noise, and more than a search would still take up.
+pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+    misfit::left(open, fit).is_none_or(|(excess, error)| {
+        excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
+    })
+}
+
 /// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. `before` is the chi²
 /// without it.
 pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
@@ -42,6 +54,25 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
     let rough = elsewhere(open, &fit);
     let named = other_forms(&fit, rough.iter().take_while(|f| f.cost < near));
     named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
+}
+
+/// Rough fits, cheapest first, of which the best, so many at most, are fitted to the end where they may come near the first of them;
+/// `before` is the chi² without what they have in common.
+pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before: f64) -> Vec<Fit> {
+    let to_the_end = |fit: &Fit| open.fit(&fit.model, &fit.x).filter(|f| f.cost < fit.cost);
+    let Some(first) = rough.first_mut() else { return rough };
+    if let Some(fit) = to_the_end(first) {
+        *first = fit;
+    }
+    let noise = open.noise_cost();
+    let near = noise + STILL_TO_COME * (first.cost - noise).max(0.0) + NEARLY * tie(open, first, before);
+    let count = rough.iter().take(most).take_while(|fit| fit.cost <= near).count();
+    let others: Vec<Option<Fit>> = rough[..count].par_iter().skip(1).map(to_the_end).collect();
+    for (fit, finished) in rough[1..].iter_mut().zip(others) {
+        *fit = finished.unwrap_or_else(|| fit.clone());
+    }
+    rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    rough
 }
 
 /// Chi² within which other models are as good as one; `before` is the chi² without its last effect.

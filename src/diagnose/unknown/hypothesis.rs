@@ -2,15 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::forms::{Criterion, equally_good, with_elsewhere};
+use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
 use super::shown::Located;
 use super::stand_ins::other_places;
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
-use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::fit::{Fit, Placed, Problem};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{Found, MOST_EFFECTS, foretells, foretells_runs, least_gain, leaves_much, reweight};
-use crate::diagnose::verdict::{self, Confirmed, Excess, misfit};
+use crate::diagnose::verdict::{self, Confirmed, Excess};
 
 /// Laws in one answer, at most.
 const MOST_LAWS: usize = 2;
@@ -18,8 +18,6 @@ const MOST_LAWS: usize = 2;
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
 pub(super) const CLEARLY: f64 = 20.0;
-/// Standard errors from which what is left is more than noise.
-const SEEN: f64 = 3.0;
 /// A model with a law, the others that are as good, and where the misfit sits.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
@@ -36,16 +34,31 @@ pub(in crate::diagnose) enum OneLaw {
     Part(Box<Tried>),
 }
 
+/// Laws proposed beside the calibration.
+#[derive(Default)]
+pub(in crate::diagnose) struct Known {
+    pub plain: Option<Proposals>,
+    /// Single laws that remember, multiply or bend otherwise.
+    pub wide: Option<Proposals>,
+    /// Second laws, and the law that they are beside.
+    pub second: Option<(Vec<Placed>, Proposals)>,
+}
+
 /// What has been tried with one law, for later.
 #[derive(Default)]
 pub(in crate::diagnose) struct Tried {
-    pub proposals: Option<Proposals>,
-    /// Single laws that remember, multiply or bend otherwise.
-    pub wide: Option<Proposals>,
+    pub known: Known,
     /// The best law that is clearly better than any single effect.
     pub law: Option<Fit>,
     /// The law in the place of the best single effect, or beside it, however much that leaves.
     pub instead: Option<Lawful>,
+}
+
+impl Known {
+    /// What was proposed beside this law.
+    fn beside(&mut self, law: &Fit) -> Option<Proposals> {
+        self.second.take_if(|(own, _)| *own == law.model.effects).map(|(_, proposals)| proposals)
+    }
 }
 
 /// Looks for one law in the place of the best single effect, where that leaves more than noise.
@@ -73,7 +86,8 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let better = instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1).filter(is_better);
     let best = alone.into_iter().chain(better).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
     let law = best.as_ref().map(|lawful| lawful.best.clone());
-    let part = OneLaw::Part(Box::new(Tried { law, proposals: Some(proposals), instead, ..Tried::default() }));
+    let known = Known { plain: Some(proposals), ..Known::default() };
+    let part = OneLaw::Part(Box::new(Tried { known, law, instead }));
     let Some(lawful) = best.filter(is_all) else { return part };
     match renewed(case, noise, lawful.beside(found), say) {
         Some((found, noise)) => OneLaw::All(Box::new(found), noise),
@@ -162,9 +176,9 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_enough = instead
         .as_ref()
         .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
-    let alone = if is_enough { None } else { search.from(&found.baseline, tried.proposals, tried.wide) };
+    let alone = if is_enough { None } else { search.from(&found.baseline, tried.known) };
     let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
-    let beside = if is_beside { search.from(&found.best, None, None) } else { None };
+    let beside = if is_beside { search.from(&found.best, Known::default()) } else { None };
     let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
     let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
     let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
@@ -190,18 +204,13 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
     fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
+        let (best, forms) = without_idle(&open, best, forms);
+        found.rivals.truncate(best.model.effects.len());
         (found.rivals_against, found.best) = (best.cost, best);
         found = found.with_last_forms(forms);
     }
     found.baseline = renewed.baseline;
     (found, renewed.noise)
-}
-
-/// Whether a fit leaves more than noise, and more than a search would still take up.
-pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
-    misfit::left(open, fit).is_none_or(|(excess, error)| {
-        excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
-    })
 }
 
 /// Whether a fit leaves so little of the misfit that no further law is looked for.
@@ -219,9 +228,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Adds laws to a fit; `plain` and `wide` are what was proposed for the first with other weights.
-    fn from(&self, from: &Fit, plain: Option<Proposals>, wide: Option<Proposals>) -> Option<Lawful> {
-        self.add_laws(from.clone(), None, (plain, wide))
+    /// Adds laws to a fit; `known` were proposed with other weights.
+    fn from(&self, from: &Fit, known: Known) -> Option<Lawful> {
+        self.add_laws(from.clone(), None, known)
     }
 
     /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
@@ -236,29 +245,24 @@ impl Search<'_> {
         let mut fits = with_elsewhere(open, fit, before);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let (best, forms) = equally_good(open, &fits, before)?;
-        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), (None, None))
+        let (best, forms) = without_idle(open, best, forms);
+        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), Known::default())
     }
 
     /// Adds laws one by one, as long as much is left.
-    fn add_laws(
-        &self,
-        mut here: Fit,
-        mut lawful: Option<Lawful>,
-        (plain, mut wide): (Option<Proposals>, Option<Proposals>),
-    ) -> Option<Lawful> {
+    fn add_laws(&self, mut here: Fit, mut lawful: Option<Lawful>, mut known: Known) -> Option<Lawful> {
         let open = self.open;
-        let mut begun = plain.map(|b| b.again(open));
         for _ in usize::from(lawful.is_some())..self.most() {
             let is_all = lawful.is_some() && !leaves_something(open, &here);
             if is_explained(open, &self.found.baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
                 break;
             }
-            let Some(mut proposals) = begun.take().or_else(|| propose(open, &here, Reach::Plain, self.say)) else {
-                break;
-            };
+            let begun = if lawful.is_none() { known.plain.take() } else { known.beside(&here) };
+            let begun = begun.map(|begun| begun.again(open));
+            let Some(mut proposals) = begun.or_else(|| propose(open, &here, Reach::Plain, self.say)) else { break };
             let Some(first) = proposals.fits.first() else { break };
             if lawful.is_none() && leaves_something(open, first) && self.may_be_wider(first) {
-                proposals.fits = wider(open, &here, proposals.fits, wide.take(), self.say);
+                proposals.fits = wider(open, &here, proposals.fits, known.wide.take(), self.say);
             }
             let Some(first) = proposals.fits.first() else { break };
             if here.cost - first.cost < least_gain(open.samples()) {
@@ -286,7 +290,7 @@ impl Search<'_> {
     }
 }
 
-/// A fit and its forms without the effects that the law which came last has made needless.
+/// A fit and its forms without the effects that the law which came last, as it now stands, has made needless.
 pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
     let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
     let least = least_gain(open.samples());

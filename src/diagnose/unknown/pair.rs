@@ -1,7 +1,7 @@
 //! Two things at once of which the catalogue holds one or none: a law with a listed effect beside it, or with a second law.
 
-use super::forms::equally_good;
-use super::hypothesis::{Lawful, Tried, is_clearly_better, leaves_something, renewed, without_idle};
+use super::forms::{equally_good, leaves_something};
+use super::hypothesis::{Lawful, Tried, is_clearly_better, renewed, without_idle};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
@@ -31,27 +31,28 @@ pub(in crate::diagnose) fn pair(
     say: &dyn Fn(String),
 ) -> Pair {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
-    let first = tried.proposals.as_ref().and_then(|p| p.fits.first()).cloned();
+    let first = tried.known.plain.as_ref().and_then(|p| p.fits.first()).cloned();
     // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
     let Some(law) = first.filter(|_| is_asked && leaves_something(&open, &found.best)) else {
         return Pair::Part(Box::new(tried));
     };
     // One law that remembers or depends on two variables is simpler than two things.
-    tried.wide = propose(&open, &found.baseline, Reach::Wide, say);
+    tried.known.wide = propose(&open, &found.baseline, Reach::Wide, say);
     // A bend of what a channel shows imitates anything that is still: a law in the rig comes before it.
     let bent =
         || propose(&open, &found.baseline, Reach::Channels, say).and_then(|bent| explains_all(&open, found, &bent));
-    let single = tried.wide.as_ref().and_then(|wide| explains_all(&open, found, wide)).or_else(bent);
+    let single = tried.known.wide.as_ref().and_then(|wide| explains_all(&open, found, wide)).or_else(bent);
     if let Some(lawful) = single
         && let Some((found, noise)) = renewed(case, noise, lawful.beside(found), say)
     {
         return Pair::All(Box::new(found), noise);
     }
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
-    let Some(lawful) = with_partner(&open, (&found.baseline, &law), variants, say) else {
-        return Pair::Part(Box::new(tried));
-    };
+    let second = propose(&open, &law, Reach::Plain, say);
+    let lawful = with_partner(&open, (&found.baseline, &law), (second.as_ref(), variants), say);
+    tried.known.second = second.map(|second| (law.model.effects.clone(), second));
+    let Some(lawful) = lawful else { return Pair::Part(Box::new(tried)) };
     if !lawful.best.model.effects.iter().any(|e| e.entry.hypothetical) {
         let is_lower = lawful.best.cost < found.best.cost;
         return if is_lower { Pair::Listed(lawful.best, Box::new(tried)) } else { Pair::Part(Box::new(tried)) };
@@ -104,11 +105,11 @@ fn law_last(fit: &Fit) -> Option<Fit> {
 fn with_partner(
     open: &Problem,
     (baseline, law): (&Fit, &Fit),
-    variants: &[Variant],
+    (second, variants): (Option<&Proposals>, &[Variant]),
     say: &dyn Fn(String),
 ) -> Option<Lawful> {
     let listed = beside(open, law, variants).into_iter().next();
-    let second = propose(open, law, Reach::Plain, say).and_then(|p| p.fits.into_iter().next());
+    let second = second.and_then(|second| second.fits.first()).cloned();
     let both = listed.into_iter().chain(second).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     say(format!("{}: chi2 {:.0} -> {:.0}", both.model.title(), law.cost, both.cost));
     if law.cost - both.cost < LEAST_SHARE * (law.cost - open.noise_cost()) {

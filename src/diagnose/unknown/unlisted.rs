@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use super::forms::{finished, leaves_something};
 use super::shown::{Located, Shown};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Slot, slots};
@@ -55,7 +56,9 @@ pub(in crate::diagnose) fn propose(
     say(format!("{} slots screened, the best {} on {}", located.len(), address(&located), variable(&located)));
     let best = several_ports(&located);
     let mut fits = shown.refits(&all, &best, 1);
-    let curves = shown.curves(&all, &best);
+    // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.
+    let is_explained = fits.first().is_some_and(|fit| !leaves_something(problem, fit));
+    let curves = if is_explained { Vec::new() } else { shown.curves(&all, &best) };
     let wide = worth_widening(&best, fits.iter().chain(&curves));
     say(format!(
         "shapes of {} at {}",
@@ -68,15 +71,7 @@ pub(in crate::diagnose) fn propose(
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
-    let count = fits.len().min(FINISHED);
-    let finished: Vec<Option<Fit>> = fits[..count].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
-    for (fit, finished) in fits.iter_mut().zip(finished) {
-        if let Some(finished) = finished.filter(|f| f.cost < fit.cost) {
-            *fit = finished;
-        }
-    }
-    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    Some(Proposals { located, fits })
+    Some(Proposals { located, fits: finished(problem, fits, FINISHED, from.cost) })
 }
 
 /// The slots whose laws, a shape or a curve, leave least.
