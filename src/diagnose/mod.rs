@@ -126,9 +126,13 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left = excess.best.max(0.0) * whole.samples() as f64;
-    let (effects, contradicted) = named(&case, (&found, &complete, left), &noise, &mut warnings);
+    let (mut effects, contradicted) = named(&case, (&found, &complete, left), &noise, &mut warnings);
     let verdict = judged(&case, (&found, &effects), confirmed, excess);
     let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
+    let is_refuted = confirmed == Confirmed::InPart && !is_modelled;
+    if verdict == Verdict::UnknownPhysics && (is_refuted || verdict::leaves_a_part(&found, excess)) {
+        verdict::doubt(&mut effects);
+    }
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
         warnings.push(HELD_OUT_ALONE.to_owned());
     }

@@ -8,5 +8,7 @@ mod named;
 mod written;
 
 pub(super) use misfit::{Excess, Residuals, misfit};
-pub(super) use named::{Confirmed, Open, is_loud, is_said, is_unknown, lost, named, open, unit, verdict};
+pub(super) use named::{
+    Confirmed, Open, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
+};
 pub(super) use written::{curve, port};

@@ -14,6 +14,8 @@ const LEAST_PROBABILITY: f64 = 0.05;
 const SURE: f64 = 0.9;
 /// Share of the baseline's misfit that may be left when the answer is complete: laws are idealisations.
 const LEFT_SHARE: f64 = 0.1;
+/// No effect is believed more in an answer that leaves a part unexplained: what it explains may belong to what is missing.
+const MOST_IN_PART: f64 = 2.0 / 3.0;
 /// Misfit per sample below which nothing is called unknown, in units of the noise's variance.
 const LEFT_LEAST: f64 = 0.015;
 
@@ -40,12 +42,18 @@ pub fn is_loud(excess: f64, error: f64) -> bool {
 
 /// Whether more is left than the catalogue explains.
 pub fn is_unknown(found: &Found, excess: Excess) -> bool {
-    let effects = &found.best.model.effects;
-    if effects.iter().any(|e| e.entry.hypothetical) {
-        return true;
-    }
-    let left = if effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
+    found.best.model.effects.iter().any(|e| e.entry.hypothetical) || leaves_a_part(found, excess)
+}
+
+/// Whether what was found leaves a part of the misfit that idealised laws do not account for.
+pub fn leaves_a_part(found: &Found, excess: Excess) -> bool {
+    let left = if found.best.model.effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
     is_loud(excess.best, excess.error) && excess.best > left
+}
+
+/// Takes back how far the effects of an answer that leaves a part unexplained are believed.
+pub fn doubt(effects: &mut [NamedEffect]) {
+    effects.iter_mut().for_each(|effect| effect.probability = effect.probability.min(MOST_IN_PART));
 }
 
 /// What the search and what is left amount to; in a closed set nothing is unknown.
@@ -274,6 +282,19 @@ mod tests {
         Fit { model, x, cost, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() }
     }
 
+    fn found(best: Fit, rivals: Vec<Fit>) -> Found {
+        Found {
+            baseline: fit(&[], 1000.0),
+            rivals_against: best.cost,
+            best,
+            rivals: vec![rivals],
+            screened: Vec::new(),
+            forms: Vec::new(),
+            located: Vec::new(),
+            withheld: None,
+        }
+    }
+
     #[test]
     fn an_interval_ends_where_its_law_does() {
         let mut loose = fit(&["plastic_set"], 1.0);
@@ -284,18 +305,23 @@ mod tests {
         assert!(value < high && high <= spec.range.max, "{high}");
     }
 
+    /// A tenth of what the calibration left is what idealised laws leave; more than that is a part of the physics.
+    #[test]
+    fn what_leaves_a_part_unexplained_is_not_believed_to_the_end() {
+        let [weight, nothing] = [&["gravity_load"][..], &[]].map(|ids| found(fit(ids, 100.0), Vec::new()));
+        let excess = |best: f64| Excess { baseline: 1.0, best, error: 1e-3 };
+        assert!(!leaves_a_part(&weight, excess(0.09)));
+        assert!(leaves_a_part(&weight, excess(0.11)));
+        assert!(leaves_a_part(&nothing, excess(0.09)));
+        let mut effects = named(&weight, &fit(&["gravity_load"], 100.0), 10.0);
+        assert_eq!(effects[0].probability, 1.0);
+        doubt(&mut effects);
+        assert_eq!(effects[0].probability, MOST_IN_PART);
+    }
+
     #[test]
     fn terms_of_a_hypothesis_do_not_count_against_the_rivals_of_what_stands_beside_them() {
-        let plain = Found {
-            baseline: fit(&[], 1000.0),
-            best: fit(&["gravity_load"], 100.0),
-            rivals: vec![vec![fit(&["coil_preload"], 101.0)]],
-            rivals_against: 100.0,
-            screened: Vec::new(),
-            forms: Vec::new(),
-            located: Vec::new(),
-            withheld: None,
-        };
+        let plain = found(fit(&["gravity_load"], 100.0), vec![fit(&["coil_preload"], 101.0)]);
         let grown = Found { best: fit(&["gravity_load", "hypothetical_force"], 40.0), ..plain.clone() };
         let probabilities = |found: &Found| -> Vec<(String, f64)> {
             let effects = named(found, &found.best, 0.0).into_iter();
