@@ -326,6 +326,19 @@ fn the_map_shows_no_folder_that_is_gone() {
     }
 }
 
+/// Pages for whoever changes the code point at files; these move.
+#[test]
+fn pages_for_developers_name_places_that_exist() {
+    let page = fs::read_to_string(root().join("docs/extending.md")).expect("docs/extending.md");
+    let is_place = |text: &&str| text.starts_with("src/") || text.starts_with("tests/");
+    let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+    // `ID` stands for a name of the reader's.
+    let places: BTreeSet<&str> = quoted.filter(is_place).filter(|place| !place.contains("ID")).collect();
+    assert!(places.len() > 30, "{places:?}");
+    let gone: Vec<&&str> = places.iter().filter(|place| !root().join(place).exists()).collect();
+    assert!(gone.is_empty(), "docs/extending.md names what is not there: {gone:?}");
+}
+
 #[test]
 fn the_reader_of_imports_sees_what_it_should() {
     let code =
