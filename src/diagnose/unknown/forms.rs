@@ -69,7 +69,9 @@ pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before:
     let count = rough.iter().take(most).take_while(|fit| fit.cost <= near).count();
     let others: Vec<Option<Fit>> = rough[..count].par_iter().skip(1).map(to_the_end).collect();
     for (fit, finished) in rough[1..].iter_mut().zip(others) {
-        *fit = finished.unwrap_or_else(|| fit.clone());
+        if let Some(finished) = finished {
+            *fit = finished;
+        }
     }
     rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     rough
@@ -136,4 +138,36 @@ fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
 /// Length of the last effect's law as text: of forms that do the same the shorter stands.
 fn letters(fit: &Fit) -> usize {
     fit.model.effects.last().map_or(0, |e| e.spec().equation.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::{Model, Placed};
+    use crate::effects::{Element, ElementKind, find};
+
+    /// Recordings without anything hidden or any noise: whatever is fitted to the end leaves nothing, and whatever cannot come near the first is
+    /// left as it was, as are those beyond the most that are asked for.
+    #[test]
+    fn rough_fits_that_may_come_near_the_first_are_fitted_to_the_end() {
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let noise = [Noise::white(0.02)];
+        let open = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
+        let (entry, element) = (find("leak").expect("of the catalogue"), Element::of(ElementKind::Line, 0, 1));
+        let rough = |size: f64, cost: f64| {
+            let model = Model::baseline().plus(&Placed { entry, element, channel: None }, &[size]);
+            let x = open.start(&model, None);
+            Fit { covariance: DMatrix::zeros(x.len(), x.len()), model, x, cost, on_bound: Vec::new() }
+        };
+        let of_noise = open.noise_cost();
+        let all = vec![rough(1e-18, of_noise), rough(2e-18, of_noise + 1.0), rough(3e-18, 10.0 * of_noise)];
+        let costs = |most: usize| finished(&open, all.clone(), most, 20.0 * of_noise).iter().map(|f| f.cost).collect();
+        let [both, one]: [Vec<f64>; 2] = [costs(3), costs(1)];
+        assert!(both[..2].iter().all(|cost| *cost < 0.5 * of_noise) && both[2] == 10.0 * of_noise, "{both:?}");
+        assert!(one[0] < 0.5 * of_noise && one[1..] == [of_noise + 1.0, 10.0 * of_noise], "{one:?}");
+        assert!(finished(&open, Vec::new(), 3, 1.0).is_empty());
+    }
 }
