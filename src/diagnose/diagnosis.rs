@@ -80,6 +80,22 @@ pub struct Location {
     pub state_region: String,
     /// Elements that the recorded channels cannot tell apart here.
     pub indistinguishable: Vec<Vec<String>>,
+    /// Places at which something unknown may act, the likeliest first, and whether all else closes then.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub balances: Vec<Balance>,
+}
+
+/// What something unknown at one port, whatever it does over time, would leave of the open runs: if that is no more than noise, the
+/// balances of all other elements close.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    pub port: String,
+    pub element: String,
+    /// Twice the logarithm of how much less likely the recordings are than with something unknown at the likeliest port.
+    pub behind: f64,
+    /// What is left of each run, in standard errors of what noise leaves, by file.
+    pub left_sigma: BTreeMap<String, f64>,
+    pub closes: bool,
 }
 
 /// Step 4 and 5: what.

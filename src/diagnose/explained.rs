@@ -8,7 +8,7 @@ use super::fit::{Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
 use super::unknown::hypothesis::{self, OneLaw, Tried};
 use super::unknown::pair::{self, Pair};
-use super::unknown::stand_ins;
+use super::unknown::{misplaced, stand_ins};
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
@@ -44,6 +44,7 @@ pub(super) fn explain(
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
+    let explained = without_misplaced(case, explained, seed, say)?;
     let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
@@ -135,24 +136,52 @@ impl Search<'_> {
         listed: &mut Explained,
         tried: Tried,
     ) -> Result<Option<Explained>, DiagnoseError> {
-        let former = case.runs.clone();
         let Explained { found, confirmed, excess, noise, .. } = &mut *listed;
         let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, tried, self.say) else {
             return Ok(None);
         };
-        let (found, noise) = hypothesis::renew(case, noise, found);
-        let lawful = Explained { confirmed: listed.confirmed, ..proven(case, found, noise, self.seed)? };
-        let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &lawful.noise };
-        if harm::is_worse(&held_out, &listed.found, &lawful.found.best, self.seed) {
-            let [own, known] = [&lawful.found, &listed.found].map(|f| f.best.model.title());
-            listed.of_found.push(format!(
-                "{own} predicts the held-out runs worse than {known} alone: it is not put into scene.toml"
-            ));
-            case.runs = former;
-            return Ok(None);
-        }
-        Ok(Some(lawful))
+        let noise = noise.clone();
+        taken(case, listed, found, &noise, self.seed)
     }
+}
+
+/// What was found with laws at likelier places instead of effects that only stand in for them.
+fn without_misplaced(
+    case: &mut Case,
+    mut explained: Explained,
+    seed: u64,
+    say: &dyn Fn(String),
+) -> Result<Explained, DiagnoseError> {
+    for _ in 0..explained.found.best.model.effects.len() {
+        let noise = explained.noise.clone();
+        let Some(found) = misplaced::exchanged(case, &noise, &explained.found, say) else { break };
+        let Some(lawful) = taken(case, &mut explained, found, &noise, seed)? else { break };
+        explained = lawful;
+    }
+    Ok(explained)
+}
+
+/// A law in the place of what was found, with the weights and steps that it asks for; none where it predicts the held-out runs worse.
+fn taken(
+    case: &mut Case,
+    listed: &mut Explained,
+    found: Found,
+    noise: &[Noise],
+    seed: u64,
+) -> Result<Option<Explained>, DiagnoseError> {
+    let former = case.runs.clone();
+    let (found, noise) = hypothesis::renew(case, noise, found);
+    let lawful = Explained { confirmed: listed.confirmed, ..proven(case, found, noise, seed)? };
+    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &lawful.noise };
+    if harm::is_worse(&held_out, &listed.found, &lawful.found.best, seed) {
+        let [own, known] = [&lawful.found, &listed.found].map(|f| f.best.model.title());
+        listed
+            .of_found
+            .push(format!("{own} predicts the held-out runs worse than {known} alone: it is not put into scene.toml"));
+        case.runs = former;
+        return Ok(None);
+    }
+    Ok(Some(lawful))
 }
 
 /// What was found with what it is worth on the held-out runs.

@@ -33,6 +33,7 @@ mod explained;
 mod fit;
 mod full;
 mod grammar;
+mod latent;
 mod search;
 mod unknown;
 mod validation;
@@ -43,8 +44,8 @@ use std::collections::BTreeMap;
 pub use answer::{Outcome, side_by_side, write_answer, write_answer_with};
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet, Step};
 pub use diagnosis::{
-    ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof, Verdict,
-    size_key,
+    Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof,
+    Verdict, size_key,
 };
 pub use error::DiagnoseError;
 pub use experiment::programme;

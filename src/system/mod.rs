@@ -75,4 +75,4 @@ pub use schedule::Schedule;
 pub use simulation::Simulation;
 pub use standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber};
 pub use state::PlantState;
-pub use twin::{Change, MuscleNumber, Signals, StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};
+pub use twin::{Block, Change, Linear, MuscleNumber, Signals, StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -8,6 +8,7 @@
 mod course;
 mod directions;
 mod inject;
+mod linear;
 mod lump;
 mod many;
 mod output;
@@ -33,6 +34,7 @@ use super::{Schedule, SystemError};
 
 use course::Course;
 pub use inject::{Change, Signals};
+pub use linear::{Block, Linear};
 pub(super) use output::sensor;
 use output::{Sensors, TwinOutput};
 pub use parameter::{MuscleNumber, TwinParameter};

@@ -1,12 +1,12 @@
 //! Step 3: where the baseline's misfit sits in time and state.
 
 use std::borrow::Cow;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::diagnose::case::{Case, CaseRun, Direction, Noise};
-use crate::diagnose::diagnosis::{Location, NamedEffect, Verdict};
-use crate::diagnose::fit::Problem;
+use crate::diagnose::case::{Case, CaseRun, Direction, Noise, RunSet};
+use crate::diagnose::diagnosis::{Balance, Location, NamedEffect, Verdict};
+use crate::diagnose::fit::{Fit, Problem, Sides};
+use crate::diagnose::latent::{Latent, latents};
 use crate::diagnose::search::Found;
 use crate::laws::Address;
 
@@ -14,6 +14,9 @@ use crate::laws::Address;
 const PIECE_S: f64 = 1.0;
 /// A piece counts when its mean square stands this many standard errors above that of noise.
 const SIGMA: f64 = 6.0;
+
+/// A balance closes when no run keeps more than this many standard errors above noise.
+const CLOSES_SIGMA: f64 = 3.0;
 
 /// Element, time and state in which the baseline's misfit sits.
 pub fn location(
@@ -27,15 +30,54 @@ pub fn location(
     if verdict == Verdict::Adequate {
         return Location::default();
     }
-    if !found.located.is_empty() {
-        return Location {
-            ranked: by_screening(found, effects),
-            element: effects.iter().rfind(|e| e.hypothetical).or(effects.first()).map(|e| e.element.clone()),
-            time_windows_s: time_windows(&whole.runs, before, whole.noise),
-            state_region: state_region(case, &whole.runs, before, whole.noise),
-            indistinguishable: alike_forms(effects),
-        };
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise: whole.noise };
+    let is_law = effects.iter().any(|e| e.hypothetical);
+    let latents = if is_law || effects.is_empty() { of_baseline(&open, &found.baseline) } else { Vec::new() };
+    let by_place = by_place(found, &latents);
+    let ranked = if by_place.is_empty() { by_probability(found, effects) } else { by_place };
+    let law = effects.iter().rfind(|e| e.hypothetical).map(|e| e.element.clone());
+    Location {
+        element: law.or_else(|| ranked.first().map(|(e, _)| e.clone())),
+        ranked,
+        time_windows_s: time_windows(&whole.runs, before, whole.noise),
+        state_region: state_region(case, &whole.runs, before, whole.noise),
+        indistinguishable: if is_law { alike_forms(effects) } else { indistinguishable(found) },
+        balances: latents.iter().map(|latent| balance(latent, &latents[0], &open)).collect(),
     }
+}
+
+/// What something unknown at each place makes of the calibrated scene's misfit. Where effects of the catalogue explain it, they say where.
+fn of_baseline(open: &Problem, baseline: &Fit) -> Vec<Latent> {
+    let known = open.rows(&baseline.model, &baseline.x, 0..baseline.x.len(), Sides::Both);
+    known.map_or_else(Vec::new, |known| latents(open, baseline, &known))
+}
+
+/// What something unknown at one place leaves, beside the likeliest place.
+fn balance(latent: &Latent, likeliest: &Latent, open: &Problem) -> Balance {
+    let files = open.runs.iter().map(|run| run.file.clone());
+    Balance {
+        port: latent.address.clone(),
+        element: latent.element.clone(),
+        behind: likeliest.log_odds - latent.log_odds,
+        left_sigma: files.zip(latent.left_sigma.iter().copied()).collect(),
+        closes: latent.left_sigma.iter().all(|sigma| *sigma < CLOSES_SIGMA),
+    }
+}
+
+/// Elements by the share of the misfit that something unknown on them could explain at best.
+fn by_place(found: &Found, latents: &[Latent]) -> Vec<(String, f64)> {
+    let all = found.baseline.cost.max(f64::MIN_POSITIVE);
+    let mut ranked: Vec<(String, f64)> = Vec::new();
+    for latent in latents {
+        if !ranked.iter().any(|(element, _)| *element == latent.element) {
+            ranked.push((latent.element.clone(), (latent.log_odds / all).clamp(0.0, 1.0)));
+        }
+    }
+    ranked
+}
+
+/// Elements by the probabilities of their effects; where none is named, by what signatures promise.
+fn by_probability(found: &Found, effects: &[NamedEffect]) -> Vec<(String, f64)> {
     let mut shares: BTreeMap<String, f64> = BTreeMap::new();
     // Hypotheses say where only when nothing known does.
     let only_hypotheses = effects.iter().all(|e| e.hypothetical);
@@ -43,7 +85,6 @@ pub fn location(
         *shares.entry(e.element.clone()).or_default() += e.probability;
     }
     if shares.is_empty() {
-        // Nothing of the catalogue: where the signatures promise most.
         for s in &found.screened {
             let share = shares.entry(s.variant.placed.element.to_string()).or_default();
             *share = share.max(s.gain);
@@ -52,27 +93,6 @@ pub fn location(
     let sum: f64 = shares.values().sum();
     let mut ranked: Vec<(String, f64)> = shares.into_iter().map(|(e, s)| (e, s / sum.max(f64::MIN_POSITIVE))).collect();
     ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-    Location {
-        element: ranked.first().map(|(e, _)| e.clone()),
-        ranked,
-        time_windows_s: time_windows(&whole.runs, before, whole.noise),
-        state_region: state_region(case, &whole.runs, before, whole.noise),
-        indistinguishable: indistinguishable(found),
-    }
-}
-
-/// Elements by the share of the misfit that a law on them could explain at best, that of the law named first.
-fn by_screening(found: &Found, effects: &[NamedEffect]) -> Vec<(String, f64)> {
-    let mut best: BTreeMap<&str, f64> = BTreeMap::new();
-    for (element, gain) in &found.located {
-        let own = best.entry(element).or_default();
-        *own = own.max(*gain);
-    }
-    let all = found.baseline.cost.max(f64::MIN_POSITIVE);
-    let named = |element: &str| effects.iter().any(|e| e.hypothetical && e.element == element);
-    let mut ranked: Vec<(String, f64)> =
-        best.into_iter().map(|(element, gain)| (element.to_owned(), (gain / all).min(1.0))).collect();
-    ranked.sort_by(|a, b| (named(&b.0), b.1).partial_cmp(&(named(&a.0), a.1)).unwrap_or(Ordering::Equal));
     ranked
 }
 

@@ -11,4 +11,4 @@ mod slots;
 pub(super) use reading::Reading;
 pub(super) use shaped::{candidate, curve, variant};
 pub(super) use shapes::Shape;
-pub(super) use slots::{Reach, Slot, slots};
+pub(super) use slots::{Place, Reach, Slot, places, slots};

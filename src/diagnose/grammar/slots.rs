@@ -5,9 +5,7 @@ use super::reading::{Reading, readings};
 use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
 use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
-use crate::laws::{
-    Acts, Address, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
-};
+use crate::laws::{Acts, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings};
 use crate::recording::parse_column;
 use crate::scene::on_channel;
 
@@ -93,17 +91,32 @@ impl Slot {
     pub fn name(&self) -> String {
         format!("{}{}", self.address.replace('.', "_"), self.reading.word())
     }
-
-    /// Name of the element that it belongs to, as answers have it.
-    pub fn element(&self) -> String {
-        Address::parse(&self.address).map_or_else(|_| self.address.clone(), |a| a.element())
-    }
 }
 
 impl PartialEq for Slot {
     fn eq(&self, other: &Self) -> bool {
         (&self.address, &self.variable, &self.reading) == (&other.address, &other.variable, &other.reading)
     }
+}
+
+/// A place where a law may act: a port of one element, or of all equal ones at once.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub address: String,
+    pub port: Port,
+    /// A law whose only number is what acts there, and a size of that which is plain to see.
+    pub injected: Placed,
+    pub typical: f64,
+}
+
+/// Every place of a case's scene where a law may act.
+pub fn places(case: &Case) -> Vec<Place> {
+    let place = |port: Port, address: String| {
+        let action = Action::at(port)?;
+        let injected = injected(case, &address, &action)?;
+        (case.has_clock || !port.is_of_rate()).then_some(Place { address, port, injected, typical: action.typical })
+    };
+    PORTS.iter().flat_map(|spec| addresses(case, spec).into_iter().filter_map(|a| place(spec.port, a))).collect()
 }
 
 /// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.

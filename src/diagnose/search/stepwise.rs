@@ -18,8 +18,6 @@ pub struct Found {
     pub screened: Vec<Screened>,
     /// For each effect of the best: laws of other shapes or at other places that explain as much in its place, the last effect of each.
     pub forms: Vec<Vec<Fit>>,
-    /// Elements of the slots that were screened for laws, with the fall of chi² that each promised.
-    pub located: Vec<(String, f64)>,
     /// What predicts held-out runs worse than the calibration, or cannot be played: known, and not put into the scene.
     pub withheld: Option<Box<Found>>,
 }
@@ -102,7 +100,6 @@ impl Begun {
             rivals: self.way.rivals.clone(),
             screened: self.screened.clone(),
             forms: Vec::new(),
-            located: Vec::new(),
             withheld: None,
         }
     }

@@ -25,7 +25,7 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
     if let Some(own) = own {
         shown.keep(&all, own, more);
     }
-    let located = shown.locate(&all, more);
+    let located = shown.locate(&all, &all, more);
     let does_the_same = |l: &&Located| l.gain > AS_MUCH * shown.whole() && !is_place_of(fit, &l.slot);
     let mut places: Vec<&Slot> = Vec::new();
     for own in located.iter().filter(does_the_same) {

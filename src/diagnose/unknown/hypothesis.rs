@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
-use super::shown::Located;
 use super::stand_ins::other_places;
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
@@ -18,12 +17,11 @@ const MOST_LAWS: usize = 2;
 const EXPLAINED: f64 = 0.02;
 /// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
 pub(super) const CLEARLY: f64 = 20.0;
-/// A model with a law, the others that are as good, and where the misfit sits.
+/// A model with a law, and the others that are as good.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
     pub best: Fit,
     pub forms: Vec<Fit>,
-    pub located: Vec<Located>,
 }
 
 /// What one law makes of the recordings before the catalogue has tried several effects.
@@ -76,7 +74,7 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
             && is_clearly_better(&open, found, &lawful.best)
     };
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
-        .map(|(best, forms)| Lawful { best, forms, located: proposals.located.clone() })
+        .map(|(best, forms)| Lawful { best, forms })
         .filter(is_better);
     let instead = match alone.as_ref().is_some_and(is_all) {
         true => None,
@@ -122,7 +120,7 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
     let proposals = propose(open, &found.best, Reach::Plain, say)?;
     let (best, forms) = equally_good(open, &proposals.fits, found.best.cost)?;
     let (best, forms) = without_idle(open, best, forms);
-    Some(Lawful { best, forms, located: proposals.located })
+    Some(Lawful { best, forms })
 }
 
 /// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
@@ -140,8 +138,7 @@ impl Lawful {
     /// What was found with the law in its place.
     pub fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
-        let located = self.located.iter().map(|l| (l.slot.element(), l.gain)).collect();
-        let found = Found { rivals_against: self.best.cost, best: self.best, rivals, located, ..found.clone() };
+        let found = Found { rivals_against: self.best.cost, best: self.best, rivals, ..found.clone() };
         found.with_last_forms(self.forms)
     }
 }
@@ -246,7 +243,7 @@ impl Search<'_> {
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let (best, forms) = equally_good(open, &fits, before)?;
         let (best, forms) = without_idle(open, best, forms);
-        self.add_laws(best.clone(), Some(Lawful { best, forms, ..own }), Known::default())
+        self.add_laws(best.clone(), Some(Lawful { best, forms }), Known::default())
     }
 
     /// Adds laws one by one, as long as much is left.
@@ -271,8 +268,7 @@ impl Search<'_> {
             let (best, forms) = equally_good(open, &proposals.fits, here.cost)?;
             let (best, forms) = without_idle(open, best, forms);
             here = best.clone();
-            let located = lawful.map_or(proposals.located, |l| l.located);
-            lawful = Some(Lawful { best, forms, located });
+            lawful = Some(Lawful { best, forms });
         }
         lawful
     }

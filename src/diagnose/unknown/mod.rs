@@ -1,10 +1,11 @@
 //! Step 6: what the catalogue does not explain, as laws of the grammar.
 //!
-//! May import `verdict`, `search`, `grammar`, `fit` and `case`.
+//! May import `verdict`, `search`, `latent`, `grammar`, `fit` and `case`.
 
 mod elsewhere;
 mod forms;
 pub(super) mod hypothesis;
+pub(super) mod misplaced;
 pub(super) mod pair;
 mod shown;
 mod span;

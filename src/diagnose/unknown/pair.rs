@@ -76,7 +76,7 @@ pub(in crate::diagnose) fn pair(
 fn explains_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<Lawful> {
     let (best, forms) = equally_good(open, &proposals.fits, found.baseline.cost)?;
     let is_all = !leaves_something(open, &best) && is_clearly_better(open, found, &best);
-    is_all.then(|| Lawful { best, forms, located: proposals.located.clone() })
+    is_all.then_some(Lawful { best, forms })
 }
 
 /// Of two things, the same with an effect of the catalogue in the place of a law, where that leaves little. It is sought where the law
@@ -128,5 +128,5 @@ fn with_partner(
     let (best, forms) = listed.map_or((best, forms), |listed| (listed, Vec::new()));
     let (best, forms) = law_last(&best).map_or((best, forms), |fit| (fit, Vec::new()));
     say(format!("{}: chi2 {:.0}", best.model.title(), best.cost));
-    Some(Lawful { best, forms, located: proposals.located })
+    Some(Lawful { best, forms })
 }

@@ -71,12 +71,11 @@ pub(super) struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// What a fit leaves. `None` where it cannot be simulated.
-    pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
-        let known = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)?;
+    /// What a fit leaves, whose rows are `known`.
+    pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit, known: Rows) -> Self {
         let basis = known.slopes.clone().qr().q();
         let left = orthogonal(&basis, &known.residual);
-        Some(Self { problem, along: fit, from: fit.clone(), slopes: known.slopes, basis, left })
+        Self { problem, along: fit, from: fit.clone(), slopes: known.slopes, basis, left }
     }
 
     /// What the last effect of a fit does, by its size. `None` where the model cannot be simulated, or the size is not fitted.
@@ -154,12 +153,12 @@ impl<'a> Shown<'a> {
         fits
     }
 
-    /// How much of it a curve over each slot's variable could explain, of one shape more where that is given with its scale; the best first.
-    pub fn locate(&self, all: &[Slot], more: More) -> Vec<Located> {
-        let wanted: Vec<Vec<Wanted>> = all.iter().map(|slot| of_curve(slot, more)).collect();
+    /// How much of it a curve over each of some slots' variables could explain, of one shape more where that is given with its scale; the best first.
+    pub fn locate(&self, all: &[Slot], some: &[Slot], more: More) -> Vec<Located> {
+        let wanted: Vec<Vec<Wanted>> = some.iter().map(|slot| of_curve(slot, more)).collect();
         let signatures = self.signatures(all, &wanted.concat());
         let mut signatures = signatures.iter();
-        let gains = all.iter().zip(&wanted).map(|(slot, own)| {
+        let gains = some.iter().zip(&wanted).map(|(slot, own)| {
             let own: Vec<&Option<DVector<f64>>> = signatures.by_ref().take(own.len()).collect();
             let own: Vec<&DVector<f64>> = own.into_iter().flatten().collect();
             Located { slot: slot.clone(), gain: explained(&own, &self.left) }

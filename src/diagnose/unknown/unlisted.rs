@@ -8,12 +8,16 @@ use rayon::prelude::*;
 
 use super::forms::{finished, leaves_something};
 use super::shown::{Located, Shown};
-use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::fit::{Fit, Problem, Sides};
 use crate::diagnose::grammar::{Reach, Slot, slots};
+use crate::diagnose::latent::{Latent, latents, likely};
 
 /// Slots of which the best shape is refitted, at most so many at ports of one kind; slots around which all shapes are.
 const SLOTS: usize = 12;
 const SLOTS_OF_PORT: usize = 3;
+/// Of these, those at the places where an unknown signal is likeliest, at most so many at one place.
+const SLOTS_BY_PLACE: usize = 8;
+const SLOTS_OF_PLACE: usize = 2;
 const WIDENED: usize = 4;
 /// Mere numbers that are refitted beside them.
 const NUMBERS: usize = 4;
@@ -23,8 +27,6 @@ const FINISHED: usize = 6;
 
 /// What the grammar makes of a fit's misfit.
 pub(in crate::diagnose) struct Proposals {
-    /// All slots, the best first.
-    pub located: Vec<Located>,
     /// Refits with one law more, cheapest first; the last effect of each is the law.
     pub fits: Vec<Fit>,
 }
@@ -36,7 +38,7 @@ impl Proposals {
         let again = best.par_iter().filter_map(|f| problem.fit(&f.model, &f.x));
         let mut fits: Vec<Fit> = again.collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        Self { fits, ..self }
+        Self { fits }
     }
 }
 
@@ -51,10 +53,22 @@ pub(in crate::diagnose) fn propose(
     if all.is_empty() {
         return None;
     }
-    let shown = Shown::misfit(problem, from)?;
-    let located = shown.locate(&all, None);
-    say(format!("{} slots screened, the best {} on {}", located.len(), address(&located), variable(&located)));
-    let best = several_ports(&located);
+    let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
+    // What channels show is no place in the rig.
+    let likely = if reach == Reach::Channels { Vec::new() } else { likely(latents(problem, from, &known)) };
+    let is_likely = |slot: &&Slot| likely.is_empty() || likely.iter().any(|latent| latent.address == slot.address);
+    let some: Vec<Slot> = all.iter().filter(is_likely).cloned().collect();
+    let shown = Shown::misfit(problem, from, known);
+    let located = shown.locate(&all, &some, None);
+    let place = likely.first().map_or("no place is asked for", |latent| &latent.address);
+    say(format!(
+        "an unknown signal: {place}; {} slots of {} screened, the best {} on {}",
+        some.len(),
+        all.len(),
+        address(&located),
+        variable(&located)
+    ));
+    let best = several_ports(&located, &likely);
     let mut fits = shown.refits(&all, &best, 1);
     // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.
     let is_explained = fits.first().is_some_and(|fit| !leaves_something(problem, fit));
@@ -65,13 +79,13 @@ pub(in crate::diagnose) fn propose(
         wide.first().map_or("", |s| &s.variable),
         wide.first().map_or("", |s| &s.address)
     ));
-    let numbers = all.iter().filter(|slot| slot.is_constant() && !best.contains(slot));
+    let numbers = some.iter().filter(|slot| slot.is_constant() && !best.contains(slot));
     let numbers = numbers.filter(|slot| wide.iter().any(|w| w.address == slot.address));
     let more: Vec<&Slot> = wide.iter().copied().chain(numbers).collect();
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
-    Some(Proposals { located, fits: finished(problem, fits, FINISHED, from.cost) })
+    Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
 }
 
 /// The slots whose laws, a shape or a curve, leave least.
@@ -87,12 +101,21 @@ fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) ->
     wide
 }
 
-/// The best slots, few of them at ports of one kind, and the best mere numbers.
-fn several_ports(located: &[Located]) -> Vec<&Slot> {
+/// The best slots, few of them at ports of one kind, and the best mere numbers: first those of the likeliest places.
+fn several_ports<'a>(located: &'a [Located], latents: &[Latent]) -> Vec<&'a Slot> {
     let mut best: Vec<&Slot> = Vec::new();
+    for latent in latents {
+        let here = located.iter().map(|l| &l.slot).filter(|s| !s.is_constant() && s.address == latent.address);
+        for slot in here.take(SLOTS_OF_PLACE) {
+            let of_port = best.iter().filter(|b| b.port == slot.port).count();
+            if of_port < SLOTS_OF_PORT && best.len() < SLOTS_BY_PLACE {
+                best.push(slot);
+            }
+        }
+    }
     for Located { slot, .. } in located.iter().filter(|l| !l.slot.is_constant()) {
         let of_port = best.iter().filter(|b| b.port == slot.port).count();
-        if of_port < SLOTS_OF_PORT && best.len() < SLOTS {
+        if of_port < SLOTS_OF_PORT && best.len() < SLOTS && !best.contains(&slot) {
             best.push(slot);
         }
     }

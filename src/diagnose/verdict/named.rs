@@ -290,7 +290,6 @@ mod tests {
             rivals: vec![rivals],
             screened: Vec::new(),
             forms: Vec::new(),
-            located: Vec::new(),
             withheld: None,
         }
     }

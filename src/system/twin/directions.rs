@@ -31,7 +31,7 @@ pub(super) struct Directions<'a> {
     run: &'a TwinRun,
     along: Along,
     /// Places of the state's numbers that are looked at.
-    numbers: &'a [usize],
+    numbers: Vec<usize>,
     plant: Plant<D>,
     course: Course<D>,
     room: Option<Acts<D>>,
@@ -59,17 +59,17 @@ impl Columns {
 }
 
 impl<'a> Directions<'a> {
-    /// Runs along every one of the state's `numbers`, several at a time. `memory`: a law that gives the state some of them.
+    /// Runs along every one of the state's `numbers`, several at a time. `memory`: laws that give the state some of them.
     pub fn of_state(
         twin: &'a Twin,
         run: &'a TwinRun,
         setting: &TwinSetting<f64>,
-        memory: Option<&Effect<f64>>,
-        numbers: &'a [usize],
+        memory: &[&Effect<f64>],
+        numbers: &[usize],
     ) -> Vec<Self> {
-        let at_rest: Vec<&Effect<f64>> = memory.into_iter().collect();
         let along = |some: &[usize]| Along::State(some.to_vec());
-        numbers.chunks(TOGETHER).map(|some| Self::new(twin, run, setting, &at_rest, numbers, along(some))).collect()
+        let new = |some: &[usize]| Self::new(twin, run, setting, (memory, &[]), numbers, along(some));
+        numbers.chunks(TOGETHER).map(new).collect()
     }
 
     /// Runs along what acts at ports, several at a time: laws whose only number is what acts.
@@ -77,10 +77,11 @@ impl<'a> Directions<'a> {
         twin: &'a Twin,
         run: &'a TwinRun,
         setting: &TwinSetting<f64>,
-        ports: &[&Effect<f64>],
-        numbers: &'a [usize],
+        (memory, ports): (&[&Effect<f64>], &[&Effect<f64>]),
+        numbers: &[usize],
     ) -> Vec<Self> {
-        let new = |some: &[&Effect<f64>]| Self::new(twin, run, setting, some, numbers, Along::Ports(some.len()));
+        let along = |some: &[&Effect<f64>]| Along::Ports(some.len());
+        let new = |some: &[&Effect<f64>]| Self::new(twin, run, setting, (memory, some), numbers, along(some));
         ports.chunks(TOGETHER).map(new).collect()
     }
 
@@ -88,8 +89,8 @@ impl<'a> Directions<'a> {
         twin: &'a Twin,
         run: &'a TwinRun,
         setting: &TwinSetting<f64>,
-        ports: &[&Effect<f64>],
-        numbers: &'a [usize],
+        (memory, ports): (&[&Effect<f64>], &[&Effect<f64>]),
+        numbers: &[usize],
         along: Along,
     ) -> Self {
         let lifted = |effect: &Effect<f64>, value: &dyn Fn(f64) -> D| Effect {
@@ -98,18 +99,16 @@ impl<'a> Directions<'a> {
             channel: effect.channel.clone(),
             values: effect.values.iter().map(|x| value(*x)).collect(),
         };
-        let acting = |(i, port): (usize, &&Effect<f64>)| match along {
-            Along::State(_) => lifted(port, &|_| D::from_re(0.0)),
-            Along::Ports(_) => lifted(port, &|_| D::from_re(0.0).derivative(i)),
-        };
-        let known = setting.effects.iter().map(|effect| lifted(effect, &D::from_re));
+        let acting = |(i, port): (usize, &&Effect<f64>)| lifted(port, &|_| D::from_re(0.0).derivative(i));
+        let at_rest = memory.iter().map(|law| lifted(law, &|_| D::from_re(0.0)));
+        let known = setting.effects.iter().map(|effect| lifted(effect, &D::from_re)).chain(at_rest);
         let setting = TwinSetting {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from_re(*x))).collect(),
             effects: known.chain(ports.iter().enumerate().map(acting)).collect(),
         };
         let (mut plant, state) = twin.prepare(&setting);
         let course = Course::new(&mut plant, state, run);
-        Self { twin, run, along, numbers, plant, course, room: None, is_sound: true }
+        Self { twin, run, along, numbers: numbers.to_vec(), plant, course, room: None, is_sound: true }
     }
 
     fn count(&self) -> usize {

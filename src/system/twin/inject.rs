@@ -1,26 +1,17 @@
 //! Small signals at ports of the fast model: what they change of its outputs.
 //!
-//! In what is small the model is linear along its run. From sample to sample
-//!
-//! ```text
-//! dx[k] = A[k] dx[k-1] + b[k] u[k]        dy[k] = C[k] dx[k-1] + d[k] u[k]
-//! ```
-//! where `A` and `C` are the same for all signals and `b` and `d` for all at one port. Runs that carry exact derivatives yield
-//! them once ([`Directions`]); a signal then costs a product of a small matrix and a vector for each sample, whatever the model.
+//! A signal costs a product of a small matrix and a vector for each sample, whatever the model ([`Linear`]).
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::effects::Effect;
-use crate::laws::Port;
 use crate::scalar::Lanes;
 
-use super::directions::{Columns, Directions, TOGETHER};
+use super::linear::{Block, Linear};
 use super::output::Sensors;
 use super::{Twin, TwinRun, TwinSetting};
 
-/// Samples that are gone through at a time, and signals.
-const BLOCK: usize = 256;
+/// Signals that go through it together.
 const SIGNALS: usize = 8;
 type Eight = Lanes<SIGNALS>;
 
@@ -39,78 +30,26 @@ impl Twin {
     ///
     /// Branches are those of the run without signals: what comes out is the response along them.
     pub fn injected(&self, run: &TwinRun, setting: &TwinSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
-        let mut found: Vec<Vec<Option<Change>>> = ports.iter().map(|port| vec![None; port.values.len()]).collect();
-        if self.standalone.is_some() {
-            return found;
-        }
-        let mut kinds: Vec<Option<Port>> = ports.iter().map(|port| memory(port.at)).collect();
-        kinds.sort();
-        kinds.dedup();
-        for kind in kinds {
-            let own: Vec<usize> = (0..ports.len()).filter(|&i| memory(ports[i].at) == kind).collect();
-            let alike: Vec<&Signals> = own.iter().map(|&i| &ports[i]).collect();
-            let changes = self.through(run, setting, &alike, kind.is_some());
-            own.into_iter().zip(changes).for_each(|(i, changes)| found[i] = changes);
-        }
-        found
-    }
-
-    /// The same for ports whose laws give the state the same numbers, if it `remembers` them at all.
-    fn through(
-        &self,
-        run: &TwinRun,
-        setting: &TwinSetting<f64>,
-        ports: &[&Signals],
-        remembers: bool,
-    ) -> Vec<Vec<Option<Change>>> {
-        let memory = ports.first().map(|port| port.at).filter(|_| remembers);
-        let numbers = self.numbers(setting, memory);
-        let effects: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
-        let mut of_state = Directions::of_state(self, run, setting, memory, &numbers);
-        let mut of_ports = Directions::of_ports(self, run, setting, &effects, &numbers);
-        let start: Vec<Columns> = of_ports.iter_mut().map(Directions::start).collect();
-        let mut waves: Vec<Wave> = ports
-            .iter()
-            .enumerate()
-            .flat_map(|(port, own)| own.values.chunks(SIGNALS).map(move |signals| (port, signals)))
-            .map(|(port, signals)| Wave::new(port, signals, numbers.len(), &start))
-            .collect();
-        let samples = run.times_s.len();
-        for from in (1..samples).step_by(BLOCK) {
-            let block = from..samples.min(from + BLOCK);
-            let follow = |some: &mut Directions| some.follow(block.clone());
-            let columns: Vec<Columns> = of_state.par_iter_mut().chain(&mut of_ports).map(follow).collect();
-            let (state, ports) = columns.split_at(of_state.len());
-            let matrices: Vec<DMatrix<f64>> = (0..block.len()).map(|k| self.matrix(state, &numbers, k)).collect();
-            waves.par_iter_mut().for_each(|wave| wave.go_on(block.start, &matrices, ports));
-        }
-        let is_sound = of_state.iter().chain(&of_ports).all(|some| some.is_sound);
+        let at: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
+        let linear = self.linear(run, setting, &at);
+        let Some(changes) = linear.and_then(|linear| through(linear, ports)) else {
+            return ports.iter().map(|port| vec![None; port.values.len()]).collect();
+        };
         let shown = self.shown_by_sensors(run, setting);
-        let mut changes = waves.into_iter().flat_map(|wave| wave.changes);
-        let is_finite = |change: &Change| is_sound && change.iter().flatten().all(|x| x.is_finite());
-        let one = |change: Change| Some(shown(change)).filter(is_finite);
-        ports.iter().map(|port| changes.by_ref().take(port.values.len()).map(one).collect()).collect()
+        let mut changes = changes.map(|change| Some(shown(change)).filter(is_finite));
+        ports.iter().map(|port| changes.by_ref().take(port.values.len()).collect()).collect()
     }
 
-    /// `[A; C]` of an interval.
-    fn matrix(&self, columns: &[Columns], numbers: &[usize], interval: usize) -> DMatrix<f64> {
-        let all = columns.iter().flat_map(|c| c.of(interval)).copied();
-        DMatrix::from_iterator(numbers.len() + self.outputs.len(), numbers.len(), all)
-    }
-
-    /// Places of the numbers that make up the state.
-    fn numbers(&self, setting: &TwinSetting<f64>, memory: Option<&Effect<f64>>) -> Vec<usize> {
-        let mut setting = setting.clone();
-        setting.effects.extend(memory.cloned());
-        let (plant, state) = self.prepare(&setting);
-        state.numbers_in_use(&plant)
+    /// Whether something acts on what the model shows.
+    pub fn has_sensors(&self, setting: &TwinSetting<f64>) -> bool {
+        super::many::without_sensors(setting) != *setting || self.outputs.iter().any(|o| !o.laws.is_empty())
     }
 
     /// What sensors make of a change, which they see on top of what the model shows.
     fn shown_by_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> impl Fn(Change) -> Change {
         let without = super::many::without_sensors(setting);
-        let has_sensors = without != *setting || self.outputs.iter().any(|o| !o.laws.is_empty());
-        let base = if has_sensors { self.without_laws_of_sensors().simulate(run, &without) } else { None };
+        let base =
+            if self.has_sensors(setting) { self.without_laws_of_sensors().simulate(run, &without) } else { None };
         move |mut change| {
             let Some(base) = &base else { return change };
             for ((output, change), base) in self.outputs.iter().zip(&mut change).zip(base) {
@@ -124,10 +63,21 @@ impl Twin {
     }
 }
 
-/// The port whose law gives the state numbers of its own, if it does.
-fn memory(at: &Effect<f64>) -> Option<Port> {
-    let port = at.entry.unlisted()?.law.address.port;
-    matches!(port, Port::Plunger | Port::Lever).then_some(port)
+fn is_finite(change: &Change) -> bool {
+    change.iter().flatten().all(|x| x.is_finite())
+}
+
+/// What the signals at the ports of a linear model change, one after the other; nothing where it diverges.
+fn through(mut linear: Linear, signals: &[Signals]) -> Option<impl Iterator<Item = Change>> {
+    let each = signals.iter().enumerate();
+    let mut waves: Vec<Wave> = each
+        .flat_map(|(port, own)| own.values.chunks(SIGNALS).map(move |signals| (port, signals)))
+        .map(|(port, signals)| Wave::new(port, signals, linear.numbers.len(), linear.start(port)))
+        .collect();
+    while let Some(block) = linear.next_block() {
+        waves.par_iter_mut().for_each(|wave| wave.go_on(&block));
+    }
+    linear.is_sound().then(|| waves.into_iter().flat_map(|wave| wave.changes))
 }
 
 /// Some signals at one port on their way.
@@ -141,14 +91,14 @@ struct Wave<'a> {
 }
 
 impl<'a> Wave<'a> {
-    /// At the first sample, where the columns of the ports are `start`.
-    fn new(port: usize, signals: &'a [Vec<f64>], numbers: usize, start: &[Columns]) -> Self {
+    /// At the first sample, where what acts at its port comes to `start`.
+    fn new(port: usize, signals: &'a [Vec<f64>], numbers: usize, start: &[f64]) -> Self {
         let samples = signals.first().map_or(0, Vec::len);
-        let outputs = column(start, 0, port).len() - numbers;
+        let outputs = start.len() - numbers;
         let changes = vec![vec![Vec::with_capacity(samples); outputs]; signals.len()];
         let none = Lanes([0.0; SIGNALS]);
         let mut wave = Self { port, signals, state: vec![none; numbers], next: vec![none; numbers + outputs], changes };
-        wave.act(|signal| signal[0], column(start, 0, port));
+        wave.act(|signal| signal[0], start);
         wave.note();
         wave
     }
@@ -168,22 +118,17 @@ impl<'a> Wave<'a> {
         }
     }
 
-    /// Through intervals of which the first ends at sample `from`.
-    fn go_on(&mut self, from: usize, matrices: &[DMatrix<f64>], ports: &[Columns]) {
-        for (i, matrix) in matrices.iter().enumerate() {
-            let k = from + i;
-            self.act(|signal| 0.5 * (signal[k - 1] + signal[k]), column(ports, i, self.port));
+    /// Through some intervals.
+    fn go_on(&mut self, block: &Block) {
+        for (i, matrix) in block.matrices.iter().enumerate() {
+            let k = block.first + i;
+            self.act(|signal| 0.5 * (signal[k - 1] + signal[k]), block.column(i, self.port));
             for (j, &number) in self.state.iter().enumerate() {
                 self.next.iter_mut().zip(&matrix.column(j)).for_each(|(next, &slope)| *next += number * slope);
             }
             self.note();
         }
     }
-}
-
-/// What acts at a port comes to this by the end of an interval.
-fn column(ports: &[Columns], interval: usize, port: usize) -> &[f64] {
-    ports[port / TOGETHER].column(interval, port % TOGETHER)
 }
 
 #[cfg(test)]

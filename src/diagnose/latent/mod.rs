@@ -1,0 +1,201 @@
+//! Where a misfit comes from, before any law is known: an unknown signal at each port, as likely as it makes the recordings.
+//!
+//! A port's signal wanders: a random walk through all of a run, begun anywhere. Along the fitted model's runs, linear in what is small
+//! ([`crate::system::Linear`]), a Kalman filter gives the likelihood of what was measured if such a signal acts there, the calibration and
+//! free zeros as free as they were, and the pace of the walk as likely as can be. One number for every port, so that all are measured alike:
+//! what a signal at the right port needs is small and slow, and all channels agree on it; at another it would have to be large, to
+//! follow every sample, or leaves part of what was measured. That is the balance of all other elements: where it closes, nothing else has to be
+//! missing. (Parity relations and unknown inputs: Willsky and Jones, IEEE TAC 21, 1976; likelihood from innovations: Schweppe, IEEE TIT 11, 1965.)
+//!
+//! May import `grammar`, `fit` and `case`.
+
+mod likelihood;
+mod stretches;
+
+use rayon::prelude::*;
+
+use crate::diagnose::fit::{Fit, Problem, Rows};
+use crate::diagnose::grammar::{Place, places};
+use crate::laws::Address;
+use likelihood::{Likelihood, Walk};
+use stretches::condensed;
+
+/// Stretches that the longest run is cut into, and all of them together, at most: what a signal does within one is not asked.
+const STRETCHES: f64 = 500.0;
+const ALL_STRETCHES: f64 = 4000.0;
+/// Paces of the walk that are tried, in sizes plain to see over the longest run; then halfway to the neighbours of the best, so many times.
+const PACES: [f64; 5] = [0.03, 0.3, 3.0, 30.0, 300.0];
+const HALVINGS: i32 = 2;
+
+/// Where what a channel shows is not what is there. A signal there is in standard deviations of its noise.
+const SENSOR: &str = "sensor";
+
+/// Log odds by which a place may fall behind the likeliest and still be where something is missing: a share of those, since the model is
+/// linear in what is small alone, and what chance makes.
+const SHARE_OF_ODDS: f64 = 0.05;
+const CHANCE: f64 = 20.0;
+
+/// What an unknown signal at one place would make of the recordings.
+#[derive(Clone, Debug)]
+pub struct Latent {
+    /// A port; without a number on a rig with several such elements: a signal for each of them.
+    pub address: String,
+    pub element: String,
+    /// Twice the logarithm of how much more likely it makes them.
+    pub log_odds: f64,
+    /// What it leaves of each open run, in standard errors of what noise would leave.
+    pub left_sigma: Vec<f64>,
+}
+
+/// What an unknown signal at each place would make of the runs of a problem, the likeliest place first; `known` are the rows of the fit there. Nothing where the model cannot be made linear: it
+/// diverges, is not integrated, or has sensors that act on what they show.
+pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
+    let settings: Vec<_> = problem.runs.iter().map(|run| fit.model.setting(problem.case, run, &fit.x)).collect();
+    if problem.runs.iter().zip(&settings).any(|(run, setting)| run.twin.has_sensors(setting)) {
+        return Vec::new();
+    }
+    let places = places(problem.case);
+    let (all, single): (Vec<&Place>, Vec<&Place>) = places.iter().partition(|place| is_of_several(place, &places));
+    let lasts_s = || problem.runs.iter().map(|run| lasts_s(&run.drive.times_s));
+    let longest_s = lasts_s().fold(0.0, f64::max);
+    let stretch_s = f64::max(longest_s / STRETCHES, lasts_s().sum::<f64>() / ALL_STRETCHES);
+    let Some(runs) = condensed(problem, &settings, known, &single, stretch_s) else { return Vec::new() };
+    let none = Likelihood::of(&runs, &Walk { ports: &[], variance_s: 0.0 });
+    let one = |(address, ports): (String, Vec<usize>)| {
+        let at = |pace: f64| Likelihood::of(&runs, &Walk { ports: &ports, variance_s: pace * pace / longest_s });
+        let best = likeliest(&at);
+        let element = Address::parse(&address).map_or_else(|_| SENSOR.to_owned(), |a| a.element());
+        Latent { address, element, log_odds: none.cost - best.cost, left_sigma: best.left_sigma }
+    };
+    let of_one = single.iter().enumerate().map(|(i, place)| (place.address.clone(), vec![i]));
+    let members = |place: &Place| (0..single.len()).filter(|&i| single[i].port == place.port).collect();
+    let of_all = all.iter().map(|place| (place.address.clone(), members(place)));
+    let channels = problem.case.channels.iter().zip(single.len()..);
+    let on_channels = channels.map(|(channel, i)| (format!("{SENSOR}.{}", channel.column), vec![i]));
+    let sets: Vec<(String, Vec<usize>)> = of_one.chain(of_all).chain(on_channels).collect();
+    let mut found: Vec<Latent> = sets.into_par_iter().map(one).filter(|latent| latent.log_odds.is_finite()).collect();
+    found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    found
+}
+
+/// Those of some places, the likeliest first, where something may be missing in the rig; what sensors make of it is no place there.
+pub fn likely(latents: Vec<Latent>) -> Vec<Latent> {
+    let mut likely = latents;
+    likely.retain(|latent| latent.element != SENSOR);
+    let least = least(&likely);
+    likely.retain(|latent| latent.log_odds >= least);
+    likely
+}
+
+/// Whether a place is one of them and nothing is missing there, but at another.
+pub fn is_behind(latents: &[Latent], address: &str) -> bool {
+    latents.iter().any(|latent| latent.address == address && latent.log_odds < least(latents))
+}
+
+fn least(latents: &[Latent]) -> f64 {
+    latents.first().map_or(0.0, |best| (1.0 - SHARE_OF_ODDS) * best.log_odds - CHANCE)
+}
+
+/// Whether a place is a port of several elements at once.
+fn is_of_several(place: &Place, places: &[Place]) -> bool {
+    let has_number = |place: &Place| Address::parse(&place.address).is_ok_and(|a| a.number.is_some());
+    !has_number(place) && places.iter().any(|other| other.port == place.port && has_number(other))
+}
+
+/// The likelihood at the pace that makes it greatest: it is smooth over the pace's logarithm, with one peak.
+fn likeliest(at: &dyn Fn(f64) -> Likelihood) -> Likelihood {
+    let tried = |pace: f64| (pace, at(pace));
+    let mut best = tried(PACES[0]);
+    let mut consider = |other: (f64, Likelihood)| {
+        if other.1.cost < best.1.cost {
+            best = other;
+        }
+        best.0
+    };
+    let mut pace = PACES[1..].iter().fold(PACES[0], |_, &pace| consider(tried(pace)));
+    for halving in 1..=HALVINGS {
+        let step = (PACES[1] / PACES[0]).powf(0.5_f64.powi(halving));
+        let [below, above] = [pace / step, pace * step].map(tried);
+        consider(below);
+        pace = consider(above);
+    }
+    best.1
+}
+
+fn lasts_s(times_s: &[f64]) -> f64 {
+    times_s.first().zip(times_s.last()).map_or(0.0, |(start, end)| end - start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Case, Noise, RunSet, made};
+    use crate::diagnose::fit::{Model, Sides};
+    use crate::scene::Override;
+
+    /// The latents of a case whose scene is played with some numbers changed, without calibration to take them up.
+    fn of(scene: &str, set: &[(&str, &str)], (inputs, outputs): (&[&str], &[&str]), sd: &[f64]) -> Vec<Latent> {
+        let set: Vec<Override> =
+            set.iter().map(|(key, value)| Override::parse(&format!("{key}={value}")).expect("one")).collect();
+        let mut case: Case = made::recorded(scene, &set, inputs, outputs);
+        case.parameters.clear();
+        let noise: Vec<Noise> = sd.iter().map(|sd| Noise::white(*sd)).collect();
+        let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
+        let model = Model::baseline();
+        let x = problem.start(&model, None);
+        let known = problem.rows(&model, &x, 0..x.len(), Sides::Both).expect("it does not diverge");
+        let covariance = nalgebra::DMatrix::zeros(x.len(), x.len());
+        latents(
+            &problem,
+            &Fit { model, x, cost: known.residual.norm_squared(), covariance, on_bound: Vec::new() },
+            &known,
+        )
+    }
+
+    /// A bench that is stiffer, or whose syringe gives more, than the scene says, with elongation and pressure recorded.
+    fn bench(key: &str, value: &str) -> Vec<Latent> {
+        let recorded: (&[&str], &[&str]) = (&["plunger_mm"], &["elongation_mm", "pressure_kpa"]);
+        of("muscle_bench", &[(key, value)], recorded, &[0.01, 1.0])
+    }
+
+    fn place<'a>(latents: &'a [Latent], address: &str) -> &'a Latent {
+        latents.iter().find(|latent| latent.address == address).expect("a place of the scene")
+    }
+
+    fn closes(latent: &Latent) -> bool {
+        latent.left_sigma.iter().all(|sigma| *sigma < 3.0)
+    }
+
+    /// Something in the muscle accounts for a muscle that is stiffer, and nothing in the fluid does; of a syringe that gives more the other
+    /// way round. What no sensor can tell apart comes out alike.
+    #[test]
+    fn balances_of_a_bench_tell_muscle_from_fluid() {
+        let stiffer = bench("muscles.tube.material.c1_pa", "2.7e5");
+        assert!(stiffer[0].element == "muscle" && closes(place(&stiffer, "muscle.wall")), "{stiffer:?}");
+        let [wall, flow] = ["muscle.wall", "line.outflow"].map(|at| place(&stiffer, at));
+        assert!(!closes(flow) && flow.log_odds < wall.log_odds - 1000.0, "{wall:?} {flow:?}");
+        let softer = bench("hydraulics.upstream_compliance_m3_pa", "9e-15");
+        let [syringe, line, wall] =
+            ["syringe.compliance", "line.compliance", "muscle.wall"].map(|at| place(&softer, at));
+        assert!(closes(syringe) && !closes(wall) && wall.log_odds < syringe.log_odds - 1000.0, "{syringe:?} {wall:?}");
+        assert!(is_behind(&softer, "muscle.wall") && !is_behind(&softer, "line.compliance"), "{line:?}");
+        assert!(likely(softer).iter().all(|latent| latent.element != "muscle"));
+    }
+
+    /// By one sensor alone muscle and fluid are told apart by the pace of what would have to happen there alone: all close.
+    #[test]
+    fn one_sensor_leaves_no_balance_open() {
+        let recorded: (&[&str], &[&str]) = (&["plunger_mm"], &["elongation_mm"]);
+        let found = of("muscle_bench", &[("muscles.tube.material.c1_pa", "2.7e5")], recorded, &[0.01]);
+        assert!(["muscle.wall", "line.outflow", "plunger"].iter().all(|at| closes(place(&found, at))), "{found:?}");
+    }
+
+    /// What a sensor makes of it is a place of its own, and none in the rig; a scene whose sensors act on what they show has no latents.
+    #[test]
+    fn sensors_are_no_place_in_the_rig() {
+        let found = bench("muscles.tube.material.c1_pa", "2.7e5");
+        assert!(!closes(place(&found, "sensor.pressure_kpa")));
+        assert!(likely(found).iter().all(|latent| latent.element != SENSOR));
+        assert!(likely(Vec::new()).is_empty() && !is_behind(&[], "muscle.wall"));
+    }
+}

@@ -1,0 +1,124 @@
+//! The fast model along a run, as what is small sees it.
+//!
+//! From sample to sample it is linear there:
+//!
+//! ```text
+//! dx[k] = A[k] dx[k-1] + b[k] u[k]        dy[k] = C[k] dx[k-1] + d[k] u[k]
+//! ```
+//! where `A` and `C` are the same for all that acts, and `b` and `d` for all that acts at one port. Runs that carry exact derivatives
+//! yield them ([`Directions`]). Branches are those of the run: what sticks there goes on sticking.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use crate::effects::Effect;
+use crate::laws::Port;
+
+use super::directions::{Columns, Directions, TOGETHER};
+use super::{Twin, TwinRun, TwinSetting};
+
+/// Intervals that are gone through at a time.
+const BLOCK: usize = 256;
+
+/// The linear model of a run under way, with ports at which something acts.
+pub struct Linear<'a> {
+    twin: &'a Twin,
+    /// Places of the state's numbers that may change.
+    pub numbers: Vec<usize>,
+    of_state: Vec<Directions<'a>>,
+    of_ports: Vec<Directions<'a>>,
+    start: Vec<Columns>,
+    /// The sample at which the next interval ends, and how many there are.
+    next: usize,
+    samples: usize,
+}
+
+/// Some intervals of a linear model.
+pub struct Block {
+    /// The sample at which the first of them ends.
+    pub first: usize,
+    /// `[A; C]` of each, outputs in the units of their columns.
+    pub matrices: Vec<DMatrix<f64>>,
+    columns: Vec<Columns>,
+}
+
+impl Block {
+    /// `[b; d]` of an interval, for one of the model's ports.
+    pub fn column(&self, interval: usize, port: usize) -> &[f64] {
+        column(&self.columns, interval, port)
+    }
+}
+
+impl Twin {
+    /// The linear model along a run, for ports at which laws act whose only number is what acts. None of a model that is not integrated.
+    pub fn linear<'a>(
+        &'a self,
+        run: &'a TwinRun,
+        setting: &TwinSetting<f64>,
+        ports: &[&Effect<f64>],
+    ) -> Option<Linear<'a>> {
+        if self.standalone.is_some() {
+            return None;
+        }
+        let of_kind = |kind: Port| ports.iter().copied().find(|at| port(at) == Some(kind));
+        let memory: Vec<&Effect<f64>> = REMEMBERED.into_iter().filter_map(of_kind).collect();
+        let numbers = self.numbers(setting, &memory);
+        let of_state = Directions::of_state(self, run, setting, &memory, &numbers);
+        let mut of_ports = Directions::of_ports(self, run, setting, (&memory, ports), &numbers);
+        let start = of_ports.iter_mut().map(Directions::start).collect();
+        Some(Linear { twin: self, numbers, of_state, of_ports, start, next: 1, samples: run.times_s.len() })
+    }
+
+    /// Places of the numbers that make up the state.
+    fn numbers(&self, setting: &TwinSetting<f64>, memory: &[&Effect<f64>]) -> Vec<usize> {
+        let mut setting = setting.clone();
+        setting.effects.extend(memory.iter().copied().cloned());
+        let (plant, state) = self.prepare(&setting);
+        state.numbers_in_use(&plant)
+    }
+}
+
+impl Linear<'_> {
+    /// What acts at one of its ports at the first sample, before any interval, comes to this: of the state's numbers, then of the outputs.
+    pub fn start(&self, port: usize) -> &[f64] {
+        column(&self.start, 0, port)
+    }
+
+    /// The next intervals; none at the end of the run.
+    pub fn next_block(&mut self) -> Option<Block> {
+        let first = self.next;
+        self.next = self.samples.min(first + BLOCK);
+        let samples = first..self.next;
+        if samples.is_empty() {
+            return None;
+        }
+        let follow = |some: &mut Directions| some.follow(samples.clone());
+        let mut state: Vec<Columns> = self.of_state.par_iter_mut().chain(&mut self.of_ports).map(follow).collect();
+        let columns = state.split_off(self.of_state.len());
+        let matrices = (0..samples.len()).map(|k| self.matrix(&state, k)).collect();
+        Some(Block { first, matrices, columns })
+    }
+
+    /// Whether all that has been gone through was finite, and no law has left the range in which it means anything.
+    pub fn is_sound(&self) -> bool {
+        self.of_state.iter().chain(&self.of_ports).all(|some| some.is_sound)
+    }
+
+    fn matrix(&self, state: &[Columns], interval: usize) -> DMatrix<f64> {
+        let all = state.iter().flat_map(|c| c.of(interval)).copied();
+        let numbers = self.numbers.len();
+        DMatrix::from_iterator(numbers + self.twin.outputs.len(), numbers, all)
+    }
+}
+
+/// Ports whose laws give the state numbers of their own: what moved a piston, what a cable travelled besides.
+const REMEMBERED: [Port; 2] = [Port::Plunger, Port::Lever];
+
+fn port(at: &Effect<f64>) -> Option<Port> {
+    Some(at.entry.unlisted()?.law.address.port)
+}
+
+/// What acts at a port comes to this by the end of an interval.
+fn column(ports: &[Columns], interval: usize, port: usize) -> &[f64] {
+    ports[port / TOGETHER].column(interval, port % TOGETHER)
+}
