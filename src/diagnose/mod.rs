@@ -1,7 +1,7 @@
 //! What a recording shows and the simulation lacks: locate, name, model, prove, and say what to record next.
 //!
 //! [`diagnose`] goes through the steps one by one, each a folder of its own: `case` and `fit` (recordings, noise, calibration), `search`,
-//! `verdict`, `unknown`, `validation`, `experiment`, `answer`. A step imports those below it, never one above (`tests/architecture.rs`). All work
+//! `verdict`, `latent`, `unknown`, `validation`, `experiment`, `answer`. A step imports those below it, never one above (`tests/architecture.rs`). All work
 //! on the fast model of the scene ([`crate::system::Twin`]) but `full`; what is found is written as a scene.
 //!
 //! Half a minute for a bench:

@@ -1,6 +1,6 @@
 //! Where, as a page of a diagnosis shows it: elements, stretches of time, states.
 
-use crate::diagnose::{CaseRun, Direction, Outcome};
+use crate::diagnose::{Balance, CaseRun, Direction, Location, Outcome};
 use crate::recording::{axis_label, parse_column};
 
 use super::axis::three_digits;
@@ -28,6 +28,7 @@ pub(super) fn location(page: &mut HtmlPage, outcome: &Outcome) {
         is_logarithmic: false,
     };
     page.bars(&elements, "");
+    balances(page, location);
     if let Some(set) = location.indistinguishable.first() {
         page.paragraph(&format!("With these channels, effects in {} can look the same.", set.join(" and ")));
     }
@@ -39,6 +40,28 @@ pub(super) fn location(page: &mut HtmlPage, outcome: &Outcome) {
         );
         states(page, outcome, before, after);
     }
+}
+
+/// Ports that the table of balances shows, at most.
+const PORTS: usize = 10;
+
+/// What something unknown at each port would leave, the likeliest first.
+fn balances(page: &mut HtmlPage, location: &Location) {
+    if location.balances.is_empty() {
+        return;
+    }
+    page.subheading("Balances");
+    page.small(
+        "If something unknown acts at a port, whatever it does over time: twice the logarithm of how much less likely the recordings are than \
+         with the first port, and what is left of the worst run. Where that is noise, the balances of all other elements close.",
+    );
+    let row = |balance: &Balance| -> Vec<String> {
+        let worst = balance.left_sigma.values().copied().fold(f64::NEG_INFINITY, f64::max);
+        let left = if balance.closes { "noise".to_owned() } else { format!("{worst:.0} standard errors above noise") };
+        vec![format!("`{}`", balance.port), format!("{:.0}", balance.behind), left]
+    };
+    let rows: Vec<Vec<String>> = location.balances.iter().take(PORTS).map(row).collect();
+    page.table(&["port", "behind", "left"], &rows);
 }
 
 /// Every run, with the stretches in which the calibrated scene is off by more than noise.

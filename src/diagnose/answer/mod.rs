@@ -1,6 +1,6 @@
 //! The answer: its parts in words and figures, its files, and its runs beside the full scene.
 //!
-//! May import `verdict`, `search`, `full`, `fit`, `case`, `diagnosis` and `error`.
+//! May import `verdict`, `search`, `latent`, `full`, `fit`, `case`, `diagnosis` and `error`.
 
 pub(super) mod caveats;
 pub(super) mod figures;

@@ -1,6 +1,6 @@
 //! The verdict in plain words.
 
-use crate::diagnose::diagnosis::{Diagnosis, NamedEffect, Verdict};
+use crate::diagnose::diagnosis::{Balance, Diagnosis, Location, NamedEffect, Verdict};
 
 /// The verdict in two sentences, and what it has to be read with.
 pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
@@ -39,12 +39,28 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
         Verdict::MissingPhysics => format!("The scene lacks {}. {closed}", effects.join(" and ")),
         Verdict::Ambiguous => format!("The scene lacks one of these: {}{}. {closed}", effects.join(", "), or_laws(d)),
         Verdict::UnknownPhysics => format!(
-            "Something is missing that is not in the catalogue{}. {}",
+            "Something is missing that is not in the catalogue{}{}. {}",
             d.location.element.as_ref().map_or(String::new(), |e| format!(", most likely in the {e}")),
+            place(&d.location),
             unknown(d, &closed)
         ),
         Verdict::UnusableData => d.summary.clone(),
     }
+}
+
+/// Ports that are named beside the likeliest: twice the logarithm of the odds against them, and how many at most.
+const NEAR: f64 = 6.0;
+const MOST_PORTS: usize = 3;
+
+/// Where something unknown closes the balances of everything else, in words; nothing where it does so nowhere.
+fn place(location: &Location) -> String {
+    let near: Vec<&Balance> =
+        location.balances.iter().filter(|b| b.closes && b.behind < NEAR).take(MOST_PORTS).collect();
+    if near.is_empty() {
+        return String::new();
+    }
+    let ports: Vec<&str> = near.iter().map(|b| b.port.as_str()).collect();
+    format!(" (something unknown at {} leaves no other balance open)", ports.join(" or "))
 }
 
 /// Probability from which laws at other ports are worth a word.

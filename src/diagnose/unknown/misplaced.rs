@@ -57,3 +57,45 @@ fn is_likelier(open: &Problem, latents: &[Latent], bare: &Fit, with: &Fit) -> bo
     let explained = bare.cost - with.cost - numbers as f64 * (open.samples() as f64).ln();
     latents.first().is_some_and(|likeliest| likeliest.log_odds > explained + CLEARLY)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::made;
+    use crate::diagnose::fit::{Model, Placed};
+    use crate::effects::{Element, ElementKind, find};
+    use crate::scene::Override;
+
+    const CHANNELS: [&str; 2] = ["elongation_mm", "pressure_kpa"];
+
+    /// What stands for an error of the pressure gauge's gain: `None` where it stays.
+    fn instead_of_a_gain(mut case: Case) -> Option<String> {
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
+        let entry = find("sensor_gain").expect("of the catalogue");
+        let element = Element::of(ElementKind::Sensor, 0, 1);
+        let gain = Placed { entry, element, channel: Some(CHANNELS[1].to_owned()) };
+        let (baseline, best) = (fit(&Model::baseline()), fit(&Model::baseline().plus(&gain, &entry.typical())));
+        let rivals_against = best.cost;
+        let (rivals, screened, forms) = (vec![Vec::new()], Vec::new(), Vec::new());
+        let found = Found { baseline, best, rivals, rivals_against, screened, forms, withheld: None };
+        let other = exchanged(&case, &noise, &found, &|_| {})?;
+        let last = other.best.model.effects.last().expect("a law");
+        Some(format!("{} over {:?}", verdict::port(last), last.spec().variables))
+    }
+
+    /// A muscle whose bore grows has its pressure fall behind: a gain of the gauge does some of it, and gives way. A gauge that is
+    /// off keeps it.
+    #[test]
+    fn an_effect_gives_way_to_a_law_where_something_is_missing() {
+        let grows = Override::parse("muscles.tube.area_growth_1_m=4.0").expect("a key");
+        let widened = made::recorded("muscle_bench", &[grows], &["plunger_mm"], &CHANNELS);
+        let instead = instead_of_a_gain(widened).expect("a law");
+        assert!(instead.starts_with("muscle."), "{instead}");
+        let mut off = made::recorded("muscle_bench", &[], &["plunger_mm"], &CHANNELS);
+        off.runs.iter_mut().for_each(|run| run.measured[1].iter_mut().for_each(|p| *p *= 1.05));
+        assert_eq!(instead_of_a_gain(off), None);
+    }
+}
