@@ -5,7 +5,7 @@
 //! free zeros as free as they were, and the pace of the walk as likely as can be. One number for every port, so that all are measured alike:
 //! what a signal at the right port needs is small and slow, and all channels agree on it; at another it would have to be large, to
 //! follow every sample, or leaves part of what was measured. That is the balance of all other elements: where it closes, nothing else has to be
-//! missing. (Parity relations and unknown inputs: Willsky and Jones, IEEE TAC 21, 1976; likelihood from innovations: Schweppe, IEEE TIT 11, 1965.)
+//! missing. (Unknown inputs: Willsky and Jones, IEEE TAC 21, 1976; likelihood from innovations: Schweppe, IEEE TIT 11, 1965.)
 //!
 //! May import `grammar`, `fit` and `case`.
 
@@ -47,8 +47,8 @@ pub struct Latent {
     pub left_sigma: Vec<f64>,
 }
 
-/// What an unknown signal at each place would make of the runs of a problem, the likeliest place first; `known` are the rows of the fit there. Nothing where the model cannot be made linear: it
-/// diverges, is not integrated, or has sensors that act on what they show.
+/// What an unknown signal at each place would make of the runs of a problem, the likeliest place first; `known` are the rows of the fit.
+/// Nothing where the model cannot be made linear: it diverges, is not integrated, or has sensors that act on what they show.
 pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let settings: Vec<_> = problem.runs.iter().map(|run| fit.model.setting(problem.case, run, &fit.x)).collect();
     if problem.runs.iter().zip(&settings).any(|(run, setting)| run.twin.has_sensors(setting)) {

@@ -1,7 +1,7 @@
 //! Recordings and the linear model of a run, condensed to short stretches of time.
 //!
-//! Over a stretch a signal stands still, and of each channel the mean is taken, times the root of its samples: noise of variance one. Nothing of the
-//! model is lost by it but what the signal does within a stretch.
+//! Over a stretch a signal stands still, and of each channel the mean is taken, times the root of its samples: noise of variance one.
+//! Nothing of the model is lost by it but what the signal does within a stretch.
 
 use std::borrow::Cow;
 
@@ -106,11 +106,9 @@ fn measured(problem: &Problem, run: &CaseRun, (known, mut row): (&Rows, usize), 
                 stretch.counts[c] += 1.0;
                 stretch.rows[(c, 0)] += known.residual[row];
                 (1..shared).for_each(|j| stretch.rows[(c, j)] += known.slopes[(row, j - 1)]);
-                zeros
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, zero)| **zero == c)
-                    .for_each(|(z, _)| stretch.rows[(c, shared + z)] += 1.0);
+                if let Some(zero) = zeros.iter().position(|&zero| zero == c) {
+                    stretch.rows[(c, shared + zero)] += 1.0;
+                }
             }
             row += 1;
         }
