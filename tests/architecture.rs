@@ -92,12 +92,13 @@ const STEPS: &Table = &[
     ("fit", &["case", "error"]),
     ("full", &["case", "diagnosis", "error", "fit"]),
     ("grammar", &["case", "fit"]),
+    ("latent", &["case", "fit", "grammar"]),
     ("search", &["case", "fit", "grammar"]),
     ("verdict", &["case", "diagnosis", "fit", "search"]),
-    ("unknown", &["case", "fit", "grammar", "search", "verdict"]),
+    ("unknown", &["case", "fit", "grammar", "latent", "search", "verdict"]),
     ("validation", &["case", "diagnosis", "error", "fit", "full", "grammar", "search", "unknown", "verdict"]),
     ("experiment", &["case", "diagnosis", "fit", "verdict"]),
-    ("answer", &["case", "diagnosis", "error", "fit", "full", "search", "verdict"]),
+    ("answer", &["case", "diagnosis", "error", "fit", "full", "latent", "search", "verdict"]),
 ];
 
 /// Crates that belong to one folder: names as they stand in Rust paths, and the folder.
