@@ -53,15 +53,15 @@ fn balances(page: &mut HtmlPage, location: &Location) {
     page.subheading("Balances");
     page.small(
         "If something unknown acts at a port, whatever it does over time: twice the logarithm of how much less likely the recordings are than \
-         with the first port, and what is left of the worst run. Where that is noise, the balances of all other elements close.",
+         with the first port, and what is left of the worst run, in standard errors of noise. Where that is noise, the balances of all other elements close.",
     );
     let row = |balance: &Balance| -> Vec<String> {
         let worst = balance.left_sigma.values().copied().fold(f64::NEG_INFINITY, f64::max);
-        let left = if balance.closes { "noise".to_owned() } else { format!("{worst:.0} standard errors above noise") };
+        let left = if balance.closes { "noise".to_owned() } else { format!("{worst:.0}") };
         vec![format!("`{}`", balance.port), format!("{:.0}", balance.behind), left]
     };
     let rows: Vec<Vec<String>> = location.balances.iter().take(PORTS).map(row).collect();
-    page.table(&["port", "behind", "left"], &rows);
+    page.table(&["port", "behind", "left, sigma"], &rows);
 }
 
 /// Every run, with the stretches in which the calibrated scene is off by more than noise.
