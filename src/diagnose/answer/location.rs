@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnose::case::{Case, CaseRun, Direction, Noise, RunSet};
 use crate::diagnose::diagnosis::{Balance, Location, NamedEffect, Verdict};
-use crate::diagnose::fit::{Fit, Problem, Sides};
+use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::latent::{Latent, latents};
 use crate::diagnose::search::Found;
 use crate::laws::Address;
@@ -14,9 +14,6 @@ use crate::laws::Address;
 const PIECE_S: f64 = 1.0;
 /// A piece counts when its mean square stands this many standard errors above that of noise.
 const SIGMA: f64 = 6.0;
-
-/// A balance closes when no run keeps more than this many standard errors above noise.
-const CLOSES_SIGMA: f64 = 3.0;
 
 /// Element, time and state in which the baseline's misfit sits.
 pub fn location(
@@ -48,7 +45,7 @@ pub fn location(
 
 /// What something unknown at each place makes of the calibrated scene's misfit. Where effects of the catalogue explain it, they say where.
 fn of_baseline(open: &Problem, baseline: &Fit) -> Vec<Latent> {
-    let known = open.rows(&baseline.model, &baseline.x, 0..baseline.x.len(), Sides::Both);
+    let known = open.rows_of(baseline);
     known.map_or_else(Vec::new, |known| latents(open, baseline, &known))
 }
 
@@ -60,7 +57,7 @@ fn balance(latent: &Latent, likeliest: &Latent, open: &Problem) -> Balance {
         element: latent.element.clone(),
         behind: likeliest.log_odds - latent.log_odds,
         left_sigma: files.zip(latent.left_sigma.iter().copied()).collect(),
-        closes: latent.left_sigma.iter().all(|sigma| *sigma < CLOSES_SIGMA),
+        closes: latent.closes(),
     }
 }
 

@@ -134,6 +134,11 @@ impl Problem<'_> {
         Rows::stack(&parts.concat())
     }
 
+    /// The same at a fit, with the derivatives to all its numbers, taken to both sides.
+    pub fn rows_of(&self, fit: &Fit) -> Option<Rows> {
+        self.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)
+    }
+
     /// Residuals at `x` in units of the noise, in the order of [`Problem::rows`].
     pub fn weighted_residual(&self, model: &Model, x: &[f64]) -> Option<DVector<f64>> {
         Some(self.in_noise(&self.residuals(model, x)?))

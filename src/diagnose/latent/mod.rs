@@ -35,6 +35,9 @@ const SENSOR: &str = "sensor";
 const SHARE_OF_ODDS: f64 = 0.05;
 const CHANCE: f64 = 20.0;
 
+/// A balance closes when no run keeps more than this many standard errors above noise.
+const CLOSES_SIGMA: f64 = 3.0;
+
 /// What an unknown signal at one place would make of the recordings.
 #[derive(Clone, Debug)]
 pub struct Latent {
@@ -45,6 +48,13 @@ pub struct Latent {
     pub log_odds: f64,
     /// What it leaves of each open run, in standard errors of what noise would leave.
     pub left_sigma: Vec<f64>,
+}
+
+impl Latent {
+    /// Whether it leaves no more than noise of any run: the balances of all other elements close.
+    pub fn closes(&self) -> bool {
+        self.left_sigma.iter().all(|sigma| *sigma < CLOSES_SIGMA)
+    }
 }
 
 /// What an unknown signal at each place would make of the runs of a problem, the likeliest place first; `known` are the rows of the fit.
@@ -162,22 +172,21 @@ mod tests {
         latents.iter().find(|latent| latent.address == address).expect("a place of the scene")
     }
 
-    fn closes(latent: &Latent) -> bool {
-        latent.left_sigma.iter().all(|sigma| *sigma < 3.0)
-    }
-
     /// Something in the muscle accounts for a muscle that is stiffer, and nothing in the fluid does; of a syringe that gives more the other
     /// way round. What no sensor can tell apart comes out alike.
     #[test]
     fn balances_of_a_bench_tell_muscle_from_fluid() {
         let stiffer = bench("muscles.tube.material.c1_pa", "2.7e5");
-        assert!(stiffer[0].element == "muscle" && closes(place(&stiffer, "muscle.wall")), "{stiffer:?}");
+        assert!(stiffer[0].element == "muscle" && place(&stiffer, "muscle.wall").closes(), "{stiffer:?}");
         let [wall, flow] = ["muscle.wall", "line.outflow"].map(|at| place(&stiffer, at));
-        assert!(!closes(flow) && flow.log_odds < wall.log_odds - 1000.0, "{wall:?} {flow:?}");
+        assert!(!flow.closes() && flow.log_odds < wall.log_odds - 1000.0, "{wall:?} {flow:?}");
         let softer = bench("hydraulics.upstream_compliance_m3_pa", "9e-15");
         let [syringe, line, wall] =
             ["syringe.compliance", "line.compliance", "muscle.wall"].map(|at| place(&softer, at));
-        assert!(closes(syringe) && !closes(wall) && wall.log_odds < syringe.log_odds - 1000.0, "{syringe:?} {wall:?}");
+        assert!(
+            syringe.closes() && !wall.closes() && wall.log_odds < syringe.log_odds - 1000.0,
+            "{syringe:?} {wall:?}"
+        );
         assert!(is_behind(&softer, "muscle.wall") && !is_behind(&softer, "line.compliance"), "{line:?}");
         assert!(likely(softer).iter().all(|latent| latent.element != "muscle"));
     }
@@ -187,14 +196,14 @@ mod tests {
     fn one_sensor_leaves_no_balance_open() {
         let recorded: (&[&str], &[&str]) = (&["plunger_mm"], &["elongation_mm"]);
         let found = of("muscle_bench", &[("muscles.tube.material.c1_pa", "2.7e5")], recorded, &[0.01]);
-        assert!(["muscle.wall", "line.outflow", "plunger"].iter().all(|at| closes(place(&found, at))), "{found:?}");
+        assert!(["muscle.wall", "line.outflow", "plunger"].iter().all(|at| place(&found, at).closes()), "{found:?}");
     }
 
-    /// What a sensor makes of it is a place of its own, and none in the rig; a scene whose sensors act on what they show has no latents.
+    /// What a sensor makes of it is a place of its own, and none in the rig.
     #[test]
     fn sensors_are_no_place_in_the_rig() {
         let found = bench("muscles.tube.material.c1_pa", "2.7e5");
-        assert!(!closes(place(&found, "sensor.pressure_kpa")));
+        assert!(!place(&found, "sensor.pressure_kpa").closes());
         assert!(likely(found).iter().all(|latent| latent.element != SENSOR));
         assert!(likely(Vec::new()).is_empty() && !is_behind(&[], "muscle.wall"));
     }

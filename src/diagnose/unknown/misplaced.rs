@@ -7,7 +7,7 @@ use super::forms::{Criterion, equally_good};
 use super::hypothesis::{CLEARLY, Lawful, without_idle};
 use super::unlisted::propose;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
-use crate::diagnose::fit::{Fit, Problem, Sides};
+use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::latent::{Latent, is_behind, latents};
 use crate::diagnose::search::Found;
@@ -37,7 +37,7 @@ fn elsewhere(open: &Problem, found: &Found, index: usize, say: &dyn Fn(String)) 
         0 => found.baseline.clone(),
         _ => open.fit(&found.best.model.without(index), &open.start_without(&found.best, index))?,
     };
-    let known = open.rows(&bare.model, &bare.x, 0..bare.x.len(), Sides::Both)?;
+    let known = open.rows_of(&bare)?;
     let latents = latents(open, &bare, &known);
     if !is_behind(&latents, &verdict::port(own)) || !is_likelier(open, &latents, &bare, &found.best) {
         return None;

@@ -83,7 +83,7 @@ impl<'a> Shown<'a> {
         let last = fit.model.effects.len().checked_sub(1)?;
         let without = Fit { x: problem.start_without(fit, last), model: fit.model.without(last), ..fit.clone() };
         let size = problem.case.parameters.len() + fit.model.places().iter().position(|p| *p == (last, 0))?;
-        let known = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)?;
+        let known = problem.rows_of(fit)?;
         let scale = problem.numbers(&fit.model)[size].scale;
         let does = known.slopes.column(size) * (fit.x[size] / scale);
         let own = fit.x.len() - without.x.len();
@@ -153,7 +153,8 @@ impl<'a> Shown<'a> {
         fits
     }
 
-    /// How much of it a curve over each of some slots' variables could explain, of one shape more where that is given with its scale; the best first.
+    /// How much of it a curve over each of some slots' variables could explain, of one shape more where that is given with its scale; the
+    /// best first.
     pub fn locate(&self, all: &[Slot], some: &[Slot], more: More) -> Vec<Located> {
         let wanted: Vec<Vec<Wanted>> = some.iter().map(|slot| of_curve(slot, more)).collect();
         let signatures = self.signatures(all, &wanted.concat());

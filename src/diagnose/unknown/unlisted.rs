@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::forms::{finished, leaves_something};
 use super::shown::{Located, Shown};
-use crate::diagnose::fit::{Fit, Problem, Sides};
+use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Slot, slots};
 use crate::diagnose::latent::{Latent, latents, likely};
 
@@ -53,7 +53,7 @@ pub(in crate::diagnose) fn propose(
     if all.is_empty() {
         return None;
     }
-    let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
+    let known = problem.rows_of(from)?;
     // What channels show is no place in the rig.
     let likely = if reach == Reach::Channels { Vec::new() } else { likely(latents(problem, from, &known)) };
     let is_likely = |slot: &&Slot| likely.is_empty() || likely.iter().any(|latent| latent.address == slot.address);
