@@ -95,7 +95,7 @@ const STEPS: &Table = &[
     ("latent", &["case", "fit", "grammar"]),
     ("search", &["case", "fit", "grammar"]),
     ("verdict", &["case", "diagnosis", "fit", "search"]),
-    ("unknown", &["case", "fit", "grammar", "latent", "search", "verdict"]),
+    ("unknown", &["case", "diagnosis", "fit", "grammar", "latent", "search", "verdict"]),
     ("validation", &["case", "diagnosis", "error", "fit", "full", "grammar", "search", "unknown", "verdict"]),
     ("experiment", &["case", "diagnosis", "fit", "verdict"]),
     ("answer", &["case", "diagnosis", "error", "fit", "full", "latent", "search", "verdict"]),

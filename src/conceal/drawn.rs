@@ -168,6 +168,14 @@ impl Place {
         if self.added().is_some() { "adds" } else { "scales" }
     }
 
+    /// Port with the number of the part that has it.
+    pub fn port(self, rig: Rig, muscle: usize) -> String {
+        match self.words() {
+            (Part::Mechanism, word) => format!("joint.{word}"),
+            (part, word) => format!("{}.{word}", part.on(rig, muscle)),
+        }
+    }
+
     pub fn is_of_joint(self) -> bool {
         self.words().0 == Part::Mechanism
     }
@@ -279,11 +287,7 @@ impl DrawnLaw {
 
     /// Port with the number of its part: `line_1.compliance`.
     pub fn port(&self, rig: Rig, muscle: usize) -> String {
-        let (part, word) = self.place.words();
-        match part {
-            Part::Mechanism => format!("joint.{word}"),
-            _ => format!("{}.{word}", part.on(rig, muscle)),
-        }
+        self.place.port(rig, muscle)
     }
 
     /// As a table that scenes hold, `[[law]]`.

@@ -24,6 +24,7 @@ mod solve;
 mod stock;
 mod tube;
 mod write;
+mod writings;
 
 use std::path::PathBuf;
 
@@ -38,6 +39,7 @@ pub use secrets::Secret;
 pub use settling::{Settling, settling};
 pub use stock::{Calibration, Output, Rig};
 pub use write::{SEALED, write_case};
+pub use writings::Writing;
 
 use crate::recording::RecordingError;
 

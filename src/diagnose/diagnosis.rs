@@ -111,6 +111,7 @@ pub struct NamedEffect {
     /// Its first number as each run by itself would have it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub size_by_run: BTreeMap<String, Estimate>,
+    /// Its expression; of a law outside the catalogue with its numbers, and behind semicolons what it remembers.
     pub law: String,
     /// What a law outside the catalogue is called where it has a name: breakaway friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -160,9 +161,26 @@ pub struct Curve {
     pub y: Vec<f64>,
     pub low: Vec<f64>,
     pub high: Vec<f64>,
+    /// What the recordings say of it whatever its shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub freehand: Option<Freehand>,
+}
+
+/// A law at a few values of its variable as the recordings have it, whatever its shape, SI, with the ends of 95 % intervals.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Freehand {
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub low: Vec<f64>,
+    pub high: Vec<f64>,
 }
 
 impl NamedEffect {
+    /// The law's expression, and behind it, from its semicolon on, how what it remembers goes; nothing where it remembers nothing.
+    pub fn law_and_memory(&self) -> (&str, &str) {
+        self.law.split_at(self.law.find(';').unwrap_or(self.law.len()))
+    }
+
     /// The key of the number that is its size; two laws may share a name.
     pub fn size_key(&self) -> &'static str {
         size_keys(&self.name).find(|key| self.parameters.contains_key(*key)).unwrap_or_else(|| size_key(&self.name))

@@ -45,6 +45,7 @@ pub(super) fn explain(
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
     let explained = without_misplaced(case, explained, seed, say)?;
+    let explained = at_better_places(case, explained, seed)?;
     let warnings = [warnings, base.warnings, case.notes()].concat();
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
@@ -161,6 +162,17 @@ fn without_misplaced(
     Ok(explained)
 }
 
+/// What was found with what each of several effects could be instead, and with a law elsewhere in the place of one where that is better.
+fn at_better_places(case: &mut Case, mut explained: Explained, seed: u64) -> Result<Explained, DiagnoseError> {
+    for _ in 0..explained.found.best.model.effects.len() {
+        let noise = explained.noise.clone();
+        let Some(found) = stand_ins::of_several(case, &noise, &mut explained.found) else { break };
+        let Some(lawful) = taken(case, &mut explained, found, &noise, seed)? else { break };
+        explained = lawful;
+    }
+    Ok(explained)
+}
+
 /// A law in the place of what was found, with the weights and steps that it asks for; none where it predicts the held-out runs worse.
 fn taken(
     case: &mut Case,
@@ -198,7 +210,6 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
 fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
     let Explained { found, mut proof, noise, mut of_found, .. } = explained;
     let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
-    stand_ins::of_several(case, &noise, &mut found);
     say("full scene".to_owned());
     let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &noise };
     proof.placebo_gap_closed = confirm::placebos(&held_out, &found, seed);

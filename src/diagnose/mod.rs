@@ -44,8 +44,8 @@ use std::collections::BTreeMap;
 pub use answer::{Outcome, side_by_side, write_answer, write_answer_with};
 pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet, Step};
 pub use diagnosis::{
-    Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Location, NamedEffect, NextExperiment, Proof,
-    Verdict, size_key,
+    Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Freehand, Location, NamedEffect,
+    NextExperiment, Proof, Verdict, size_key,
 };
 pub use error::DiagnoseError;
 pub use experiment::programme;
@@ -57,6 +57,7 @@ use explained::{Explained, diverges};
 use fit::{Problem, intervals};
 use full::refine;
 use search::{Found, Screened};
+use unknown::freehand;
 use validation::{consistency, preflight};
 use verdict::{Confirmed, misfit};
 
@@ -198,7 +199,7 @@ fn named(
     warnings: &mut Vec<String>,
 ) -> (Vec<NamedEffect>, Vec<String>) {
     let mut effects = verdict::named(found, complete, left);
-    add_curves(case, complete, &mut effects);
+    add_curves(&Problem { case, runs: case.subset(RunSet::All), noise }, complete, &mut effects);
     let sizes = consistency::sizes_by_run(case, complete, noise);
     let contradicted = consistency::report(sizes, complete, &mut effects, warnings);
     (effects, contradicted)
@@ -219,10 +220,13 @@ fn judged(
 }
 
 /// Gives every effect that the complete fit has the curve of its law.
-fn add_curves(case: &Case, complete: &Fit, effects: &mut [NamedEffect]) {
+fn add_curves(whole: &Problem, complete: &Fit, effects: &mut [NamedEffect]) {
     for (at, placed) in complete.model.effects.iter().enumerate() {
         if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
-            own.curve = verdict::curve(case, complete, at);
+            own.curve = verdict::curve(whole.case, complete, at);
+            if let Some(curve) = &mut own.curve {
+                curve.freehand = freehand::freehand(whole, complete, at, curve);
+            }
         }
     }
 }

@@ -49,6 +49,16 @@ pub struct Effect<D> {
 }
 
 impl Effect<f64> {
+    /// The same with numbers of another kind.
+    pub fn lift<T>(&self, number: impl Fn(f64) -> T) -> Effect<T> {
+        Effect {
+            entry: self.entry,
+            element: self.element,
+            channel: self.channel.clone(),
+            values: self.values.iter().map(|x| number(*x)).collect(),
+        }
+    }
+
     /// As a law of a scene file, if it is one that was written down.
     pub fn law_table(&self) -> Option<LawTable> {
         Some(self.entry.unlisted()?.table_with(&self.values))

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::ProofError;
 use super::holdout::gap_on_holdout;
 use super::row::read;
-use crate::conceal::{DrawnLaw, Place, Remembers, Secret, Truth};
+use crate::conceal::{DrawnLaw, Place, Reads, Remembers, Rig, Secret, Truth};
 use crate::diagnose::{Diagnosis, NamedEffect};
 use crate::laws::{Law, Symbol};
 use crate::scene::Scene;
@@ -40,7 +40,7 @@ pub fn found_law(truth: &Truth, answer: &Path, larger: &Path) -> Result<Option<F
     let path = answer.join("diagnosis.json");
     let diagnosis: Diagnosis =
         serde_json::from_str(&read(&path)?).map_err(|e| ProofError::Format { file: path, message: e.to_string() })?;
-    let sought = Sought { port: law.port(truth.rig, secret.muscle), law };
+    let sought = Sought::of(law, truth.rig, secret.muscle);
     // With a second thing hidden the answer is the one that is nearest to this law.
     let named = diagnosis.effects.iter();
     let own = named.min_by_key(|e| (sought.rank(e).unwrap_or(usize::MAX), sought.port_rank(e).unwrap_or(usize::MAX)));
@@ -71,29 +71,50 @@ pub fn found_law(truth: &Truth, answer: &Path, larger: &Path) -> Result<Option<F
 struct Sought {
     port: String,
     law: DrawnLaw,
+    /// The ports at which the same law may be written, and the variables that it has there.
+    written: Vec<(String, Vec<&'static str>)>,
 }
 
 impl Sought {
-    /// Place among the forms of an answer of the first at the right port, counted from 1.
+    /// The law of a part of a rig.
+    fn of(law: DrawnLaw, rig: Rig, muscle: usize) -> Self {
+        let port = |place: Place| place.port(rig, muscle);
+        let written = law.writings().into_iter();
+        let written = written.map(|w| (port(w.place), w.over.into_iter().map(Reads::name).collect()));
+        Self { port: port(law.place), law, written: written.collect() }
+    }
+
+    /// Place among the forms of an answer of the first at the right port, counted from 1: the law's own, or one where it may be written too.
     fn port_rank(&self, effect: &NamedEffect) -> Option<usize> {
-        let ports = std::iter::once(&effect.port).chain(effect.forms.iter().map(|f| &f.port));
-        ports.into_iter().position(|port| *port == self.port).map(|i| i + 1)
+        self.first(effect, |port, law| port == self.port || self.is_written(port, law))
     }
 
     /// The same at the right port, over the right variables.
     fn rank(&self, effect: &NamedEffect) -> Option<usize> {
-        let own = (&effect.port, self.is_over(&effect.law));
-        let forms = effect.forms.iter().map(|f| (&f.port, self.is_over(&f.law)));
-        std::iter::once(own).chain(forms).position(|(port, is_over)| *port == self.port && is_over).map(|i| i + 1)
+        self.first(effect, |port, law| self.is_written(port, law))
     }
 
-    /// Whether a law's text reads what the hidden one does and nothing else.
-    fn is_over(&self, text: &str) -> bool {
-        let words = || text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
-        let wanted: Vec<&str> =
-            self.law.reads.iter().chain(self.law.times.iter().map(|(r, _)| r)).map(|r| r.name()).collect();
-        let is_variable = |w: &&str| crate::laws::QUANTITIES.iter().any(|q| q.name() == **w);
-        wanted.iter().all(|w| words().any(|x| x == *w)) && words().filter(is_variable).all(|w| wanted.contains(&w))
+    fn is_written(&self, port: &str, law: &str) -> bool {
+        self.written.iter().any(|(own, over)| own == port && is_over(law, over, self.turns()))
+    }
+
+    /// The rate by whose sign the law may tell rising from falling: of what it reads, where it remembers anything.
+    fn turns(&self) -> Option<&'static str> {
+        let rate = match self.law.reads? {
+            Reads::Elongation => "speed_m_s",
+            Reads::Angle => "angular_speed_rad_s",
+            _ => return None,
+        };
+        (self.law.remembers != Remembers::Nothing).then_some(rate)
+    }
+
+    /// Place of the first form, counted from 1, whose port and text are right.
+    fn first(&self, effect: &NamedEffect, is_right: impl Fn(&str, &str) -> bool) -> Option<usize> {
+        let forms = effect.forms.iter().map(|form| (&form.port, &form.law));
+        std::iter::once((&effect.port, &effect.law))
+            .chain(forms)
+            .position(|(port, law)| is_right(port, law))
+            .map(|i| i + 1)
     }
 
     /// Distance of curves of one variable without memory; what a calibrated number takes up counts as none.
@@ -125,6 +146,14 @@ impl Sought {
     }
 }
 
+/// Whether a law's text reads these variables and no others; it may read `turns` as well.
+fn is_over(text: &str, wanted: &[&str], turns: Option<&str>) -> bool {
+    let words = || text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+    let is_variable = |w: &&str| crate::laws::QUANTITIES.iter().any(|q| q.name() == **w);
+    let is_known = |w: &str| wanted.contains(&w) || turns == Some(w);
+    wanted.iter().all(|w| words().any(|x| x == *w)) && words().filter(is_variable).all(is_known)
+}
+
 /// Value of a law of one variable with its own numbers.
 fn value(law: &Law, x: f64) -> f64 {
     let read = |symbol: &Symbol| match symbol {
@@ -134,4 +163,57 @@ fn value(law: &Law, x: f64) -> f64 {
     };
     let by_symbol: Vec<f64> = law.symbols.iter().map(read).collect();
     law.programs.value.value(&by_symbol)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conceal::Form;
+    use crate::diagnose::Form as Written;
+
+    fn sought(place: Place, reads: Reads, times: Option<Reads>, remembers: Remembers) -> Sought {
+        let times = times.map(|reads| (reads, 1.0));
+        let law = DrawnLaw { place, reads: Some(reads), scale: 1.0, form: Form::Constant, remembers, times };
+        Sought::of(law, Rig::MuscleBench, 0)
+    }
+
+    /// The ranks of an answer whose forms act at these ports with these texts.
+    fn ranks(sought: &Sought, forms: &[(&str, &str)]) -> (Option<usize>, Option<usize>) {
+        let form =
+            |(port, law): &(&str, &str)| Written { port: (*port).into(), law: (*law).into(), ..Written::default() };
+        let mut all: Vec<Written> = forms.iter().map(form).collect();
+        let Written { port, law, .. } = all.remove(0);
+        let effect = NamedEffect { port, law, forms: all, ..NamedEffect::default() };
+        (sought.port_rank(&effect), sought.rank(&effect))
+    }
+
+    #[test]
+    fn the_first_form_at_the_right_port_over_the_right_variables_counts() {
+        let wall = sought(Place::Wall, Reads::Elongation, None, Remembers::Nothing);
+        let forms =
+            [("muscle.coil", "1 + elongation_m"), ("muscle.wall", "1 + time_s"), ("muscle.wall", "1 - elongation_m^2")];
+        assert_eq!(ranks(&wall, &forms), (Some(2), Some(3)));
+        assert_eq!(ranks(&wall, &forms[..1]), (None, None));
+        // Over one variable more it is another law.
+        assert_eq!(ranks(&wall, &[("muscle.wall", "1 + elongation_m*pressure_pa")]), (Some(1), None));
+    }
+
+    #[test]
+    fn a_law_that_remembers_may_say_so_in_any_way() {
+        let lagging = sought(Place::Pull, Reads::Elongation, None, Remembers::Lag(2.0));
+        let behind = [("muscle.pull", "0.1 * s; ds/dt = (elongation_m - s)/2")];
+        let rising = [("muscle.pull", "0.1 * elongation_m*(speed_m_s > 0)")];
+        assert_eq!((ranks(&lagging, &behind).1, ranks(&lagging, &rising).1), (Some(1), Some(1)));
+        let plain = sought(Place::Pull, Reads::Elongation, None, Remembers::Nothing);
+        assert_eq!(ranks(&plain, &rising).1, None);
+    }
+
+    /// A pressure drop in proportion to the flow is a resistance; at that port over anything else it is not this law.
+    #[test]
+    fn the_same_law_in_other_words_counts() {
+        let drop = sought(Place::PressureDrop, Reads::Time, Some(Reads::Flow), Remembers::Nothing);
+        assert_eq!(ranks(&drop, &[("line.resistance", "1 + time_s")]), (Some(1), Some(1)));
+        assert_eq!(ranks(&drop, &[("line.resistance", "1 + pressure_pa")]), (None, None));
+        assert_eq!(ranks(&drop, &[("line.pressure_drop", "time_s")]), (Some(1), None));
+    }
 }

@@ -1,10 +1,10 @@
 //! A law outside the catalogue, as the page of a diagnosis shows it: symbols, name, curve, and what would do as well.
 
-use crate::diagnose::{Curve, NamedEffect};
+use crate::diagnose::{Curve, Freehand, NamedEffect};
 use crate::recording::axis_label;
 
 use super::axis::three_digits;
-use super::colour::BLUE;
+use super::colour::{BLUE, ORANGE};
 use super::formula::Formula;
 use super::kit::{Area, HtmlPage, Plot};
 use super::panel::{Panel, Series};
@@ -16,7 +16,8 @@ pub(super) fn laws(page: &mut HtmlPage, effects: &[NamedEffect]) {
             law(page, effect);
         }
         if let Some(curve) = &effect.curve {
-            let caption = "The law over its variable, as far as the runs visited it, in SI units.";
+            let caption = "The law over its variable, as far as the runs visited it, in SI units; orange: what the recordings say \
+                           of it whatever its shape.";
             page.figure(plot(curve, effect), caption);
         }
         forms(page, effect);
@@ -26,9 +27,10 @@ pub(super) fn laws(page: &mut HtmlPage, effects: &[NamedEffect]) {
 fn law(page: &mut HtmlPage, effect: &NamedEffect) {
     page.subheading(&format!("The law at {}", effect.port));
     let formula = Formula::of(&effect.law);
+    let [own, memory] = <[&str; 2]>::from(effect.law_and_memory()).map(|part| Formula::of(part).text);
     page.law(&match effect.acts.as_str() {
-        "scales" => format!("{} × ({})", effect.port, formula.text),
-        _ => format!("{} + {}", effect.port, formula.text),
+        "scales" => format!("{} × ({own}){memory}", effect.port),
+        _ => format!("{} + {own}{memory}", effect.port),
     });
     let name = effect.known_as.as_ref().map_or_else(String::new, |n| format!(" It reads as {n}."));
     let letters = if formula.letters.is_empty() { String::new() } else { format!("; {}", formula.legend()) };
@@ -51,6 +53,19 @@ fn forms(page: &mut HtmlPage, effect: &NamedEffect) {
     page.table(&["port", "acts", "law", "known as", "chi² above, in units of what is left"], &rows.collect::<Vec<_>>());
 }
 
+/// What the recordings say of the law whatever its shape, and both ends of its interval.
+fn freehand(freehand: &Freehand) -> Vec<Series> {
+    let line = |label: &str, y: &[f64]| Series {
+        label: label.to_owned(),
+        colour: ORANGE,
+        x: freehand.x.clone(),
+        y: y.to_vec(),
+    };
+    let ends = [("95 % interval of that", &freehand.low), ("", &freehand.high)];
+    let ends = ends.map(|(label, y)| line(label, y));
+    [vec![line("whatever its shape", &freehand.y)], ends.to_vec()].concat()
+}
+
 /// The curve with its band.
 fn plot(curve: &Curve, effect: &NamedEffect) -> Plot {
     let law = Series { label: "law".to_owned(), colour: BLUE, x: curve.x.clone(), y: curve.y.clone() };
@@ -58,7 +73,7 @@ fn plot(curve: &Curve, effect: &NamedEffect) -> Plot {
         title: vec![format!("{} {}", effect.port, effect.acts)],
         x_label: axis_label(&curve.variable),
         y_label: if effect.acts == "scales" { "factor".to_owned() } else { "added (SI)".to_owned() },
-        series: vec![law],
+        series: [vec![law], curve.freehand.as_ref().map_or_else(Vec::new, freehand)].concat(),
         ..Panel::default()
     };
     let band = Area {
@@ -91,6 +106,12 @@ mod tests {
                 y: vec![1.4, 1.0],
                 low: vec![1.3, 1.0],
                 high: vec![1.5, 1.0],
+                freehand: Some(Freehand {
+                    x: vec![0.0, 0.01],
+                    y: vec![1.42, 1.01],
+                    low: vec![1.37, 0.92],
+                    high: vec![1.47, 1.1],
+                }),
             }),
             hypothetical: true,
             ..NamedEffect::default()
@@ -99,8 +120,16 @@ mod tests {
         laws(&mut page, &[effect]);
         let text = page.finish();
         let printed = "muscle.friction × (1 + 0.4\u{a0}exp(-|v/0.002|))";
-        for shown in ["breakaway friction", printed, "v: <code>speed_m_s", ">1.25<", "muscle.pull", r#""low":[1.3,1]"#]
-        {
+        for shown in [
+            "breakaway friction",
+            printed,
+            "v: <code>speed_m_s",
+            ">1.25<",
+            "muscle.pull",
+            r#""low":[1.3,1]"#,
+            "1.42",
+            "0.92",
+        ] {
             assert!(text.contains(shown), "{shown} in {text}");
         }
         // What the catalogue names without rivals has no section.

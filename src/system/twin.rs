@@ -14,6 +14,7 @@ mod many;
 mod output;
 mod parameter;
 mod plan;
+mod steady;
 mod unheld;
 
 use nalgebra::{DMatrix, DVector};

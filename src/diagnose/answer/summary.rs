@@ -121,9 +121,10 @@ fn withheld(effects: &[NamedEffect]) -> String {
 
 /// A law with where it acts and its numbers: `muscle.friction times (1 + ...)`.
 fn law(effect: &NamedEffect) -> String {
+    let (law, memory) = effect.law_and_memory();
     let own = match effect.acts.as_str() {
-        "scales" => format!("{} times ({})", effect.port, effect.law),
-        _ => format!("{} plus {}", effect.port, effect.law),
+        "scales" => format!("{} times ({law}){memory}", effect.port),
+        _ => format!("{} plus {law}{memory}", effect.port),
     };
     effect.known_as.as_ref().map_or_else(|| own.clone(), |name| format!("{own} - {name}"))
 }

@@ -184,10 +184,43 @@ impl Problem<'_> {
         slope: &[f64],
         number: &Number,
     ) -> impl Iterator<Item = f64> {
-        let weight = 1.0 / self.noise[channel].scale();
         let zero = self.zero(run, channel, |i, _| slope[i]);
+        self.slope_in_noise(run, channel, slope, number.scale).map(move |(slope, weight)| (slope - zero) * weight)
+    }
+
+    /// What a small change of this size does to a channel where it was measured, in units of the noise, whatever its zero.
+    pub fn seen(&self, run: &CaseRun, channel: usize, slope: &[f64], size: f64) -> impl Iterator<Item = f64> {
+        self.slope_in_noise(run, channel, slope, size).map(|(slope, weight)| slope * weight)
+    }
+
+    fn slope_in_noise(
+        &self,
+        run: &CaseRun,
+        channel: usize,
+        slope: &[f64],
+        size: f64,
+    ) -> impl Iterator<Item = (f64, f64)> {
+        let weight = 1.0 / self.noise[channel].scale() * size;
         let there = run.measured[channel].iter().zip(slope).filter(|(measured, _)| measured.is_finite());
-        there.map(move |(_, slope)| (slope - zero) * (weight * number.scale))
+        there.map(move |(_, slope)| (*slope, weight))
+    }
+
+    /// A column for every run and channel whose zero is free there, one in each row of it.
+    pub fn free_zeros(&self) -> Vec<DVector<f64>> {
+        let mut columns = Vec::new();
+        let (samples, mut row) = (self.samples(), 0);
+        for run in &self.runs {
+            for (measured, channel) in run.measured.iter().zip(&self.case.channels) {
+                let count = measured.iter().filter(|m| m.is_finite()).count();
+                if channel.has_free_zero && count > 0 {
+                    let mut column = DVector::zeros(samples);
+                    column.rows_mut(row, count).fill(1.0);
+                    columns.push(column);
+                }
+                row += count;
+            }
+        }
+        columns
     }
 
     /// Sum of squares of the residuals at `x`, in units of the noise.

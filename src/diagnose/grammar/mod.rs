@@ -8,6 +8,7 @@ mod shaped;
 mod shapes;
 mod slots;
 
+pub(super) use acting::{Action, injected};
 pub(super) use reading::Reading;
 pub(super) use shaped::{candidate, curve, variant};
 pub(super) use shapes::Shape;

@@ -1,7 +1,8 @@
 //! Other places at which a law would do the same: what the sensors cannot tell apart.
 //!
 //! Where two places come out alike, the search stumbles on one of them. Along the runs of the model that was found signals are injected at
-//! every port; a slot whose curves imitate all that the found law does, the numbers of the calibration free, is another place for it.
+//! every port; a slot whose curves imitate what the found effect does, all but what chance could make, the numbers of the calibration free,
+//! is another place for it: over the same variable, over none, or, of a law, over another that goes with it in these runs.
 
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
@@ -9,15 +10,18 @@ use crate::diagnose::fit::{Fit, Placed, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, slots, variant};
 use crate::diagnose::verdict;
 
-/// Share of what an effect does that a slot's curve must imitate.
-const AS_MUCH: f64 = 0.97;
-/// Other places that are tried, at most so many at one address, in so many shapes each.
-const PLACES: usize = 8;
+/// Share of what an effect does that a slot's curve may leave, or so many times the chi² by which other models are as good: the curve is no
+/// law yet.
+const LEFT_SHARE: f64 = 0.03;
+const LEFT_TIES: f64 = 3.0;
+/// Other places that are tried, at most so many over a variable at one address, in so many shapes each.
+const PLACES: usize = 10;
 const OF_ADDRESS: usize = 2;
 const SHAPES: usize = 3;
 
-/// Fits with a law at another place instead of the last effect of a fit, cheapest first: of those places that may do the same.
-pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
+/// Fits with a law at another place instead of the last effect of a fit, cheapest first: of those places that may do the same. Other models
+/// are as good within `tie` of chi².
+pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let Some(mut shown) = Shown::last_effect(problem, fit) else { return Vec::new() };
     let all = alike(problem, fit);
     let own = all.iter().find(|slot| is_place_of(fit, slot));
@@ -26,17 +30,27 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit) -> Vec<Fit> {
         shown.keep(&all, own, more);
     }
     let located = shown.locate(&all, &all, more);
-    let does_the_same = |l: &&Located| l.gain > AS_MUCH * shown.whole() && !is_place_of(fit, &l.slot);
-    let mut places: Vec<&Slot> = Vec::new();
-    for own in located.iter().filter(does_the_same) {
-        let of_address = places.iter().filter(|p| p.address == own.slot.address).count();
-        if of_address < OF_ADDRESS && places.len() < PLACES {
-            places.push(&own.slot);
-        }
-    }
+    let may_leave = f64::max(LEFT_SHARE * shown.whole(), LEFT_TIES * tie);
+    let does_the_same = |l: &&Located| l.gain > shown.whole() - may_leave && !is_place_of(fit, &l.slot);
+    let mut places = some_of_each(located.iter().filter(does_the_same).map(|l| &l.slot));
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
     places.extend(&bent);
     shown.refits(&all, &places, SHAPES)
+}
+
+/// The first slots, a few of each address; one of each address comes before a second.
+fn some_of_each<'a>(slots: impl Iterator<Item = &'a Slot>) -> Vec<&'a Slot> {
+    let mut ranked: Vec<(usize, &Slot)> = Vec::new();
+    for slot in slots {
+        let is_alike =
+            |(_, own): &&(usize, &Slot)| own.address == slot.address && own.is_constant() == slot.is_constant();
+        let before = ranked.iter().filter(is_alike).count();
+        if before < OF_ADDRESS {
+            ranked.push((before, slot));
+        }
+    }
+    ranked.sort_by_key(|(before, _)| *before);
+    ranked.into_iter().map(|(_, slot)| slot).take(PLACES).collect()
 }
 
 /// Whether a slot is where the last effect of a fit acts, over what that depends on.
@@ -63,23 +77,57 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
     Some((shape, values[scale]))
 }
 
-/// The slots over the variables of a fit's last effect, read as it reads them, and mere numbers. Over another variable it is another law: that
-/// two go together in these runs is for the search to find.
+/// Every slot over a variable or none, and those whose law remembers or multiplies as the last effect of a fit does. For an effect of the
+/// catalogue those over its own variables and over none must do: beside it a law counts little.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
-    let Some(last) = fit.model.effects.last() else { return Vec::new() };
-    let variables: Vec<String> = match last.spec().unlisted() {
-        Some(own) => own.law.variables().iter().map(|v| v.name()).collect(),
-        None => last.spec().variables.clone(),
-    };
-    let is_over = |slot: &Slot| slot.is_constant() || variables.contains(&slot.variable);
     let mut plain = slots(problem.case, fit, Reach::Plain);
-    plain.retain(is_over);
-    let remembers = last.spec().unlisted().is_some_and(|own| !own.law.states.is_empty());
-    if !remembers && variables.len() < 2 {
+    let Some(last) = fit.model.effects.last() else { return Vec::new() };
+    let Some(own) = last.spec().unlisted() else {
+        plain.retain(|slot| slot.is_constant() || last.spec().variables.contains(&slot.variable));
+        return plain;
+    };
+    let variables: Vec<String> = own.law.variables().iter().map(|v| v.name()).collect();
+    if own.law.states.is_empty() && variables.len() < 2 {
         return plain;
     }
     let mut wide = slots(problem.case, fit, Reach::Wide);
     let own: Vec<Reading> = wide.iter().filter(|slot| is_law_of(fit, slot)).map(|slot| slot.reading.clone()).collect();
-    wide.retain(|slot| is_over(slot) && own.iter().any(|reading| reading.is_like(&slot.reading)));
-    if wide.is_empty() { plain } else { wide }
+    let is_read_so = |slot: &Slot| own.iter().any(|reading| reading.is_like(&slot.reading));
+    wide.retain(|slot| slot.reading != Reading::Plain && variables.contains(&slot.variable) && is_read_so(slot));
+    plain.extend(wide);
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::Model;
+    use crate::scene::Override;
+
+    /// A syringe that gives more, answered with the line's compliance times a number: the syringe's does the same, and nothing in the muscle.
+    #[test]
+    fn a_mere_number_has_other_places() {
+        let softer = Override::parse("hydraulics.upstream_compliance_m3_pa=9e-15").expect("a key");
+        let channels = ["elongation_mm", "pressure_kpa"];
+        let mut case = made::recorded("muscle_bench", &[softer], &["plunger_mm"], &channels);
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
+        let baseline = fit(&Model::baseline());
+        let all = slots(&case, &baseline, Reach::Plain);
+        let of_line = all.iter().find(|slot| slot.is_constant() && slot.address == "line.compliance").expect("a slot");
+        let own = variant(&case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
+        let answered = fit(&Model::baseline().plus(&own.placed, &[0.05]));
+        let others = elsewhere(&problem, &answered, 6.0);
+        let as_good = others.iter().filter(|fit| fit.cost < answered.cost + 6.0);
+        let last = as_good.filter_map(|fit| fit.model.effects.last());
+        let numbers = last.filter(|law| law.spec().unlisted().is_some_and(|own| own.law.variables().is_empty()));
+        let numbers: Vec<String> = numbers.map(verdict::port).collect();
+        assert_eq!(numbers, ["syringe.compliance"]);
+        let is_in_muscle =
+            |fit: &Fit| fit.model.effects.last().map(verdict::port).is_some_and(|p| p.starts_with("muscle"));
+        assert!(answered.cost < baseline.cost - 1000.0 && !others.iter().any(is_in_muscle));
+    }
 }

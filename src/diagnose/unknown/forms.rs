@@ -47,13 +47,21 @@ pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     })
 }
 
-/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. `before` is the chi²
-/// without it.
+/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. Where one of these is
+/// better, what does the same as that too: at the first place it may have another shape. `before` is the chi² without it.
 pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
-    let near = fit.cost + NEARLY * tie(open, &fit, before);
-    let rough = elsewhere(open, &fit);
-    let named = other_forms(&fit, rough.iter().take_while(|f| f.cost < near));
-    named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).chain([fit.clone()]).collect()
+    let others = |fit: &Fit| -> Vec<Fit> {
+        let tie = tie(open, fit, before);
+        let rough = elsewhere(open, fit, tie);
+        let named = other_forms(fit, rough.iter().take_while(|f| f.cost < fit.cost + NEARLY * tie));
+        named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).collect()
+    };
+    let mut fits = others(&fit);
+    let better = fits.iter().filter(|other| other.cost < fit.cost - SAME_LAW).min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let more = better.map(|better| others(better));
+    fits.extend(more.into_iter().flatten());
+    fits.push(fit);
+    fits
 }
 
 /// Rough fits, cheapest first, of which the best, so many at most, are fitted to the end where they may come near the first of them;

@@ -1,12 +1,14 @@
 //! Step 6: what the catalogue does not explain, as laws of the grammar.
 //!
-//! May import `verdict`, `search`, `latent`, `grammar`, `fit` and `case`.
+//! May import `verdict`, `search`, `latent`, `grammar`, `fit`, `case` and `diagnosis`.
 
 mod elsewhere;
 mod forms;
+pub(super) mod freehand;
 pub(super) mod hypothesis;
 pub(super) mod misplaced;
 pub(super) mod pair;
+mod settled;
 mod shown;
 mod span;
 pub(super) mod stand_ins;

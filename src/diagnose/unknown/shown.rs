@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::settled::{basis, settled, where_settled};
 use super::span::{explained, sizes};
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Model, Number, Problem, Rows, Sides, Underway, Variant, orthogonal};
@@ -65,17 +66,17 @@ pub(super) struct Shown<'a> {
     from: Fit,
     /// What is measured by the numbers of `from`, and what these can imitate.
     slopes: DMatrix<f64>,
+    /// Rows at which signals say something; what calibration and free zeros can imitate there.
+    settled: Vec<bool>,
     basis: DMatrix<f64>,
-    /// What has to be explained, less what the numbers can imitate.
+    /// What has to be explained there, less what these can imitate.
     left: DVector<f64>,
 }
 
 impl<'a> Shown<'a> {
     /// What a fit leaves, whose rows are `known`.
     pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit, known: Rows) -> Self {
-        let basis = known.slopes.clone().qr().q();
-        let left = orthogonal(&basis, &known.residual);
-        Self { problem, along: fit, from: fit.clone(), slopes: known.slopes, basis, left }
+        Self::along(problem, fit, fit.clone(), known.slopes, known.residual)
     }
 
     /// What the last effect of a fit does, by its size. `None` where the model cannot be simulated, or the size is not fitted.
@@ -88,9 +89,16 @@ impl<'a> Shown<'a> {
         let does = known.slopes.column(size) * (fit.x[size] / scale);
         let own = fit.x.len() - without.x.len();
         let slopes = known.slopes.remove_columns(fit.x.len() - own, own);
-        let basis = slopes.clone().qr().q();
-        let left = orthogonal(&basis, &does);
-        Some(Self { problem, along: fit, from: without, slopes, basis, left })
+        Some(Self::along(problem, fit, without, slopes, does))
+    }
+
+    /// What is `left` of a model along the runs of a fit, with what is measured by the model's numbers.
+    fn along(problem: &'a Problem<'a>, along: &'a Fit, from: Fit, slopes: DMatrix<f64>, left: DVector<f64>) -> Self {
+        let settled = settled(problem, along);
+        let free = slopes.column_iter().map(|column| column.into_owned()).chain(problem.free_zeros());
+        let basis = basis(free, &settled, left.len());
+        let left = orthogonal(&basis, &where_settled(left, &settled));
+        Self { problem, along, from, slopes, settled, basis, left }
     }
 
     /// Keeps of what has to be explained the part that curves over a slot's variable can. Differences hold more than signals along one run
@@ -251,7 +259,7 @@ impl<'a> Shown<'a> {
             for &i in parts {
                 sum += signatures[i].as_ref()?;
             }
-            Some(orthogonal(&self.basis, &sum))
+            Some(orthogonal(&self.basis, &where_settled(sum, &self.settled)))
         };
         members.par_iter().map(sum).collect()
     }

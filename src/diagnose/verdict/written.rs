@@ -23,7 +23,7 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
         effect.element = own.law.address.element();
         effect.acts = own.law.acts.word().to_owned();
         effect.variables = own.law.variables().iter().map(|v| v.name()).collect();
-        effect.law = with_numbers(&own.law, &own.values(&values(fit, at)));
+        effect.law = text(own, &values(fit, at));
         effect.known_as = known_as(own, &values(fit, at));
         return;
     }
@@ -52,11 +52,31 @@ fn values(fit: &Fit, effect: usize) -> Vec<f64> {
     fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
 }
 
-/// A law's expression with numbers in place of its parameters.
-fn with_numbers(law: &Law, values: &[f64]) -> String {
+/// A law with the numbers of an effect: its expression, then what it remembers.
+fn text(own: &WrittenLaw, numbers: &[f64]) -> String {
+    let values = own.values(numbers);
+    let number =
+        |expression: &Option<String>| expression.as_ref().map(|expression| with_numbers(&own.law, expression, &values));
+    let mut text = with_numbers(&own.law, &own.law.expression, &values);
+    for (name, state) in &own.table.state {
+        if let Some(rate) = number(&state.rate) {
+            text += &format!("; d{name}/dt = {rate}");
+        }
+        if let Some(greatest) = number(&state.greatest) {
+            text += &format!("; {name} = greatest {greatest} so far");
+        }
+        if let Some((followed, width)) = number(&state.play_of).zip(number(&state.width)) {
+            text += &format!("; {name} follows {followed} with a play of {width}");
+        }
+    }
+    text
+}
+
+/// A law's expression, or one of its states', with numbers in place of its parameters.
+fn with_numbers(law: &Law, expression: &str, values: &[f64]) -> String {
     let mut text = String::new();
     let mut word = String::new();
-    for c in law.expression.chars().chain([' ']) {
+    for c in expression.chars().chain([' ']) {
         if c.is_ascii_alphanumeric() || c == '_' {
             word.push(c);
             continue;
@@ -95,7 +115,7 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
         Some(Form {
             port: own.law.address.to_string(),
             acts: own.law.acts.word().to_owned(),
-            law: with_numbers(&own.law, &own.values(&values(fit, at))),
+            law: text(own, &values(fit, at)),
             known_as: known_as(own, &values(fit, at)),
             score_difference: (fit.cost - against) / unit,
         })
@@ -125,7 +145,7 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     let half = band(fit, at, &best, &y, &over);
     let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
     let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
-    Some(Curve { variable: variable.name(), x, y, low, high })
+    Some(Curve { variable: variable.name(), x, y, low, high, freehand: None })
 }
 
 /// What a law is called by those who know it.
@@ -175,17 +195,41 @@ fn band(fit: &Fit, at: usize, best: &[f64], y: &[f64], over: &dyn Fn(&[f64]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{EntryId, Fitted, Range};
     use crate::laws::{LawTable, Surroundings};
+
+    /// A law with a size `a`, absent at zero, as answers write it with these numbers.
+    fn written(table: &str, values: &[f64]) -> String {
+        let table: LawTable = toml::from_str(table).expect("TOML");
+        let law = table.law(&Surroundings::default()).expect("a law");
+        let range = Range { min: -1e9, max: 1e9 };
+        let numbers = law.parameters.iter().map(|p| Fitted { typical: p.value, range, is_fitted: true });
+        let entry = EntryId::write(&table, &law, 0, &numbers.collect::<Vec<_>>());
+        text(entry.entry().unlisted().expect("it was written"), values)
+    }
 
     #[test]
     fn a_law_is_written_with_its_numbers() {
-        let table: LawTable = toml::from_str(
-            "name = 'x'\nport = 'muscle.wall'\nscales = '1 + a * exp(-abs(time_s/scale_s))'\n\
-             parameter.a = { value = 1.0 }\nparameter.scale_s = { value = 1.0 }",
-        )
-        .expect("TOML");
-        let law = table.law(&Surroundings::default()).expect("a law");
-        assert_eq!(with_numbers(&law, &[0.5, 20.0]), "1 + 0.5 * exp(-abs(time_s/20))");
-        assert_eq!(with_numbers(&law, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
+        let table = "name = 'x'\nport = 'muscle.wall'\nscales = '1 + a * exp(-abs(time_s/scale_s))'\n\
+             parameter.a = { value = 1.0 }\nparameter.scale_s = { value = 1.0 }";
+        assert_eq!(written(table, &[0.5, 20.0]), "1 + 0.5 * exp(-abs(time_s/20))");
+        assert_eq!(written(table, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
+    }
+
+    /// What it remembers stands behind it: without that nobody can tell what it depends on.
+    #[test]
+    fn what_a_law_remembers_is_written_with_it() {
+        let with = |unit: &str, state: &str, more: &str| {
+            let size = format!("parameter.a = {{ value = 1.0, unit = '{unit}' }}");
+            format!("name = 'x'\nport = 'muscle.wall'\nscales = '1 + a * s'\n{size}\n{more}\n{state}")
+        };
+        let lag = "parameter.lag_s = { value = 1.0 }";
+        let behind = with("1/s", "state.s = { rate = '(time_s - s)/lag_s', start = 'time_s' }", lag);
+        assert_eq!(written(&behind, &[0.5, 20.0]), "1 + 0.5 * s; ds/dt = (time_s - s)/20");
+        let greatest = with("1/m", "state.s = { greatest = 'abs(elongation_m)' }", "");
+        assert_eq!(written(&greatest, &[0.5]), "1 + 0.5 * s; s = greatest abs(elongation_m) so far");
+        let width = "parameter.width_m = { value = 1.0 }";
+        let play = with("1/m", "state.s = { play_of = 'elongation_m', width = 'width_m' }", width);
+        assert_eq!(written(&play, &[0.5, 2e-3]), "1 + 0.5 * s; s follows elongation_m with a play of 0.002");
     }
 }

@@ -14,7 +14,7 @@ use super::{Twin, TwinRun, TwinSetting};
 
 /// Directions that one run follows, and the number that carries the derivatives along them.
 pub(super) const TOGETHER: usize = 8;
-type D = DualSVec64<TOGETHER>;
+pub(super) type D = DualSVec64<TOGETHER>;
 
 /// What is changed at the beginning of every interval.
 #[derive(Clone, Debug)]
@@ -93,15 +93,9 @@ impl<'a> Directions<'a> {
         numbers: &[usize],
         along: Along,
     ) -> Self {
-        let lifted = |effect: &Effect<f64>, value: &dyn Fn(f64) -> D| Effect {
-            entry: effect.entry,
-            element: effect.element,
-            channel: effect.channel.clone(),
-            values: effect.values.iter().map(|x| value(*x)).collect(),
-        };
-        let acting = |(i, port): (usize, &&Effect<f64>)| lifted(port, &|_| D::from_re(0.0).derivative(i));
-        let at_rest = memory.iter().map(|law| lifted(law, &|_| D::from_re(0.0)));
-        let known = setting.effects.iter().map(|effect| lifted(effect, &D::from_re)).chain(at_rest);
+        let acting = |(i, port): (usize, &&Effect<f64>)| port.lift(|_| D::from_re(0.0).derivative(i));
+        let at_rest = memory.iter().map(|law| law.lift(|_| D::from_re(0.0)));
+        let known = setting.effects.iter().map(|effect| effect.lift(D::from_re)).chain(at_rest);
         let setting = TwinSetting {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from_re(*x))).collect(),
             effects: known.chain(ports.iter().enumerate().map(acting)).collect(),
@@ -151,7 +145,6 @@ impl<'a> Directions<'a> {
         let outputs = self.twin.outputs.iter();
         let read = outputs.map(|o| o.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room));
         let here: Vec<D> = shown.chain(read).collect();
-        let slope = |x: &D, direction: usize| x.eps.0.as_ref().map_or(0.0, |eps| eps[direction]);
         (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| slope(x, d))));
     }
 
@@ -167,4 +160,9 @@ impl<'a> Directions<'a> {
             }
         }
     }
+}
+
+/// Derivative of a number along one direction.
+pub(super) fn slope(x: &D, direction: usize) -> f64 {
+    x.eps.0.as_ref().map_or(0.0, |eps| eps[direction])
 }

@@ -1,0 +1,144 @@
+//! Where along a fitted model's runs what is small stays small.
+//!
+//! Signals at ports are followed by derivatives along the runs. Where a cable goes slack, a rod meets a stop or a joint comes to rest in a
+//! dead zone, derivatives are those of that very course: a little earlier or later it would have ended elsewhere. There they say nothing of what
+//! a law of any size does. Something steady at a few ports is followed twice, by derivatives and by differences of a size that is plain to
+//! see; samples at which the two have nothing in common are not looked at.
+
+use std::borrow::Cow;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::diagnose::case::CaseRun;
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::grammar::{Place, places};
+use crate::effects::Effect;
+use crate::laws::{Address, Port};
+use crate::system::{Change, TwinSetting};
+
+/// Ports at which something steady is asked for.
+const ASKED: [Port; 3] = [Port::Pull, Port::Outflow, Port::Torque];
+/// Share of what is plain to see by which differences are taken.
+const STEP: f64 = 0.1;
+/// Derivatives and differences have nothing in common where they differ by more than their size, at a sample or throughout.
+const NOTHING_IN_COMMON: f64 = 1.0;
+
+/// Whether derivatives say something at each row of a problem, in the order of [`Problem::rows`]. Ports are asked one after the other, the
+/// best followed first, as long as half of the rows are left: what one of them says everywhere of a joint that is free says little of the others.
+pub(super) fn settled(problem: &Problem, fit: &Fit) -> Vec<bool> {
+    let all = places(problem.case);
+    let asked: Vec<&Place> = all.iter().filter(|place| ASKED.contains(&place.port) && is_single(place, &all)).collect();
+    let one = |run: &Cow<CaseRun>| in_run(problem, fit, run, &asked);
+    let of_runs: Vec<Vec<Vec<bool>>> = problem.runs.par_iter().map(one).collect();
+    let of_port = |p: usize| -> Vec<bool> { of_runs.iter().flat_map(|ports| ports[p].iter().copied()).collect() };
+    let mut of_ports: Vec<Vec<bool>> = (0..asked.len()).map(of_port).collect();
+    of_ports.sort_by_key(|settled| std::cmp::Reverse(count(settled)));
+    let mut settled = vec![true; problem.samples()];
+    for port in of_ports {
+        let both: Vec<bool> = settled.iter().zip(&port).map(|(a, b)| *a && *b).collect();
+        if 2 * count(&both) >= both.len() {
+            settled = both;
+        }
+    }
+    settled
+}
+
+fn count(settled: &[bool]) -> usize {
+    settled.iter().filter(|settled| **settled).count()
+}
+
+/// Whether a place is on one element alone.
+pub(super) fn is_single(place: &Place, all: &[Place]) -> bool {
+    let has_number = Address::parse(&place.address).is_ok_and(|address| address.number.is_some());
+    has_number || all.iter().all(|other| other.port != place.port || other.address == place.address)
+}
+
+/// For each port the rows of one run; where something cannot be followed at all, nothing is held against it.
+fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, asked: &[&Place]) -> Vec<Vec<bool>> {
+    let setting = fit.model.setting(problem.case, run, &fit.x);
+    let at: Vec<Effect<f64>> = asked.iter().map(|place| place.injected.with(&[0.0])).collect();
+    let small = run.twin.steadily(&run.drive, &setting, &at.iter().collect::<Vec<_>>()).unwrap_or_default();
+    let with = |place: &&Place, sign: f64| {
+        let acting = place.injected.with(&[sign * STEP * place.typical]);
+        TwinSetting { effects: setting.effects.iter().cloned().chain([acting]).collect(), ..setting.clone() }
+    };
+    let settings: Vec<_> = asked.iter().flat_map(|place| [with(place, -1.0), with(place, 1.0)]).collect();
+    let played = run.twin.simulate_many(&run.drive, &settings);
+    let rows: usize = run.measured.iter().flatten().filter(|m| m.is_finite()).count();
+    let of_port = |(p, place): (usize, &&Place)| -> Vec<bool> {
+        let (Some(small), Some(large)) = (small.get(p), difference(&played[2 * p..][..2])) else {
+            return vec![true; rows];
+        };
+        let small = in_noise(problem, run, small, place.typical);
+        let large = in_noise(problem, run, &large, 0.5 / STEP);
+        let typical = (large.iter().map(|x| x * x).sum::<f64>() / rows.max(1) as f64).sqrt();
+        let is_settled = |(s, l): (&f64, &f64)| (s - l).abs() <= NOTHING_IN_COMMON * (l.abs() + typical);
+        small.iter().zip(&large).map(is_settled).collect()
+    };
+    asked.iter().enumerate().map(of_port).collect()
+}
+
+/// By what the second of two runs differs from the first; none where one of them diverges.
+fn difference(two: &[Option<Change>]) -> Option<Change> {
+    let [Some(first), Some(second)] = two else { return None };
+    let of_channel = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| b - a).collect();
+    Some(first.iter().zip(second).map(of_channel).collect())
+}
+
+/// The rows of a column at which signals say something; nothing in the others.
+pub(super) fn where_settled(mut column: DVector<f64>, settled: &[bool]) -> DVector<f64> {
+    column.iter_mut().zip(settled).filter(|(_, settled)| !**settled).for_each(|(x, _)| *x = 0.0);
+    column
+}
+
+/// Columns at right angles that span what these can imitate where signals say something.
+pub(super) fn basis(free: impl Iterator<Item = DVector<f64>>, settled: &[bool], rows: usize) -> DMatrix<f64> {
+    let there = free.map(|column| where_settled(column, settled));
+    let free: Vec<DVector<f64>> = there.filter(|column| column.norm_squared() > 0.0).collect();
+    if free.is_empty() { DMatrix::zeros(rows, 0) } else { DMatrix::from_columns(&free).qr().q() }
+}
+
+/// What a change does to all that was measured in a run, in units of the noise, whatever the zeros.
+pub(super) fn in_noise(problem: &Problem, run: &CaseRun, change: &Change, size: f64) -> Vec<f64> {
+    let channels = problem.case.channels.iter().enumerate();
+    let each = channels.flat_map(|(c, channel)| {
+        problem.seen(run, c, &change[channel.output][run.lead_in..], size).collect::<Vec<f64>>()
+    });
+    each.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::Model;
+    use crate::scene::Override;
+
+    /// At how many of all rows derivatives say something of a scene with some numbers changed.
+    fn of(scene: &str, set: &[&str], inputs: &[&str], outputs: &[&str]) -> (usize, usize) {
+        let set: Vec<Override> = set.iter().map(|text| Override::parse(text).expect("one")).collect();
+        let case = made::recorded_for(scene, [&set, &set], inputs, outputs);
+        let noise: Vec<Noise> = outputs.iter().map(|_| Noise::white(0.05)).collect();
+        let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
+        let (model, x) = (Model::baseline(), problem.start(&Model::baseline(), None));
+        let covariance = nalgebra::DMatrix::zeros(x.len(), x.len());
+        let settled = settled(&problem, &Fit { model, x, cost: 0.0, covariance, on_bound: Vec::new() });
+        (count(&settled), settled.len())
+    }
+
+    /// A bench has no place where it would be free. A pulley whose cables both hang is: where it comes to rest there is that run's own.
+    #[test]
+    fn what_is_free_is_not_looked_at() {
+        let (settled, all) = of("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "pressure_kpa"]);
+        assert!(settled == all && all > 1000, "{settled} of {all}");
+        let inputs = ["plunger_1_mm", "plunger_2_mm"];
+        let pushed = |first: &str, second: &str| {
+            let set = [("1", first), ("2", second)].map(|(i, v)| format!("input.plunger_{i}_mm.program.value_m={v}"));
+            of("antagonistic_pulley", &set.each_ref().map(String::as_str), &inputs, &["angle_deg"])
+        };
+        let (taut, all) = pushed("[0.0, -4e-4, -1e-3, -2e-4]", "[0.0, -2e-4, -1e-3, -4e-4]");
+        let (slack, _) = pushed("[0.0, -1e-3, 1e-3, 2e-3]", "[0.0, 1e-3, 1e-3, 2e-3]");
+        assert!(slack < taut && taut > all * 9 / 10 && 2 * slack >= all, "{slack} and {taut} of {all}");
+    }
+}
