@@ -58,7 +58,7 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
     };
     let mut fits = others(&fit);
     let better = fits.iter().filter(|other| other.cost < fit.cost - SAME_LAW).min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let more = better.map(|better| others(better));
+    let more = better.map(others);
     fits.extend(more.into_iter().flatten());
     fits.push(fit);
     fits

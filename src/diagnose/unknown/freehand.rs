@@ -93,7 +93,7 @@ fn signatures(
     parts: &[(Law, Placed)],
     hat: &(dyn Fn(f64, usize) -> f64 + Sync),
 ) -> Option<Vec<DVector<f64>>> {
-    let mut all = vec![Vec::with_capacity(problem.samples()); KNOTS];
+    let mut all = vec![Vec::new(); KNOTS];
     for run in &problem.runs {
         for (all, own) in all.iter_mut().zip(in_run(problem, fit, run, parts, hat)?) {
             all.extend(own);
