@@ -5,7 +5,9 @@ use super::reading::{Reading, readings};
 use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
 use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
-use crate::laws::{Acts, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings};
+use crate::laws::{
+    Acts, Address, Carrier, Dimension, Law, LawTable, PORTS, Port, PortSpec, QUANTITIES, Quantity, Surroundings,
+};
 use crate::recording::parse_column;
 use crate::scene::on_channel;
 
@@ -107,6 +109,14 @@ pub struct Place {
     /// A law whose only number is what acts there, and a size of that which is plain to see.
     pub injected: Placed,
     pub typical: f64,
+}
+
+impl Place {
+    /// Whether it is a port of several elements at once.
+    pub fn is_of_several(&self, places: &[Self]) -> bool {
+        let has_number = |place: &Self| Address::parse(&place.address).is_ok_and(|a| a.number.is_some());
+        !has_number(self) && places.iter().any(|other| other.port == self.port && has_number(other))
+    }
 }
 
 /// Every place of a case's scene where a law may act.

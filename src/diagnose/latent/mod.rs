@@ -65,7 +65,7 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
         return Vec::new();
     }
     let places = places(problem.case);
-    let (all, single): (Vec<&Place>, Vec<&Place>) = places.iter().partition(|place| is_of_several(place, &places));
+    let (all, single): (Vec<&Place>, Vec<&Place>) = places.iter().partition(|place| place.is_of_several(&places));
     let lasts_s = || problem.runs.iter().map(|run| lasts_s(&run.drive.times_s));
     let longest_s = lasts_s().fold(0.0, f64::max);
     let stretch_s = f64::max(longest_s / STRETCHES, lasts_s().sum::<f64>() / ALL_STRETCHES);
@@ -104,12 +104,6 @@ pub fn is_behind(latents: &[Latent], address: &str) -> bool {
 
 fn least(latents: &[Latent]) -> f64 {
     latents.first().map_or(0.0, |best| (1.0 - SHARE_OF_ODDS) * best.log_odds - CHANCE)
-}
-
-/// Whether a place is a port of several elements at once.
-fn is_of_several(place: &Place, places: &[Place]) -> bool {
-    let has_number = |place: &Place| Address::parse(&place.address).is_ok_and(|a| a.number.is_some());
-    !has_number(place) && places.iter().any(|other| other.port == place.port && has_number(other))
 }
 
 /// The likelihood at the pace that makes it greatest: it is smooth over the pace's logarithm, with one peak.

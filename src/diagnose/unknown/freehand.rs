@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::settled::{basis, in_noise, is_single, settled, where_settled};
+use super::settled::{basis, in_noise, settled, where_settled};
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::diagnosis::{Curve, Freehand};
 use crate::diagnose::fit::{Fit, Placed, Problem, orthogonal};
@@ -72,10 +72,10 @@ fn parts(problem: &Problem, law: &Law) -> Option<Vec<(Law, Placed)>> {
     let own = law.address.to_string();
     let here = all.iter().find(|place| place.address == own)?;
     let action = Action::at(law.address.port).filter(|action| action.acts == law.acts)?;
-    let addresses = match is_single(here, &all) {
-        true => vec![law.address.clone()],
-        false => {
-            let equal = all.iter().filter(|place| place.port == here.port && is_single(place, &all));
+    let addresses = match here.is_of_several(&all) {
+        false => vec![law.address.clone()],
+        true => {
+            let equal = all.iter().filter(|place| place.port == here.port && !place.is_of_several(&all));
             equal.filter_map(|place| Address::parse(&place.address).ok()).collect()
         }
     };

@@ -14,7 +14,7 @@ use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Place, places};
 use crate::effects::Effect;
-use crate::laws::{Address, Port};
+use crate::laws::Port;
 use crate::system::{Change, TwinSetting};
 
 /// Ports at which something steady is asked for.
@@ -28,7 +28,8 @@ const NOTHING_IN_COMMON: f64 = 1.0;
 /// best followed first, as long as half of the rows are left: what one of them says everywhere of a joint that is free says little of the others.
 pub(super) fn settled(problem: &Problem, fit: &Fit) -> Vec<bool> {
     let all = places(problem.case);
-    let asked: Vec<&Place> = all.iter().filter(|place| ASKED.contains(&place.port) && is_single(place, &all)).collect();
+    let asked: Vec<&Place> =
+        all.iter().filter(|place| ASKED.contains(&place.port) && !place.is_of_several(&all)).collect();
     let one = |run: &Cow<CaseRun>| in_run(problem, fit, run, &asked);
     let of_runs: Vec<Vec<Vec<bool>>> = problem.runs.par_iter().map(one).collect();
     let of_port = |p: usize| -> Vec<bool> { of_runs.iter().flat_map(|ports| ports[p].iter().copied()).collect() };
@@ -46,12 +47,6 @@ pub(super) fn settled(problem: &Problem, fit: &Fit) -> Vec<bool> {
 
 fn count(settled: &[bool]) -> usize {
     settled.iter().filter(|settled| **settled).count()
-}
-
-/// Whether a place is on one element alone.
-pub(super) fn is_single(place: &Place, all: &[Place]) -> bool {
-    let has_number = Address::parse(&place.address).is_ok_and(|address| address.number.is_some());
-    has_number || all.iter().all(|other| other.port != place.port || other.address == place.address)
 }
 
 /// For each port the rows of one run; where something cannot be followed at all, nothing is held against it.

@@ -29,7 +29,7 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
         return None;
     }
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
-    let mut all = Vec::with_capacity(count);
+    let (mut all, mut exchanged) = (Vec::with_capacity(count), None);
     for index in 0..count {
         let is_law = found.best.model.effects[index].entry.hypothetical;
         if is_law && index + 1 == count || !found.forms_of(index).is_empty() {
@@ -41,13 +41,13 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
         let (best, forms) = without.map_or((None, Vec::new()), |without| stand_ins(&open, &last, without.cost));
         let criterion = Criterion::of(&open, [&last]);
         // A law that bends fits better wherever an effect of the catalogue is idealised.
-        if let Some(best) = best.filter(|best| is_law && criterion.at(best) < criterion.at(&last) - CLEARLY) {
-            return Some(Lawful { best, forms: Vec::new() }.beside(found));
-        }
+        let better = best.filter(|best| is_law && criterion.at(best) < criterion.at(&last) - CLEARLY);
+        exchanged = exchanged.or(better);
         all.push(forms);
     }
     found.forms = all;
-    None
+    // Should it not stand, what was found keeps its forms.
+    exchanged.map(|best| Lawful { best, forms: Vec::new() }.beside(found))
 }
 
 /// The best fit with a law elsewhere in the place of the last effect, and those that an answer names beside it. `before` is the chi² without
