@@ -119,10 +119,13 @@ const UNLISTED: f64 = 0.02;
 /// Logarithm of odds beyond which nothing is surer: what is lower by any chi² has a finite weight.
 const CERTAIN: f64 = 50.0;
 
-/// Forms of an effect at other ports, the best of each, with their weights beside 1 of the effect.
+/// Forms of an effect at other ports, the best of each, with their weights beside 1 of the effect. Beside an effect of the catalogue that is
+/// one of several, a law that fits better counts as one that fits as well: it bends to what the others, idealised, leave.
 fn elsewhere(found: &Found, index: usize, left: f64) -> Vec<(f64, &Fit)> {
     let own = &found.best.model.effects[index];
-    let (unit, prior) = (unit_of(found, left), if own.entry.hypothetical { 1.0 } else { UNLISTED });
+    let (unit, is_law) = (unit_of(found, left), own.entry.hypothetical);
+    let prior = if is_law { 1.0 } else { UNLISTED };
+    let most = if is_law || found.best.model.effects.len() == 1 { CERTAIN } else { 0.0 };
     let mut ports = vec![written::port(own)];
     let mut forms = Vec::new();
     for fit in found.forms_of(index) {
@@ -130,7 +133,7 @@ fn elsewhere(found: &Found, index: usize, left: f64) -> Vec<(f64, &Fit)> {
             continue;
         };
         ports.push(port);
-        let odds = ((found.best.cost - fit.cost) / (2.0 * unit)).min(CERTAIN).exp();
+        let odds = ((found.best.cost - fit.cost) / (2.0 * unit)).min(most).exp();
         forms.push((prior * odds, fit));
     }
     forms
