@@ -5,6 +5,7 @@ Looks at README.md, ARCHITECTURE.md, CHANGELOG.md, proof/README.md, benches/**/R
 
 Links     Every relative link and picture exists, anchors included. A page of the book links to no file outside docs/,
           and docs/SUMMARY.md lists all pages.
+Length    README.md and the book's user guide together are short enough to be read: 15,000 words.
 Data      Every fenced block of toml or json can be read.
 Commands  Every fenced block of sh in README.md and docs/ is run, line by line, in one scratch folder per page which holds
           scenes/ and models/ as a clone does. `smam` and `cargo run --release --` both mean the program of --smam.
@@ -113,6 +114,26 @@ def check_contents(root: Path) -> list[Fault]:
     listed = {(table.parent / target).resolve() for _, target in links(read_page("docs/SUMMARY.md", table.read_text()))}
     missing = [p for p in sorted(table.parent.rglob("*.md")) if p != table and p.resolve() not in listed]
     return [Fault("docs/SUMMARY.md", 0, f"does not list {p.relative_to(table.parent).as_posix()}: add a line for it") for p in missing]
+
+
+# Length
+
+GUIDE = "# User guide"
+GUIDE_WORDS = 15_000
+
+
+def check_length(root: Path) -> list[Fault]:
+    """The user guide, if it has grown beyond what somebody reads."""
+    name = "docs/SUMMARY.md"
+    parts = re.split(r"^(?=# )", (root / name).read_text(), flags=re.MULTILINE)
+    guide = [part for part in parts if part.startswith(GUIDE)]
+    if not guide:
+        return [Fault(name, 0, f"has no part '{GUIDE}'")]
+    files = [root / "README.md", *(root / "docs" / target for _, target in links(read_page(name, guide[0])))]
+    words = sum(len(file.read_text().split()) for file in files if file.exists())
+    if words <= GUIDE_WORDS:
+        return []
+    return [Fault(name, 0, f"the user guide has {words} words, more than {GUIDE_WORDS}: what is looked up belongs to the reference")]
 
 
 # Data
@@ -263,6 +284,7 @@ def main() -> int:
     names = arguments.pages or pages_of(arguments.root)
     pages = [read_page(name, (arguments.root / name).read_text()) for name in names]
     faults = check_links(arguments.root, pages, set(arguments.later)) + check_data(pages) + check_contents(arguments.root)
+    faults += check_length(arguments.root)
     if arguments.typos:
         faults += check_spelling(arguments.root, names, arguments.typos)
     if arguments.smam:

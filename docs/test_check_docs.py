@@ -81,6 +81,17 @@ class Links(WithFolder):
         (self.root / "docs" / "b.md").write_text("# B\n")
         self.assertEqual([f.text for f in check_docs.check_contents(self.root)], ["does not list b.md: add a line for it"])
 
+    def test_a_guide_that_nobody_reads_to_its_end(self) -> None:
+        (self.root / "README.md").write_text("word " * 9_000)
+        (self.root / "docs" / "a.md").write_text("word " * 6_001)
+        table = self.root / "docs" / "SUMMARY.md"
+        table.write_text("# User guide\n\n- [a](a.md)\n")
+        self.assertIn("15001 words", check_docs.check_length(self.root)[0].text)
+        table.write_text("# User guide\n\n# Reference\n\n- [a](a.md)\n")
+        self.assertEqual(check_docs.check_length(self.root), [])
+        table.write_text("- [a](a.md)\n")
+        self.assertEqual(len(check_docs.check_length(self.root)), 1)
+
     def test_a_page_that_comes_later(self) -> None:
         self.assertEqual(self.links("[b](b.md)", later=("docs/b.md",)), [])
 
