@@ -7,16 +7,18 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use num_dual::DualNum;
 
+mod jet;
 mod lanes;
 
+pub use jet::Jet;
 pub use lanes::Lanes;
 pub(crate) use lanes::take_disagreement;
 
 /// A real number, one that carries exact derivatives, or several numbers side by side.
 ///
-/// Every law of the hydraulics, the muscle and the hysteresis is generic over this trait: with `f64` it is
-/// the plain law, with a dual number of `num-dual` the same code also yields exact sensitivities to the
-/// calibrated parameters, with [`Lanes`] it is evaluated for several parameter sets at once.
+/// Every law of the hydraulics, the muscle and the hysteresis is generic over this trait: with `f64` it is the plain law, with a
+/// dual number of `num-dual`, or along several directions with [`Jet`], the same code also yields exact sensitivities, with
+/// [`Lanes`] it is evaluated for several parameter sets at once.
 ///
 /// Branches look at the real part alone, through [`Scalar::is_above`] and its like where numbers side by side usually
 /// agree, through [`Scalar::select_above`] where each must go its own way.
@@ -138,6 +140,11 @@ pub(crate) fn blended_at_rest<R>(compute: impl FnOnce() -> R) -> R {
     result
 }
 
+/// Whether slopes are those of small changes here.
+fn is_blended() -> bool {
+    BLENDS.get()
+}
+
 /// Functions handed on as they are.
 macro_rules! hand_on {
     ($($function:ident),*) => {
@@ -169,7 +176,7 @@ impl<T: DualNum<Primitive = f64> + Copy + Send + Sync + 'static> Scalar for T {
     #[inline]
     fn abs_about_rest(&self, still: Self) -> Self {
         let (x, still) = (self.value(), still.value());
-        if T::NDERIV == 0 || x.abs() >= still || !BLENDS.get() {
+        if T::NDERIV == 0 || x.abs() >= still || !is_blended() {
             return T::abs(self);
         }
         *self * (x / still) + (x.abs() - x * x / still)

@@ -118,6 +118,9 @@ pub struct Entry {
     pub acts: Acts,
     #[serde(default)]
     pub variables: Vec<String>,
+    /// Whether what it does depends on what was before: an effect whose text has states does.
+    #[serde(default)]
+    pub remembers: bool,
     /// The law as readers see it, and where it is from.
     pub equation: String,
     pub source: String,
@@ -170,6 +173,7 @@ impl Entry {
         }
         let law = WrittenLaw::of_entry(&entry)?;
         entry.acts = law.law.acts;
+        entry.remembers = !law.law.states.is_empty();
         if entry.variables.is_empty() {
             entry.variables = law.law.variables().iter().map(|v| v.name()).collect();
         }

@@ -109,6 +109,7 @@ fn entry_of(table: &LawTable, law: &Law, size: usize, numbers: &[Fitted]) -> Ent
         port: law.address.to_string(),
         acts: law.acts,
         variables: law.variables().iter().map(|v| v.name()).collect(),
+        remembers: !law.states.is_empty(),
         equation: law.text(),
         source: "written in the scene, or made up by a diagnosis".to_owned(),
         may_repeat: false,

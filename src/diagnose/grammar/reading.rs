@@ -99,6 +99,11 @@ impl Reading {
         }
     }
 
+    /// Whether it depends on what the variable was.
+    pub fn remembers(&self) -> bool {
+        !matches!(self, Self::Plain | Self::Times(..) | Self::Rising(_))
+    }
+
     /// Whether it depends on how fast the variable went.
     pub fn needs_clock(&self) -> bool {
         match self {

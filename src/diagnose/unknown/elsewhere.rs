@@ -57,7 +57,8 @@ fn some_of_each<'a>(slots: impl Iterator<Item = &'a Slot>) -> Vec<&'a Slot> {
 fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
     let is_listed_there = |e: &Placed| {
         let is_over = e.spec().variables.contains(&slot.variable) && slot.reading == Reading::Plain;
-        e.spec().unlisted().is_none() && is_over && slot.address == verdict::port(e)
+        // No curve of what is there now is a place for what remembers.
+        e.spec().unlisted().is_none() && !e.spec().remembers && is_over && slot.address == verdict::port(e)
     };
     is_law_of(fit, slot) || fit.model.effects.last().is_some_and(is_listed_there)
 }
@@ -78,12 +79,18 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
 }
 
 /// Every slot over a variable or none, and those whose law remembers or multiplies as the last effect of a fit does. For an effect of the
-/// catalogue those over its own variables and over none must do: beside it a law counts little.
+/// catalogue those over its own variables and over none must do: beside it a law counts little. Of one that remembers it is not known how a
+/// law would.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
     let mut plain = slots(problem.case, fit, Reach::Plain);
     let Some(last) = fit.model.effects.last() else { return Vec::new() };
     let Some(own) = last.spec().unlisted() else {
-        plain.retain(|slot| slot.is_constant() || last.spec().variables.contains(&slot.variable));
+        let is_over_own = |slot: &Slot| last.spec().variables.contains(&slot.variable);
+        plain.retain(|slot| slot.is_constant() || is_over_own(slot));
+        if last.spec().remembers {
+            let wide = slots(problem.case, fit, Reach::Wide).into_iter();
+            plain.extend(wide.filter(|slot| slot.reading.remembers() && is_over_own(slot)));
+        }
         return plain;
     };
     let variables: Vec<String> = own.law.variables().iter().map(|v| v.name()).collect();

@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
-use num_dual::DualSVec64;
-
 use crate::effects::Effect;
-use crate::scalar::{Scalar, blended_at_rest};
+use crate::scalar::{Jet, Scalar, blended_at_rest};
 use crate::system::laws::Acts;
 use crate::system::plant::Plant;
 
@@ -14,7 +12,7 @@ use super::{Twin, TwinRun, TwinSetting};
 
 /// Directions that one run follows, and the number that carries the derivatives along them.
 pub(super) const TOGETHER: usize = 8;
-pub(super) type D = DualSVec64<TOGETHER>;
+pub(super) type D = Jet<TOGETHER>;
 
 /// What is changed at the beginning of every interval.
 #[derive(Clone, Debug)]
@@ -93,11 +91,11 @@ impl<'a> Directions<'a> {
         numbers: &[usize],
         along: Along,
     ) -> Self {
-        let acting = |(i, port): (usize, &&Effect<f64>)| port.lift(|_| D::from_re(0.0).derivative(i));
-        let at_rest = memory.iter().map(|law| law.lift(|_| D::from_re(0.0)));
-        let known = setting.effects.iter().map(|effect| effect.lift(D::from_re)).chain(at_rest);
+        let acting = |(i, port): (usize, &&Effect<f64>)| port.lift(|_| D::along(0.0, i));
+        let at_rest = memory.iter().map(|law| law.lift(|_| D::from(0.0)));
+        let known = setting.effects.iter().map(|effect| effect.lift(D::from)).chain(at_rest);
         let setting = TwinSetting {
-            parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from_re(*x))).collect(),
+            parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from(*x))).collect(),
             effects: known.chain(ports.iter().enumerate().map(acting)).collect(),
         };
         let (mut plant, state) = twin.prepare(&setting);
@@ -145,7 +143,7 @@ impl<'a> Directions<'a> {
         let outputs = self.twin.outputs.iter();
         let read = outputs.map(|o| o.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room));
         let here: Vec<D> = shown.chain(read).collect();
-        (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| slope(x, d))));
+        (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| x.slopes[d])));
     }
 
     /// Leaves behind what earlier intervals made of the directions.
@@ -156,13 +154,8 @@ impl<'a> Directions<'a> {
         let Along::State(own) = &self.along else { return };
         for (i, number) in self.course.state.numbers_mut().enumerate() {
             if let Some(direction) = own.iter().position(|&n| n == i) {
-                *number = number.derivative(direction);
+                *number = D::along(number.value, direction);
             }
         }
     }
-}
-
-/// Derivative of a number along one direction.
-pub(super) fn slope(x: &D, direction: usize) -> f64 {
-    x.eps.0.as_ref().map_or(0.0, |eps| eps[direction])
 }

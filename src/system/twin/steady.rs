@@ -3,7 +3,7 @@
 use crate::effects::Effect;
 use crate::scalar::{Scalar, blended_at_rest};
 
-use super::directions::{D, TOGETHER, slope};
+use super::directions::{D, TOGETHER};
 use super::inject::Change;
 use super::{Twin, TwinRun, TwinSetting};
 
@@ -12,13 +12,13 @@ impl Twin {
     /// what acts there. Only the first eight ports are asked.
     pub fn steadily(&self, run: &TwinRun, setting: &TwinSetting<f64>, ports: &[&Effect<f64>]) -> Option<Vec<Change>> {
         let ports = &ports[..ports.len().min(TOGETHER)];
-        let acting = ports.iter().enumerate().map(|(i, port)| port.lift(|_| D::from_re(0.0).derivative(i)));
+        let acting = ports.iter().enumerate().map(|(i, port)| port.lift(|_| D::along(0.0, i)));
         let setting = TwinSetting {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::constant(*x))).collect(),
             effects: setting.effects.iter().map(|effect| effect.lift(D::constant)).chain(acting).collect(),
         };
         let series = blended_at_rest(|| self.simulate(run, &setting))?;
-        let along = |i| series.iter().map(|channel| channel.iter().map(|x| slope(x, i)).collect()).collect();
+        let along = |i| series.iter().map(|channel| channel.iter().map(|x| x.slopes[i]).collect()).collect();
         Some((0..ports.len()).map(along).collect())
     }
 }
