@@ -43,6 +43,7 @@ CARGO = """#!/bin/sh
 if [ "$1 $2" = "run --release" ]; then
     shift 2
     [ "$1" = --no-default-features ] && shift
+    [ "$1 $2" = "--features validation" ] && shift 2
     [ "$1" = -- ] && shift && exec smam "$@"
 fi
 echo "check_docs: of cargo's commands only 'cargo run --release -- ...' can be tried here" >&2

@@ -22,8 +22,10 @@
 //! ```
 
 pub mod bag;
+#[cfg(feature = "validation")]
 pub mod bench;
 pub mod columns;
+#[cfg(feature = "validation")]
 pub mod conceal;
 pub mod diagnose;
 pub mod effects;
@@ -36,15 +38,18 @@ pub mod laws;
 pub mod mechanism;
 pub mod muscle;
 pub mod nearest;
+#[cfg(feature = "validation")]
 pub mod proof;
 pub mod recording;
 pub mod report;
+#[cfg(feature = "validation")]
 pub mod reproduce;
 pub mod scalar;
 pub mod scene;
 pub mod stock;
 pub mod sweep;
 pub mod system;
+#[cfg(feature = "validation")]
 pub mod trial;
 #[cfg(feature = "viz")]
 pub mod view;

@@ -3,18 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use smam::bench::BenchError;
-use smam::conceal::ConcealError;
 use smam::diagnose::DiagnoseError;
 use smam::identify::IdentifyError;
 use smam::mechanism::MechanismError;
-use smam::proof::ProofError;
 use smam::recording::RecordingError;
-use smam::reproduce::ReproduceError;
 use smam::scene::SceneError;
 use smam::sweep::SweepError;
 use smam::system::{RunError, SystemError};
-use smam::trial::TrialError;
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -31,16 +26,6 @@ pub enum CliError {
     Identify(#[from] IdentifyError),
     #[error(transparent)]
     Sweep(#[from] SweepError),
-    #[error(transparent)]
-    Trial(#[from] TrialError),
-    #[error(transparent)]
-    Proof(#[from] ProofError),
-    #[error(transparent)]
-    Conceal(#[from] ConcealError),
-    #[error(transparent)]
-    Reproduce(#[from] ReproduceError),
-    #[error(transparent)]
-    Bench(#[from] BenchError),
     #[error("{0}")]
     Usage(String),
     #[error("{}: cannot be written: {source}\n  remedy: choose a folder that exists, may be written to and has room", file.display())]
@@ -49,6 +34,9 @@ pub enum CliError {
     Failed(String),
     #[error(transparent)]
     Mechanism(#[from] MechanismError),
+    #[cfg(feature = "validation")]
+    #[error(transparent)]
+    Validation(super::validation::ValidationError),
     #[cfg(feature = "viz")]
     #[error(transparent)]
     View(#[from] smam::view::ViewError),
@@ -70,10 +58,9 @@ impl CliError {
             | Self::Write { .. }
             | Self::Recording(RecordingError::Write { .. })
             | Self::Sweep(SweepError::Write { .. })
-            | Self::Trial(TrialError::Write { .. })
-            | Self::Proof(ProofError::Write { .. } | ProofError::Conceal(ConcealError::Write { .. }))
-            | Self::Conceal(ConcealError::Write { .. })
             | Self::Failed(_) => ExitCode::from(1),
+            #[cfg(feature = "validation")]
+            Self::Validation(error) if error.is_unwritten() => ExitCode::from(1),
             #[cfg(feature = "viz")]
             Self::View(_) => ExitCode::from(1),
             _ => ExitCode::from(2),

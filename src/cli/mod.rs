@@ -7,12 +7,9 @@ macro_rules! say {
 }
 
 mod angles;
-mod bench;
-mod ceiling;
 mod changes;
 mod check;
 mod compare;
-mod conceal;
 mod diagnose;
 mod diagnose_view;
 mod effects;
@@ -26,25 +23,21 @@ mod import_files;
 mod interrupt;
 mod junit;
 mod laws;
-mod markdown_page;
 mod model;
 mod observers;
-mod proof;
-mod proof_figure;
-mod reproduce;
 mod results;
 mod run;
 mod run_file;
 mod scenes;
 mod schema;
-mod score;
 mod steps;
 mod sweep;
 mod sweep_exploration;
 mod sweep_page;
 mod sweep_panels;
 mod sweep_trouble;
-mod trial;
+#[cfg(feature = "validation")]
+mod validation;
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -93,24 +86,15 @@ enum Command {
     Schema(schema::SchemaArguments),
     /// Run a scene at many points of its keys and tabulate what each run shows
     Sweep(sweep::SweepArguments),
-    /// Put the diagnosis on trial: every effect at three sizes, and scenes that lack nothing
-    Trial(trial::TrialArguments),
-    /// Make recordings of a rig that hides something, with the answer under seal
-    Conceal(conceal::ConcealArguments),
-    /// Open the seals of concealed cases and score what was answered
-    Score(score::ScoreArguments),
-    /// Conceal, diagnose and score many cases: the proof, repeated on your own seed
-    Proof(proof::ProofArguments),
     /// The plunger's programme for a wanted output, from an identified hysteresis model
     Feedforward(feedforward::FeedforwardArguments),
-    /// Make the paper's figures again, each printed number beside ours
-    Reproduce(reproduce::ReproduceArguments),
-    /// Measure what simulating costs
-    Bench(bench::BenchArguments),
     /// Generate a model file
     Model(model::ModelArguments),
     /// Print a script that completes commands and options in a shell
     Completions(CompletionsArguments),
+    #[cfg(feature = "validation")]
+    #[command(flatten)]
+    Validation(validation::ValidationCommand),
 }
 
 #[derive(Args)]
@@ -149,7 +133,6 @@ fn run_command() -> Result<ExitCode, CliError> {
             say!("{}", first_words());
             Ok(ExitCode::SUCCESS)
         }
-        Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Import(arguments)) => import::import(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
@@ -161,14 +144,11 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
         Some(Command::Schema(arguments)) => schema::schema(&arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
-        Some(Command::Trial(arguments)) => trial::trial(&arguments),
-        Some(Command::Conceal(arguments)) => conceal::conceal(&arguments),
-        Some(Command::Score(arguments)) => score::score(&arguments),
-        Some(Command::Proof(arguments)) => proof::proof(&arguments),
         Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
-        Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
         Some(Command::Completions(arguments)) => completions(&arguments),
+        #[cfg(feature = "validation")]
+        Some(Command::Validation(command)) => validation::run(&command),
     }
 }
 

@@ -8,7 +8,8 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 # Counted for this one, wherever the check runs.
 TARGET = "x86_64-unknown-linux-gnu"
-WITHOUT_VIEWER = ("--no-default-features",)
+WITHOUT_VIEWER = ("--no-default-features", "--features", "validation")
+EMBEDDED = ("--no-default-features",)
 LINE = re.compile(r"^(\d+)(\S+) v(\S+)")
 
 
@@ -68,6 +69,7 @@ class Counts:
     """How many packages there are, and how many a direct dependency brings."""
 
     def __init__(self):
+        self.embedded = graph("normal,build", EMBEDDED)
         self.without_viewer = graph("normal,build", WITHOUT_VIEWER)
         self.with_viewer = graph("normal,build")
         self.tests = graph("normal,build,dev", WITHOUT_VIEWER)
@@ -75,6 +77,7 @@ class Counts:
     def sums(self):
         """The rows of the page's table of sums."""
         return {
+            "what others embed": len(reached(self.embedded)),
             "the program without the viewer": len(reached(self.without_viewer)),
             "the program with the viewer": len(reached(self.with_viewer)),
             "without the viewer, with tests and benchmarks": len(reached(self.tests)),

@@ -11,11 +11,11 @@ use smam::conceal::Hiding;
 use smam::diagnose::{Step, Verdict};
 use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, row, settle};
 
-use super::CliError;
 use super::ceiling::{write_ceiling, write_settling};
-use super::diagnose::StepName;
-use super::files::take_folder;
 use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
+use crate::cli::CliError;
+use crate::cli::diagnose::StepName;
+use crate::cli::files::take_folder;
 
 /// Arguments of `smam proof`.
 #[derive(Args)]

@@ -7,8 +7,8 @@ use smam::conceal::{Ceiling, Hiding, Secret, Settling, ceiling, settling};
 use smam::proof::{Folders, ProofError, Row, VISIBLE, open};
 use smam::recording::read_csv;
 
-use super::CliError;
 use super::score::write_rows;
+use crate::cli::CliError;
 
 /// Computes the ceiling of the first `count` visible cases that hide one thing, writes ceiling.jsonl and prints the means.
 pub fn write_ceiling(
@@ -34,7 +34,7 @@ pub fn write_ceiling(
         let own: Vec<f64> = found.iter().filter(|(_, h)| is(*h)).map(|(c, _)| value(c)).collect();
         mean_share(&own)
     };
-    super::print_text(&format!(
+    crate::cli::print_text(&format!(
         "\n### At best, for one who knows the plant\n\n| | |\n|---|---|\n| detected | {} |\n| effect right (one effect) | {} |\n| told from everything else (not listed) | {} |\n",
         mean(&|_| true, &|c| c.detection),
         mean(&|h| h == Hiding::One, &|c| c.naming),
@@ -75,7 +75,7 @@ pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folder
     write_rows(&settlings, &out.join("settling.jsonl"))?;
     let table: String = found.iter().map(|(_, line)| line.as_str()).collect();
     let right: Vec<f64> = found.iter().map(|(s, _)| s.is_right()).collect();
-    super::print_text(&format!(
+    crate::cli::print_text(&format!(
         "\n### One more experiment, at best, for one who knows the plant\n\n\
          | case | hidden | taken for | promised, sigma | at best, sigma | right at best | settled |\n|---|---|---|---|---|---|---|\n\
          {table}\nRight at best: {}\n",

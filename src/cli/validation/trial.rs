@@ -13,9 +13,9 @@ use smam::nearest::did_you_mean;
 use smam::report::HtmlPage;
 use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in};
 
-use super::CliError;
-use super::files::{take_folder, write, write_page};
 use super::markdown_page::add_markdown;
+use crate::cli::CliError;
+use crate::cli::files::{take_folder, write, write_page};
 
 /// The stock scenes that together can have every effect of the catalogue.
 const SCENES: [&str; 6] =

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use smam::report::figure_svg;
 use smam::reproduce::{FIGURES, Figure, Made, ReproduceError, Standing, cells, json, page};
 
-use super::CliError;
-use super::files::{take_folder, write, write_page};
+use crate::cli::CliError;
+use crate::cli::files::{take_folder, write, write_page};
 
 /// Of the pictures, px.
 const SIZE: (f64, f64) = (720.0, 300.0);

@@ -6,7 +6,7 @@ use std::process::{Command, ExitCode};
 use clap::Args;
 use smam::bench::{CASES, Growth, SceneCase, TWINS, TwinSpeed, grow, worst_errors};
 
-use super::CliError;
+use crate::cli::CliError;
 
 /// Arguments of `smam bench`.
 #[derive(Args)]

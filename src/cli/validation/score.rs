@@ -9,10 +9,10 @@ use serde::Serialize;
 use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
 use smam::report::HtmlPage;
 
-use super::CliError;
-use super::files::{write, write_page};
 use super::markdown_page::add_markdown;
 use super::proof_figure::{proof_panels, proof_svg};
+use crate::cli::CliError;
+use crate::cli::files::{write, write_page};
 
 /// Arguments of `smam score`.
 #[derive(Args)]
@@ -138,5 +138,5 @@ pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
     write(&out.join("table.md"), &page)?;
     write_page(out, "score.html", &html_page(rows, &page))?;
     write(&out.join("proof.svg"), &proof_svg(rows))?;
-    super::print_text(&page)
+    crate::cli::print_text(&page)
 }

@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use smam::conceal::{Hiding, Rig, draw, write_case};
 
-use super::CliError;
-use super::files::make_folder;
 use super::score::{read_seals, write_seals};
+use crate::cli::CliError;
+use crate::cli::files::make_folder;
 
 /// Arguments of `smam conceal`.
 #[derive(Args)]
