@@ -135,12 +135,10 @@ impl<'a> Wave<'a> {
 mod tests {
     use std::collections::BTreeMap;
 
-    use num_dual::Dual64;
-
     use super::*;
     use crate::effects::{Element, EntryId, Fitted, Range};
     use crate::laws::{Carrier, LawTable, PORTS, PortSpec, Surroundings};
-    use crate::scalar::blended_at_rest;
+    use crate::scalar::{Jet, blended_at_rest};
     use crate::scene::Scene;
     use crate::system::Schedule;
 
@@ -172,15 +170,16 @@ mod tests {
         Effect { entry, element: Element::of(entry.element, 0, 1), channel: None, values }
     }
 
-    /// Derivatives to the size of such a law, by output and sample.
+    /// Derivatives to the size of such a law, by output and sample. By numbers whose values are plain arithmetic's, as those of the
+    /// matrices: where cables are about to go slack the last bit decides on the branch.
     fn exact(twin: &Twin, run: &TwinRun, law: Effect<f64>) -> Vec<Vec<f64>> {
         let Effect { entry, element, channel, values } = law;
-        let mut values: Vec<Dual64> = values.into_iter().map(Dual64::from).collect();
-        values[0].eps = 1.0;
+        let mut values: Vec<Jet<1>> = values.into_iter().map(Jet::from).collect();
+        values[0].slopes = [1.0];
         let effects = vec![Effect { entry, element, channel, values }];
         let setting = TwinSetting { parameters: Vec::new(), effects };
         let series = blended_at_rest(|| twin.simulate(run, &setting)).expect("it does not diverge");
-        series.into_iter().map(|channel| channel.into_iter().map(|x| x.eps).collect()).collect()
+        series.into_iter().map(|channel| channel.into_iter().map(|x| x.slopes[0]).collect()).collect()
     }
 
     /// Signals sent through the matrices, against derivatives to the size of a law: one that stays is met to rounding; one that
