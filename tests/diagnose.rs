@@ -29,6 +29,16 @@ fn check(name: &str) {
     answer_is_right(name, &outcome.diagnosis, &truth[name]);
     let text = outcome.scene_text().expect("a scene").unwrap_or_else(|e| panic!("{e}"));
     corrected_scene_predicts(name, &folder, &text);
+    let baseline = outcome.baseline_text().expect("a scene").unwrap_or_else(|e| panic!("{e}"));
+    let numbers = |text: &str| -> Vec<String> {
+        let is_word = |line: &&str| ["name = ", "title = "].iter().any(|word| line.starts_with(word));
+        text.lines().filter(|line| !is_word(line)).map(str::to_owned).collect()
+    };
+    assert_eq!(
+        numbers(&baseline) == numbers(&text),
+        outcome.diagnosis.effects.is_empty(),
+        "what is not named corrects nothing"
+    );
 }
 
 fn answer_is_right(name: &str, d: &Diagnosis, truth: &Value) {

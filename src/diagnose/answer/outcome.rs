@@ -45,12 +45,14 @@ impl Outcome {
         Some(fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
     }
 
-    /// The scene calibrated to the open runs, with no effect added, as text: what everything found is compared with.
+    /// The calibrated scene with nothing added, as text: calibrated to the open runs, as what was found is compared with it there. Where
+    /// nothing was found it is the corrected scene: what is not named corrects nothing.
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
     pub fn baseline_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
-        let fit = self.baseline.as_ref()?;
+        let nothing_added = self.complete.as_ref().filter(|fit| fit.model.effects.is_empty());
+        let fit = nothing_added.or(self.baseline.as_ref())?;
         let specimen = self.case.specimens().first().copied();
         Some(fitted_scene(&self.case, fit, specimen, "calibrated", "Calibrated, nothing added"))
     }
