@@ -28,10 +28,11 @@ if command -v shellcheck >/dev/null; then
 else
     echo "skipped: shellcheck is not installed"
 fi
-cargo clippy --no-default-features --features validation --all-targets -- -D warnings
+# In the profile of the tests: what generates code is built once.
+cargo clippy --release --no-default-features --features validation --all-targets -- -D warnings
 # What others embed, alone.
-cargo clippy --no-default-features -- -D warnings
-RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --no-default-features --features validation
+cargo clippy --release --no-default-features -- -D warnings
+RUSTDOCFLAGS=-Dwarnings cargo doc --release --no-deps --no-default-features --features validation
 
 say "what it is built from: licences, sources, pins, no unsafe code"
 python3 -B tests/dependencies/check.py
