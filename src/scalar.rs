@@ -7,6 +7,27 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use num_dual::DualNum;
 
+/// Operators that assign, of numbers side by side that have the others.
+macro_rules! assigns {
+    ($number:ident) => {
+        assigns! { $number: AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign / }
+    };
+    ($number:ident: $($operator:ident $of:ident $sign:tt),*) => {$(
+        impl<const N: usize> std::ops::$operator for $number<N> {
+            #[inline(always)]
+            fn $of(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+        impl<const N: usize> std::ops::$operator<f64> for $number<N> {
+            #[inline(always)]
+            fn $of(&mut self, other: f64) {
+                *self = *self $sign other;
+            }
+        }
+    )*};
+}
+
 mod jet;
 mod lanes;
 

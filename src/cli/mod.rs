@@ -23,6 +23,7 @@ mod import_files;
 mod interrupt;
 mod junit;
 mod laws;
+mod left_out;
 mod model;
 mod observers;
 mod results;
@@ -126,7 +127,13 @@ pub fn run() -> Result<ExitCode, CliError> {
 }
 
 fn run_command() -> Result<ExitCode, CliError> {
-    let command = Arguments::parse().command;
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) => match left_out::left_out(&error) {
+            Some(words) => return Err(CliError::Usage(words)),
+            None => error.exit(),
+        },
+    };
     interrupt::install();
     match command {
         None => {

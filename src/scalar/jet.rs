@@ -1,14 +1,14 @@
 //! A number with its derivatives along a few directions.
 
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Scalar, is_blended};
 
 /// A number and its derivatives along `N` directions. The number is to the last bit what plain arithmetic makes of it.
 ///
-/// `num_dual::DualSVec64` does the same, at twice the time of a run along eight directions: it asks of every number whether it
-/// has derivatives at all, which keeps the eight from going side by side.
+/// `num_dual::DualSVec64` does the same, but asks of every number whether it has derivatives at all; a diagnosis of a rig with two
+/// muscles is up to a sixth shorter with jets (docs/adr/0002).
 ///
 /// ```
 /// use smam::muscle::Coil;
@@ -136,29 +136,7 @@ impl<const N: usize> Div<f64> for Jet<N> {
     }
 }
 
-macro_rules! assign {
-    ($($operator:ident $of:ident $sign:tt)*) => {$(
-        impl<const N: usize> $operator for Jet<N> {
-            #[inline(always)]
-            fn $of(&mut self, other: Self) {
-                *self = *self $sign other;
-            }
-        }
-        impl<const N: usize> $operator<f64> for Jet<N> {
-            #[inline(always)]
-            fn $of(&mut self, other: f64) {
-                *self = *self $sign other;
-            }
-        }
-    )*};
-}
-
-assign! {
-    AddAssign add_assign +
-    SubAssign sub_assign -
-    MulAssign mul_assign *
-    DivAssign div_assign /
-}
+assigns!(Jet);
 
 impl<const N: usize> Sum for Jet<N> {
     fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {

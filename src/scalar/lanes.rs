@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Scalar;
 
@@ -80,7 +80,7 @@ impl<const L: usize> Lanes<L> {
 
 /// An operator on lanes, and between lanes and a number that all share.
 macro_rules! operator {
-    ($($operator:ident $of:ident $assign:ident $of_assign:ident $sign:tt)*) => {$(
+    ($($operator:ident $of:ident $sign:tt)*) => {$(
         impl<const L: usize> $operator for Lanes<L> {
             type Output = Self;
             #[inline(always)]
@@ -95,27 +95,17 @@ macro_rules! operator {
                 self.map(|a| a $sign other)
             }
         }
-        impl<const L: usize> $assign for Lanes<L> {
-            #[inline(always)]
-            fn $of_assign(&mut self, other: Self) {
-                *self = *self $sign other;
-            }
-        }
-        impl<const L: usize> $assign<f64> for Lanes<L> {
-            #[inline(always)]
-            fn $of_assign(&mut self, other: f64) {
-                *self = *self $sign other;
-            }
-        }
     )*};
 }
 
 operator! {
-    Add add AddAssign add_assign +
-    Sub sub SubAssign sub_assign -
-    Mul mul MulAssign mul_assign *
-    Div div DivAssign div_assign /
+    Add add +
+    Sub sub -
+    Mul mul *
+    Div div /
 }
+
+assigns!(Lanes);
 
 impl<const L: usize> Neg for Lanes<L> {
     type Output = Self;

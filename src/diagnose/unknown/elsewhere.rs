@@ -110,6 +110,7 @@ mod tests {
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::Model;
+    use crate::effects::{Element, find};
     use crate::scene::Override;
 
     /// A syringe that gives more, answered with the line's compliance times a number: the syringe's does the same, and nothing in the muscle.
@@ -136,5 +137,23 @@ mod tests {
         let is_in_muscle =
             |fit: &Fit| fit.model.effects.last().map(verdict::port).is_some_and(|p| p.starts_with("muscle"));
         assert!(answered.cost < baseline.cost - 1000.0 && !others.iter().any(is_in_muscle));
+    }
+    /// Of what remembers are asked laws that do as well, over its own variables; of what does not, none.
+    #[test]
+    fn only_what_remembers_has_places_that_do() {
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let noise = [Noise::white(0.02)];
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let remembered = |id: &str| -> Vec<String> {
+            let entry = find(id).expect("of the catalogue");
+            let placed = Placed { entry, element: Element::of(entry.element, 0, 1), channel: None };
+            let model = Model::baseline().plus(&placed, &entry.typical());
+            let fit = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+            let all = alike(&problem, &fit).into_iter().filter(|slot| slot.reading.remembers());
+            all.map(|slot| slot.variable.to_string()).collect()
+        };
+        let of_softening = remembered("mullins_softening");
+        assert!(of_softening.len() > 10 && of_softening.iter().all(|v| v == "elongation_m"), "{of_softening:?}");
+        assert!(remembered("leak").is_empty());
     }
 }

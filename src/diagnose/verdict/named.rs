@@ -321,6 +321,20 @@ mod tests {
         assert_eq!(effects[0].probability, MOST_IN_PART);
     }
 
+    /// A form that fits far better makes a lonely effect doubtful. Beside another that is idealised it may have taken up what that leaves.
+    #[test]
+    fn of_several_effects_a_law_elsewhere_counts_as_one_that_fits_as_well() {
+        let elsewhere = fit(&["hypothetical_flow"], 40.0);
+        let probability = |ids: &[&str]| {
+            let forms = vec![vec![elsewhere.clone()]; ids.len()];
+            let rivals = vec![Vec::new(); ids.len()];
+            let found = Found { forms, rivals, ..found(fit(ids, 100.0), Vec::new()) };
+            named(&found, &found.best, 0.0).iter().map(|e| e.probability).fold(1.0, f64::min)
+        };
+        assert!(probability(&["gravity_load"]) < 1e-6);
+        assert!((probability(&["gravity_load", "leak"]) - 1.0 / (1.0 + UNLISTED)).abs() < 1e-12);
+    }
+
     #[test]
     fn terms_of_a_hypothesis_do_not_count_against_the_rivals_of_what_stands_beside_them() {
         let plain = found(fit(&["gravity_load"], 100.0), vec![fit(&["coil_preload"], 101.0)]);
