@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         // Any key that `smam check muscle_bench --keys` lists may be changed.
         let scene = Scene::load("muscle_bench", &[Override::number("muscles.friction.m0_n", friction_n)])?;
         let mut simulation = Simulation::new(scene)?;
-        simulation.keep_energy_book();
+        simulation.keep_energy_balance();
         let recording = record(&mut simulation, &Schedule::even(20.0, INTERVAL_S))?;
         let plunger_mm = &recording.channel("plunger_mm")?.values[SECOND_ROUND];
         let elongation_mm = &recording.channel("elongation_mm")?.values[SECOND_ROUND];
@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             figures::range(elongation_mm),
             figures::enclosed(plunger_mm, elongation_mm).abs()
         );
-        if let Some(book) = simulation.energy_book() {
-            println!("  energy unaccounted for: {:.1e} J of {:.3} J", book.unaccounted_j(), book.turnover_j());
+        if let Some(balance) = simulation.energy_balance() {
+            println!("  energy unaccounted for: {:.1e} J of {:.3} J", balance.unaccounted_j(), balance.turnover_j());
         }
     }
     Ok(())

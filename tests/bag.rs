@@ -141,7 +141,7 @@ fn a_channel_that_the_bag_does_not_have_is_named_with_the_remedy() {
         said.contains("run.mcap: no topic /ft/wrenches (topics: /chatter (std_msgs/msg/String), /ft/wrench"),
         "{said}"
     );
-    assert!(said.ends_with("mend the topic of the [[channel]] \"force_mn\" in recordings.toml"), "{said}");
+    assert!(said.ends_with("fix the topic of the [[channel]] \"force_mn\" in recordings.toml"), "{said}");
     assert!(refusal("joint = \"tip\"", "joint = \"top\"").contains("no message has the field and the joint"));
     assert!(refusal("field = \"wrench.force.z\"", "").contains("topic /ft/wrench, message 1: it has no field `data`"));
     assert!(refusal("topic = \"/syringe/position\"\nunit = \"mm\"", "").contains("ends in /position_mm (topics"));

@@ -207,9 +207,9 @@ fn sets_are_found_where_no_effect_leads_to_them() {
         // A leak, a bubble and a drift of 300 times the noise's variance: one thermal expansion explains 97 % of it, and none of the
         // three added to it explains much of the rest. Together they do.
         ([2027, 146], 0.99),
-        // A lag, a softening and a preload: of two runs, neither says enough of one by itself to foretell the other.
+        // A lag, a softening and a preload: of two runs, neither says enough of one by itself to predict the other.
         ([2028, 38], 0.9),
-        // A weight and a gain that bends: neither alone foretells, both together do; what the bend leaves is no third effect.
+        // A weight and a gain that bends: neither alone predicts, both together do; what the bend leaves is no third effect.
         ([2028, 152], 0.9),
         // A leak and a bubble: the leak alone bends the calibration so far that a gain and a weight take the bubble's place.
         ([2028, 250], 0.99),

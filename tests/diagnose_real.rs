@@ -53,9 +53,9 @@ fn val_creep_of_a_coiled_tube_is_named() {
     assert!(held_out.rmse_corrected < 0.7 * held_out.rmse_baseline, "{held_out:?}");
 }
 
-/// The long hold: fitted up to its middle, foretold from there to the release.
+/// The long hold: fitted up to its middle, predicted from there to the release.
 #[test]
-fn val_creep_of_a_long_hold_is_foretold() {
+fn val_creep_of_a_long_hold_is_predicted() {
     let Some(folder) = real("cavatappi_fluid_muscle") else { return };
     let mut case = load(&folder);
     case.runs.retain(|r| r.file == "sample3_400g_hold.csv");
@@ -75,7 +75,7 @@ fn val_creep_of_a_long_hold_is_foretold() {
     assert!(rmse_mm < 0.15, "{rmse_mm} mm over the second half");
 }
 
-/// Three sheaths are fitted, the fourth - bent further than any of them - is foretold with the same coefficient.
+/// Three sheaths are fitted, the fourth - bent further than any of them - is predicted with the same coefficient.
 #[test]
 fn val_capstan_friction_of_a_sheath_is_named() {
     let Some(folder) = real("tendon_sheath") else { return };
@@ -96,7 +96,7 @@ fn val_dry_friction_of_a_seal_and_its_growth_with_pressure_are_named() {
     let Some(folder) = real("seal_friction_cylinder") else { return };
     let mut case = load(&folder);
     case.runs.retain(|r| r.file.starts_with("o-ring"));
-    // The greatest pressure is foretold.
+    // The greatest pressure is predicted.
     case.runs.iter_mut().for_each(|r| r.is_held_out = r.file == "o-ring257_7bar.csv");
     let d = answer(case);
     let growth = named(&d, "seal_friction", "syringe").parameters["friction_per_pressure_n_pa"];
@@ -152,7 +152,7 @@ fn val_a_late_tip_of_a_catheter_is_named() {
 
 /// Whether its tip is late or its rod heavily damped is left open; a delay beside a cubic gain leaves 1.48 mm.
 #[test]
-fn val_a_late_tip_of_a_catheter_is_foretold() {
+fn val_a_late_tip_of_a_catheter_is_predicted() {
     let Some(folder) = real("catheter_tendon_multisine") else { return };
     let tip = answer(load(&folder)).fit.channels["tip_x_mm"];
     assert!(tip.rmse_corrected < 0.4 * tip.rmse_baseline, "{tip:?}");

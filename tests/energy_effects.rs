@@ -1,4 +1,4 @@
-//! Contract: the energy book closes with every effect of the catalogue switched on in a full scene.
+//! Contract: the energy balance closes with every effect of the catalogue switched on in a full scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ fn with_effect(rig: &str, spec: EntryId) -> Option<Scene> {
     Scene::from_file(file, &stock.path).ok()
 }
 
-/// Lines that an effect must have in the book of a rig that feels it; none for what only shows things otherwise, for
+/// Lines that an effect must have in the balance of a rig that feels it; none for what only shows things otherwise, for
 /// what is geometry, and for friction that belongs to the muscle's own.
 const LINES: &[(&str, &[&str])] = &[
     ("trapped_air", &["stored_trapped_air"]),
@@ -46,18 +46,18 @@ const LINES: &[(&str, &[&str])] = &[
     ("external_contact", &["stored_contact_walls"]),
 ];
 
-/// Runs a scene with its book: the greatest share of the turnover that was ever unaccounted for, and the lines' names.
+/// Runs a scene with its balance: the greatest share of the turnover that was ever unaccounted for, and the lines' names.
 fn run(scene: Scene) -> (f64, BTreeSet<String>) {
     let mut simulation = Simulation::new(scene).expect("builds");
-    simulation.keep_energy_book();
+    simulation.keep_energy_balance();
     let (mut worst_j, mut names) = (0.0_f64, BTreeSet::new());
     for i in 1..=64 {
         simulation.advance_to(DURATION_S * f64::from(i) / 64.0).expect("runs");
-        let book = simulation.energy_book().expect("kept");
-        worst_j = worst_j.max(book.unaccounted_j().abs());
-        names.extend(book.lines().into_iter().map(|(name, _)| name));
+        let balance = simulation.energy_balance().expect("kept");
+        worst_j = worst_j.max(balance.unaccounted_j().abs());
+        names.extend(balance.lines().into_iter().map(|(name, _)| name));
     }
-    (worst_j / simulation.energy_book().expect("kept").turnover_j(), names)
+    (worst_j / simulation.energy_balance().expect("kept").turnover_j(), names)
 }
 
 /// Every effect on every rig that can have it.
@@ -87,7 +87,7 @@ fn val_the_book_closes_with_every_effect() {
     }
 }
 
-/// Softening beside plastic set, air beside a leak: what two effects do to each other is in the book as well.
+/// Softening beside plastic set, air beside a leak: what two effects do to each other is in the balance as well.
 #[test]
 fn val_the_book_closes_with_all_effects_at_once() {
     for rig in RIGS {
@@ -104,9 +104,9 @@ fn val_the_book_closes_with_all_effects_at_once() {
 fn effects_of_zero_size_leave_the_book_as_it_is() {
     let lines = |scene: Scene| {
         let mut simulation = Simulation::new(scene).expect("builds");
-        simulation.keep_energy_book();
+        simulation.keep_energy_balance();
         simulation.advance_to(1.5).expect("runs");
-        simulation.energy_book().expect("kept").lines()
+        simulation.energy_balance().expect("kept").lines()
     };
     let plain = RIGS.map(|rig| lines(Scene::load(rig, &[]).expect("stock")));
     cases().into_par_iter().for_each(|(rig, spec, mut scene)| {

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, StandardNormal};
 use smam::diagnose::{Case, Diagnosis, Options, Verdict, diagnose};
 use smam::recording::{Channel, Recording};
 use smam::scene::{Override, Scene};
-use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+use smam::system::{Rom, RomRun, RomSetting, Schedule, Simulation, record};
 
 const SCENE: &str = "tests/finger/finger.toml";
 const PROGRAM: &str =
@@ -26,9 +26,9 @@ fn play(scene: Scene, duration_s: f64) -> Recording {
     record(&mut simulation, &Schedule::even(duration_s, 0.02)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn twin_run(scene: &Scene, full: &Recording) -> TwinRun {
+fn rom_run(scene: &Scene, full: &Recording) -> RomRun {
     let inputs = scene.file.input.iter().map(|i| full.si(&i.channel).expect("an input")).collect();
-    TwinRun { times_s: full.time_s().to_vec(), inputs, plan: None }
+    RomRun { times_s: full.time_s().to_vec(), inputs, plan: None }
 }
 
 /// Levers that change by half, weights that turn with the links, and a tip that goes round a corner: all as the engine has them.
@@ -36,9 +36,9 @@ fn twin_run(scene: &Scene, full: &Recording) -> TwinRun {
 fn val_the_fast_model_follows_a_cable_over_points() {
     let scene = load(Path::new(SCENE), &[]);
     let full = play(scene.clone(), 20.0);
-    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    let fast = twin.simulate(&twin_run(&scene, &full), &TwinSetting::<f64>::default()).expect("finite");
-    for (column, fast) in twin.columns().zip(&fast) {
+    let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let fast = rom.simulate(&rom_run(&scene, &full), &RomSetting::<f64>::default()).expect("finite");
+    for (column, fast) in rom.columns().zip(&fast) {
         let full = &full.find(column).expect("a channel").values;
         let (low, high) = full.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
         let squares: f64 = full[50..].iter().zip(&fast[50..]).map(|(a, b)| (a - b).powi(2)).sum();
@@ -52,16 +52,16 @@ fn val_the_fast_model_follows_a_cable_over_points() {
 #[test]
 fn val_derivatives_go_through_levers_that_follow_the_pose() {
     let scene = load(Path::new(SCENE), &[]);
-    let run = twin_run(&scene, &play(scene.clone(), 6.0));
-    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    let key = twin.parameter("tube_c1_pa").expect("a tube");
-    let at = |c1: f64| TwinSetting { parameters: vec![(key.clone(), c1)], effects: Vec::new() };
-    let exact = TwinSetting { parameters: vec![(key.clone(), Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
-    let exact = twin.simulate(&run, &exact).expect("finite");
+    let run = rom_run(&scene, &play(scene.clone(), 6.0));
+    let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let key = rom.parameter("tube_c1_pa").expect("a tube");
+    let at = |c1: f64| RomSetting { parameters: vec![(key.clone(), c1)], effects: Vec::new() };
+    let exact = RomSetting { parameters: vec![(key.clone(), Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
+    let exact = rom.simulate(&run, &exact).expect("finite");
     let step = 200.0;
-    let (low, high) = (twin.simulate(&run, &at(0.255e6 - step)), twin.simulate(&run, &at(0.255e6 + step)));
+    let (low, high) = (rom.simulate(&run, &at(0.255e6 - step)), rom.simulate(&run, &at(0.255e6 + step)));
     let (low, high) = (low.expect("finite"), high.expect("finite"));
-    for (o, column) in twin.columns().enumerate() {
+    for (o, column) in rom.columns().enumerate() {
         let rough: Vec<f64> = high[o].iter().zip(&low[o]).map(|(h, l)| (h - l) / (2.0 * step)).collect();
         let greatest = rough.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let off = exact[o].iter().zip(&rough).map(|(e, r)| (e.eps - r).abs()).fold(0.0, f64::max);

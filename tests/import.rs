@@ -590,8 +590,8 @@ fn units_are_told_by_size_and_the_remedy_is_right() {
         let written = fs::read_to_string(&path).expect("written");
         let line = format!("column = \"{column}\"\n");
         fs::write(&path, written.replace(&line, &format!("{line}{wanted}\n"))).expect("written");
-        let mended = said(&smam(&["compare", "."], folder.path()));
-        assert!(!mended.contains("as far as the scene does"), "{mended}");
+        let fixed = said(&smam(&["compare", "."], folder.path()));
+        assert!(!fixed.contains("as far as the scene does"), "{fixed}");
     }
 }
 

@@ -20,10 +20,10 @@ fn simulation(law: &LawTable) -> Simulation {
 fn every_printed_example_runs_on_a_stock_scene() {
     for spec in &PORTS {
         let mut simulation = simulation(&spec.example_table());
-        simulation.keep_energy_book();
+        simulation.keep_energy_balance();
         simulation.advance_to(3.0).unwrap_or_else(|e| panic!("{}: {e}", spec.name()));
-        let book = simulation.energy_book().expect("it was kept");
-        let share = book.unaccounted_j().abs() / book.turnover_j();
+        let balance = simulation.energy_balance().expect("it was kept");
+        let share = balance.unaccounted_j().abs() / balance.turnover_j();
         println!("{}: {share:.1e} of the turnover unaccounted", spec.name());
         assert!(share < 1e-3, "{}: {share}", spec.name());
     }

@@ -1,4 +1,4 @@
-//! Contract: a law that is written in a scene does what its port says, in the full scene and in the fast model, and an independent
+//! Contract: a law that is written in a scene does what its port says, in the full scene and in the reduced-order model, and an independent
 //! program that had the same laws hidden in it agrees.
 //!
 //! Recordings of that program are looked for in `../shared/recordings/practice_laws`; where they are not, that is said.

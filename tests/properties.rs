@@ -75,13 +75,13 @@ proptest! {
     #[test]
     fn energy_is_kept(rig in 0..RIGS.len(), powers in powers()) {
         let mut simulation = Simulation::new(changed(RIGS[rig], &powers)).expect("builds");
-        simulation.keep_energy_book();
+        simulation.keep_energy_balance();
         if simulation.advance_to(DURATION_S).is_ok() {
-            let book = simulation.energy_book().expect("kept");
-            let share = book.unaccounted_j().abs() / book.turnover_j().max(1e-9);
+            let balance = simulation.energy_balance().expect("kept");
+            let share = balance.unaccounted_j().abs() / balance.turnover_j().max(1e-9);
             // What `smam run --energy` warns of.
             prop_assert!(share < 1e-2, "{share:.2e} of the turnover is unaccounted for");
-            let lost = book.lines().into_iter().filter(|(name, _)| name.starts_with("lost_"));
+            let lost = balance.lines().into_iter().filter(|(name, _)| name.starts_with("lost_"));
             for (name, joule) in lost {
                 prop_assert!(joule > -1e-12, "{name}: {joule:.2e} J: a law that dissipates gave energy");
             }

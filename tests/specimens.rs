@@ -126,7 +126,7 @@ fn specimens_are_named_for_every_run_or_for_none() {
         "{refused}"
     );
     // The remedy, tried.
-    let mended = text.replace("file = \"second_0.csv\"\n", "file = \"second_0.csv\"\nspecimen = \"sample 1\"\n");
-    std::fs::write(&path, mended).expect("written");
+    let fixed = text.replace("file = \"second_0.csv\"\n", "file = \"second_0.csv\"\nspecimen = \"sample 1\"\n");
+    std::fs::write(&path, fixed).expect("written");
     assert!(Case::load(&[folder.path()], None, &[]).is_ok());
 }

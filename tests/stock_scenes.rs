@@ -1,5 +1,5 @@
 //! Contract of the stock scenes: their expectations hold, halving the step changes nothing that matters, two runs are
-//! identical to the byte, and the energy book closes.
+//! identical to the byte, and the energy balance closes.
 
 use smam::recording::Recording;
 use smam::scene::{Override, Scene};
@@ -23,7 +23,7 @@ fn run(name: &str, overrides: &[Override]) -> (Simulation, Recording) {
     let scene = Scene::load(name, overrides).unwrap_or_else(|e| panic!("{e}"));
     let spec = scene.file.simulation;
     let mut simulation = Simulation::new(scene).unwrap_or_else(|e| panic!("{e}"));
-    simulation.keep_energy_book();
+    simulation.keep_energy_balance();
     let recording = record(&mut simulation, &Schedule::even(spec.duration_s, spec.output_interval_s));
     (simulation, recording.unwrap_or_else(|e| panic!("{e}")))
 }
@@ -63,13 +63,17 @@ fn val_halving_the_step_changes_nothing() {
 }
 
 #[test]
-fn val_energy_book_closes() {
+fn val_energy_balance_closes() {
     for name in SMOOTH {
         let (simulation, _) = run(name, &[]);
-        let book = simulation.energy_book().expect("kept");
-        let share = 100.0 * book.unaccounted_j().abs() / book.turnover_j();
+        let balance = simulation.energy_balance().expect("kept");
+        let share = 100.0 * balance.unaccounted_j().abs() / balance.turnover_j();
         println!("{name}: {share:.5} % of the turnover");
-        assert!(share <= 0.1, "{name}: {share:.4} % of the plunger's turnover is unaccounted for: {:?}", book.lines());
+        assert!(
+            share <= 0.1,
+            "{name}: {share:.4} % of the plunger's turnover is unaccounted for: {:?}",
+            balance.lines()
+        );
     }
 }
 

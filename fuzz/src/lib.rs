@@ -9,7 +9,7 @@ use smam::columns::decode;
 use smam::mechanism::{ContactSpec, Mechanism, MechanismSpec};
 use smam::recording::{OpenScene, RecordingSet, Role, Wanted, guess, read_bag_from, read_csv_from, to_toml};
 use smam::scene::Scene;
-use smam::system::{Simulation, SystemError, Twin};
+use smam::system::{Rom, Simulation, SystemError};
 
 /// Hands an input to a reader.
 pub type Target = fn(&[u8]);
@@ -86,7 +86,7 @@ pub fn scene_built(bytes: &[u8]) {
     if scene.file.simulation.substeps.saturating_mul(segments) > DEAREST {
         return;
     }
-    if let Err(e) = Twin::new(&scene) {
+    if let Err(e) = Rom::new(&scene) {
         check_words(&e.to_string(), "fuzz.toml");
     }
     let until_s = 3.0 * scene.file.simulation.step_s.min(scene.file.simulation.output_interval_s);

@@ -89,9 +89,9 @@ def test_measured_beside_simulated() -> None:
     beside = smam.compare("leaky")
     assert set(beside.channels.index) == {(f"{run}.csv", column) for run in ("sine", "steps", "chirp") for column in rig.NOISE}
     assert beside.channels.loc[("sine.csv", "elongation_mm"), "rmse"] > 0.03
-    mended = smam.compare("leaky", set={"effect": [LEAK]}, out="mended")
-    assert mended.channels.loc[("sine.csv", "elongation_mm"), "rmse"] == pytest.approx(0.02, rel=0.15)
-    assert mended.page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    repaired = smam.compare("leaky", set={"effect": [LEAK]}, out="repaired")
+    assert repaired.channels.loc[("sine.csv", "elongation_mm"), "rmse"] == pytest.approx(0.02, rel=0.15)
+    assert repaired.page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
 
 
 def test_a_loop_is_identified() -> None:

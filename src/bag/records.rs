@@ -7,8 +7,8 @@ use mcap::records::{Record, op};
 
 use super::chunk::unpack;
 
-const CUT_SHORT: &str = "the file ends before its end mark: recording was cut short, or the copy was; mend it with \
-                         `mcap recover BAG.mcap -o MENDED.mcap`";
+const CUT_SHORT: &str = "the file ends before its end mark: recording was cut short, or the copy was; repair it with \
+                         `mcap recover BAG.mcap -o REPAIRED.mcap`";
 
 /// Calls `see` with every schema, channel and message of the file, in the file's order.
 pub(super) fn for_each(

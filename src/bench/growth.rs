@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{BenchError, cpu_time, made, median_cpu_s, simulations_s};
 use crate::recording::figures::line_of_best_fit;
 use crate::scene::{Override, Scene};
-use crate::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting};
+use crate::system::{Rom, RomRun, RomSetting, Schedule, Simulation};
 
 /// One kind of part, in growing numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,27 +85,27 @@ fn bench_with_segments(segments: usize) -> Result<Scene, BenchError> {
     Ok(Scene::load("muscle_bench", &[segments, compliance])?)
 }
 
-fn fast_bench(samples: usize) -> Result<(Twin, TwinRun), BenchError> {
+fn fast_bench(samples: usize) -> Result<(Rom, RomRun), BenchError> {
     let scene = Scene::load("muscle_bench", &[])?;
-    let run = TwinRun::of_programs(&scene, &Schedule::even(0.01 * samples as f64, 0.01));
-    Ok((Twin::new(&scene)?, run))
+    let run = RomRun::of_programs(&scene, &Schedule::even(0.01 * samples as f64, 0.01));
+    Ok((Rom::new(&scene)?, run))
 }
 
 fn samples_s(samples: usize, times: usize) -> Result<f64, BenchError> {
-    let (twin, run) = fast_bench(samples)?;
-    let setting = TwinSetting::<f64>::default();
-    median_cpu_s(times, || Ok(cpu_time(|| twin.simulate(&run, &setting)).1))
+    let (rom, run) = fast_bench(samples)?;
+    let setting = RomSetting::<f64>::default();
+    median_cpu_s(times, || Ok(cpu_time(|| rom.simulate(&run, &setting)).1))
 }
 
 fn sets_s(count: usize, times: usize) -> Result<f64, BenchError> {
-    let (twin, run) = fast_bench(1_000)?;
-    let c1 = twin.parameter("tube_c1_pa");
-    let set = |i: usize| TwinSetting {
+    let (rom, run) = fast_bench(1_000)?;
+    let c1 = rom.parameter("tube_c1_pa");
+    let set = |i: usize| RomSetting {
         parameters: c1.iter().map(|c1| (c1.clone(), 0.255e6 * (1.0 + 1e-4 * i as f64))).collect(),
         effects: Vec::new(),
     };
-    let sets: Vec<TwinSetting<f64>> = (0..count).map(set).collect();
-    median_cpu_s(times, || Ok(cpu_time(|| twin.simulate_many(&run, &sets)).1))
+    let sets: Vec<RomSetting<f64>> = (0..count).map(set).collect();
+    median_cpu_s(times, || Ok(cpu_time(|| rom.simulate_many(&run, &sets)).1))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
-//! What simulating costs: the stock scenes, the fast model, and how cost grows with a scene's parts.
+//! What simulating costs: the stock scenes, the reduced-order model, and how cost grows with a scene's parts.
 //!
 //! Times are CPU times of this process, medians of several runs, so that another program on the machine changes them
 //! little. Figures and what they mean: `docs/performance.md`.
 
 mod growth;
 mod made;
+mod rom;
 mod scenes;
-mod twin;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -18,8 +18,8 @@ use crate::scene::SceneError;
 use crate::system::{Simulation, SystemError};
 
 pub use growth::{Growth, grow};
+pub use rom::{LAW, ROMS, RomSpeed};
 pub use scenes::{CASES, SceneCase, SceneSpeed, worst_errors};
-pub use twin::{LAW, TWINS, TwinSpeed};
 
 /// What can keep a figure from being taken.
 #[derive(Debug, thiserror::Error)]

@@ -66,7 +66,7 @@ pub enum StepName {
     Pressure,
     /// Keep the scene's calibration as it is
     Refit,
-    /// Let effects stand that do not foretell runs they were not fitted to
+    /// Keep effects that do not predict runs they were not fitted to
     CrossValidation,
     /// Answer with something of the catalogue always
     OpenSet,
@@ -187,7 +187,7 @@ fn print_diagnosis(d: &Diagnosis) {
         );
     }
     for (channel, difference) in &d.fit.full_scene.rms_difference_over_noise {
-        say!("  fast model against the full scene: {channel} {difference:.3} of the noise");
+        say!("  reduced-order model against the full scene: {channel} {difference:.3} of the noise");
     }
     say!("  next: {}", d.next_experiment.why);
     d.warnings.iter().for_each(|w| eprintln!("warning: {w}"));

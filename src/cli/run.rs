@@ -85,7 +85,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
     let schedule = schedule(arguments, &mut simulation)?;
     if arguments.energy {
-        simulation.keep_energy_book();
+        simulation.keep_energy_balance();
     }
     let end_s = schedule.last_s().unwrap_or(0.0);
     let view = simulation.scene().file.view.clone();
@@ -111,8 +111,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if let Some(angles) = angles {
         super::print_text(&angles.table())?;
     }
-    if let Some(book) = simulation.energy_book() {
-        print_energy(book);
+    if let Some(balance) = simulation.energy_balance() {
+        print_energy(balance);
     }
     // Ctrl-C is how serving ends: only one that came before cut the run short.
     let cut_short = interrupted();

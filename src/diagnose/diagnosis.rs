@@ -28,7 +28,7 @@ pub struct Diagnosis {
     pub withheld: Vec<NamedEffect>,
     /// Values of the calibrated parameters with the effects in place, SI.
     pub calibration: BTreeMap<String, Estimate>,
-    /// Where runs of several specimens are diagnosed together: the calibrated numbers of each.
+    /// Where runs of several specimens are diagnosed together: the calibrated parameters of each.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub specimens: BTreeMap<String, SpecimenNumber>,
     pub fit: Proof,
@@ -111,7 +111,7 @@ pub struct NamedEffect {
     /// Its first number as each run by itself would have it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub size_by_run: BTreeMap<String, Estimate>,
-    /// Its expression; of a law outside the catalogue with its numbers, and behind semicolons what it remembers.
+    /// Its expression; of a law outside the catalogue with its parameters, and behind semicolons what it remembers.
     pub law: String,
     /// What a law outside the catalogue is called where it has a name: breakaway friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -216,7 +216,7 @@ pub struct Proof {
     pub full_scene: FullScene,
 }
 
-/// How far the fast model, which the diagnosis works on, is from the full scene with the numbers found.
+/// How far the reduced-order model, which the diagnosis works on, is from the full scene with the parameters found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FullScene {
     /// If not, the figures of the held-out runs are those of the full scene.
@@ -226,7 +226,7 @@ pub struct FullScene {
 }
 
 impl FullScene {
-    /// Whether it was played, and came out otherwise than the fast model.
+    /// Whether it was played, and came out otherwise than the reduced-order model.
     pub fn differs(&self) -> bool {
         !self.agrees && !self.rms_difference_over_noise.is_empty()
     }

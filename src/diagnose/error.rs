@@ -35,7 +35,7 @@ pub enum DiagnoseError {
     )]
     Undeclared { folder: PathBuf, column: String },
     #[error(
-        "{file}: [[calibrate]] key = \"{key}\": the fast model cannot vary it\n  \
+        "{file}: [[calibrate]] key = \"{key}\": the reduced-order model cannot vary it\n  \
          remedy: calibrate a number of tube, coil, friction, compliance, linear muscle, cable, joint spring or axis"
     )]
     Parameter { file: PathBuf, key: String },

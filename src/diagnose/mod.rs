@@ -2,7 +2,7 @@
 //!
 //! [`diagnose`] goes through the steps one by one, each a folder of its own: `case` and `fit` (recordings, noise, calibration), `search`,
 //! `verdict`, `latent`, `unknown`, `validation`, `experiment`, `answer`. A step imports those below it, never one above (`tests/architecture.rs`). All work
-//! on the fast model of the scene ([`crate::system::Twin`]) but `full`; what is found is written as a scene.
+//! on the reduced-order model of the scene ([`crate::system::Rom`]) but `full`; what is found is written as a scene.
 //!
 //! Half a minute for a bench:
 //!
@@ -123,7 +123,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings, of_found } = explained;
     warnings.extend(of_found);
     let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
-    // A specimen that is predicted from others has no say in their numbers.
+    // A specimen that is predicted from others has no say in their parameters.
     let fitted = if case.is_transfer() { RunSet::Open } else { RunSet::All };
     let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
@@ -139,7 +139,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         warnings.push(HELD_OUT_ALONE.to_owned());
     }
     warnings.extend(figures::on_bounds(&case, &complete));
-    let specimens = specimens::numbers(&case, &complete);
+    let specimens = specimens::parameters(&case, &complete);
     warnings.extend(specimens::words(&case, &specimens));
     let withheld = found.withheld.as_ref().map_or_else(Vec::new, |known| verdict::named(known, &known.best, left));
     let said = if withheld.is_empty() { &effects } else { &withheld };
@@ -190,7 +190,7 @@ fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experime
     experiment::settle(whole, &found.best, &open)
 }
 
-/// The effects of the answer with their curves and their sizes by run, and the numbers in which runs contradict each other; `left` as in
+/// The effects of the answer with their curves and their sizes by run, and the parameters in which runs contradict each other; `left` as in
 /// [`next_experiment`].
 fn named(
     case: &Case,
@@ -239,9 +239,9 @@ fn complete(whole: &Problem, found: &Found) -> Fit {
     let fitted = whole.fit_to_the_end(&found.best.model, &found.best.x);
     let mut complete = fitted.unwrap_or_else(|| found.best.clone());
     intervals::widen(whole, &mut complete);
-    // Numbers of all runs with which the full scene diverges are no use: then those of the open runs, with which it does not.
-    let settled = refine::settle(whole, complete.clone()).or_else(|| refine::settle(whole, found.best.clone()));
-    settled.unwrap_or(complete)
+    // Parameters of all runs with which the full scene diverges are no use: then those of the open runs, with which it does not.
+    let refined = refine::refine(whole, complete.clone()).or_else(|| refine::refine(whole, found.best.clone()));
+    refined.unwrap_or(complete)
 }
 
 /// Whether the open runs hold more than noise that the best does not explain.

@@ -134,7 +134,7 @@ impl<D: Scalar> Friction<D> {
         -(self.level_n(pressure_pa) * velocity_m_s.abs() * z * self.pull_back(z)) / self.a
     }
 
-    /// What a changing pressure adds to the stored energy, W (either sign): the energy book's
+    /// What a changing pressure adds to the stored energy, W (either sign): the energy balance's
     /// 'pressure-friction exchange'.
     pub fn pressure_exchange_w(&self, z: D, pressure_pa: D, pressure_rate_pa_s: D) -> D {
         self.force_per_pressure(z, pressure_pa) * z * self.presliding_length_m / (self.a * 2.0) * pressure_rate_pa_s

@@ -94,7 +94,7 @@ fn one(spec: &ChannelSpec, bag: &bag::Bag) -> Result<Sampled, String> {
             Some(source) => format!("no topic {}", source.topic),
             None => format!("no topic of {FLOAT64} ends in /{}", spec.column),
         };
-        let remedy = format!("mend the topic of the [[channel]] \"{}\" in recordings.toml", spec.column);
+        let remedy = format!("fix the topic of the [[channel]] \"{}\" in recordings.toml", spec.column);
         return Err(format!("{wanted} (topics: {}); {remedy}", names(bag)));
     };
     let column = parse_column(&spec.column).map_err(|e| e.to_string())?.unit;
@@ -129,7 +129,7 @@ fn bag_unit(spec: &ChannelSpec, series: &Series, column: Unit) -> Result<Unit, S
 fn sampled(series: &Series, is_output: bool, convert: impl Fn(f64) -> f64) -> Result<Sampled, String> {
     if series.time_s.is_empty() {
         return Err(format!(
-            "topic {}: no message has the field and the joint of the column \"{}\"; mend its [[channel]]",
+            "topic {}: no message has the field and the joint of the column \"{}\"; fix its [[channel]]",
             series.topic.name, series.column
         ));
     }

@@ -147,7 +147,7 @@ pub enum RecordingError {
         index: usize,
     },
     /// `recordings.toml` is no TOML.
-    #[error("{}: is not valid TOML: {problem}\n  remedy: mend that line", file.display())]
+    #[error("{}: is not valid TOML: {problem}\n  remedy: fix that line", file.display())]
     Toml {
         /// The file.
         file: PathBuf,

@@ -198,8 +198,8 @@ fn layout_mistakes_and_their_remedies() {
         let key = wrong.split(' ').next().unwrap();
         assert!(said.starts_with("rig/recordings.toml: [file]: ") && said.contains(key), "{said}");
         assert_eq!(said.matches("remedy: ").count(), 1, "{said}");
-        let mended = parse(&GOOD.replace("[[run]]", &format!("[file]\n{right}\n[[run]]")));
-        assert!(mended.is_ok(), "{right}: {mended:?}");
+        let fixed = parse(&GOOD.replace("[[run]]", &format!("[file]\n{right}\n[[run]]")));
+        assert!(fixed.is_ok(), "{right}: {fixed:?}");
     }
     let said = refusal("scene = \"muscle_bench\"", "scene = \"muscle_bench\"\nfile = 3");
     assert!(said.contains("file = 3 must be a table"), "{said}");
@@ -217,8 +217,8 @@ fn channel_sources_are_checked_against_their_units() {
     ] {
         let said = refusal("noise_sd = 1", wrong);
         assert!(said.contains("[[channel]] 2 (\"force_n\"): ") && said.contains("remedy: "), "{said}");
-        let mended = parse(&GOOD.replace("noise_sd = 1", right));
-        assert!(mended.is_ok(), "{right}: {mended:?}");
+        let fixed = parse(&GOOD.replace("noise_sd = 1", right));
+        assert!(fixed.is_ok(), "{right}: {fixed:?}");
     }
 }
 

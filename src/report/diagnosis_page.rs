@@ -51,7 +51,7 @@ fn curves(page: &mut HtmlPage, outcome: &Outcome) {
     page.chooser(&choices(&compared), furthest_off(outcome, before));
     if outcome.diagnosis.fit.full_scene.differs() {
         page.small(
-            "These curves and their errors are those of the fast model, which differs from the full scene here; the errors of \
+            "These curves and their errors are those of the reduced-order model, which differs from the full scene here; the errors of \
              held-out runs further down are those of the full scene.",
         );
     }

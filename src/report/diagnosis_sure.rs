@@ -109,7 +109,7 @@ fn placebos(page: &mut HtmlPage, outcome: &Outcome) {
     page.table(&["instead", "gap closed"], &rows);
 }
 
-/// How near the fast model, on which all this rests, is to the full scene.
+/// How near the reduced-order model, on which all this rests, is to the full scene.
 fn full_scene(page: &mut HtmlPage, outcome: &Outcome) {
     let full = &outcome.diagnosis.fit.full_scene;
     let each: Vec<String> =
@@ -122,7 +122,7 @@ fn full_scene(page: &mut HtmlPage, outcome: &Outcome) {
         false => "They do not agree, and the figures of the held-out runs are those of the full scene",
     };
     page.paragraph(&format!(
-        "The fast model against the full scene with the values found, in units of the noise: {}. {consequence}.",
+        "The reduced-order model against the full scene with the values found, in units of the noise: {}. {consequence}.",
         each.join(", ")
     ));
 }

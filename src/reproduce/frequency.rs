@@ -43,7 +43,7 @@ fn last_loop(play: &Play, frequency_hz: f64) -> Result<Loop, ReproduceError> {
     play.last_loop("plunger_mm", "elongation_mm", 1.0 / frequency_hz)
 }
 
-/// Gains of the fast model at the least and the greatest frequency, with an effect.
+/// Gains of the reduced-order model at the least and the greatest frequency, with an effect.
 struct Ends {
     slow: Fast,
     quick: Fast,

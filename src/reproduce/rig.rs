@@ -1,9 +1,9 @@
-//! Playing stock scenes: the full scene, and its fast model where a figure needs many runs.
+//! Playing stock scenes: the full scene, and its reduced-order model where a figure needs many runs.
 
 use crate::effects::EffectTable;
 use crate::recording::Recording;
 use crate::scene::{Override, Program, Scene};
-use crate::system::{InputSource, Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+use crate::system::{InputSource, Rom, RomRun, RomSetting, Schedule, Simulation, record};
 
 use super::ReproduceError;
 use super::error::lacking;
@@ -107,23 +107,23 @@ impl Play {
         Ok(Loop::last(run.time_s(), &run.channel(input)?.values, &run.channel(output)?.values, period_s))
     }
 
-    /// The scene's fast model with the inputs of this run.
+    /// The scene's reduced-order model with the inputs of this run.
     pub fn fast(&self) -> Result<Fast, ReproduceError> {
         let scene = self.scene()?;
-        let twin = Twin::new(&scene)?;
+        let rom = Rom::new(&scene)?;
         let times_s = self.schedule(&scene).times();
         let given = |channel: &str| self.inputs.iter().find(|(c, _)| *c == channel).map(|(_, p)| p.clone());
         let programs =
             scene.file.input.iter().zip(&scene.programs).map(|(i, p)| given(&i.channel).unwrap_or_else(|| p.clone()));
         let inputs = programs.map(|p| times_s.iter().map(|t| p.value(*t)).collect()).collect();
-        Ok(Fast { twin, run: TwinRun { times_s, inputs, plan: None } })
+        Ok(Fast { rom, run: RomRun { times_s, inputs, plan: None } })
     }
 }
 
-/// A fast model and what drives it.
+/// A reduced-order model and what drives it.
 pub struct Fast {
-    twin: Twin,
-    run: TwinRun,
+    rom: Rom,
+    run: RomRun,
 }
 
 impl Fast {
@@ -143,19 +143,21 @@ impl Fast {
         numbers: &[(&str, f64)],
         effects: &[EffectTable],
     ) -> Result<Vec<f64>, ReproduceError> {
-        let index = self.twin.columns().position(|c| c == column);
+        let index = self.rom.columns().position(|c| c == column);
         let index = index.ok_or_else(|| lacking("-", format!("the scene has no channel {column}")))?;
         let parameters = numbers.iter().map(|(key, value)| {
-            let parameter = self.twin.parameter(key);
-            parameter.map(|p| (p, *value)).ok_or_else(|| lacking("-", format!("the fast model cannot vary {key}")))
+            let parameter = self.rom.parameter(key);
+            parameter
+                .map(|p| (p, *value))
+                .ok_or_else(|| lacking("-", format!("the reduced-order model cannot vary {key}")))
         });
         let effects = effects.iter().map(|e| e.effect().map_err(|error| lacking("-", error.to_string())));
-        let setting = TwinSetting {
+        let setting = RomSetting {
             parameters: parameters.collect::<Result<_, _>>()?,
             effects: effects.collect::<Result<_, _>>()?,
         };
         let mut series =
-            self.twin.simulate(&self.run, &setting).ok_or_else(|| lacking("-", "the fast model diverges"))?;
+            self.rom.simulate(&self.run, &setting).ok_or_else(|| lacking("-", "the reduced-order model diverges"))?;
         Ok(series.swap_remove(index))
     }
 }

@@ -10,7 +10,7 @@ use super::Scalar;
 ///
 /// A branch can go only one way. Where the numbers would not all take the same, the first one decides and the
 /// disagreement is noted for the thread: whoever started the computation asks for it afterwards, throws the result away and
-/// follows each set by itself (`system::twin`). A law that knows nothing of lanes can therefore be slow but never wrong.
+/// follows each set by itself (`system::rom`). A law that knows nothing of lanes can therefore be slow but never wrong.
 ///
 /// ```
 /// use smam::muscle::Coil;

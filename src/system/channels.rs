@@ -9,8 +9,8 @@ use crate::scene::{OutputSpec, Quantity, Scene};
 use super::arc::ArcSide;
 use super::laws::LawSensor;
 use super::plant::Drive;
+use super::rom::sensor;
 use super::standalone::{Answering, Standalone};
-use super::twin::sensor;
 use super::{Simulation, SystemError};
 
 /// What one output column reads from the state.

@@ -1,4 +1,4 @@
-//! Lines of the energy book that effects have: what each brings in, holds, and takes away.
+//! Lines of the energy balance that effects have: what each brings in, holds, and takes away.
 
 use crate::hydraulics::Chain;
 

@@ -1,8 +1,8 @@
-//! The energy book: where the plunger's work went.
+//! The energy balance: where the plunger's work went.
 //!
 //! Powers are integrated by the trapezoid rule over the fine steps; stored energies are read off the states. What
-//! is left between the two is the integrator's own error and stands in the book as a line of its own. Effects have
-//! lines of their own (`effect_energy.rs`), which a book without them does not show.
+//! is left between the two is the integrator's own error and stands in the balance as a line of its own. Effects have
+//! lines of their own (`effect_energy.rs`), which a balance without them does not show.
 
 use crate::laws::Port;
 
@@ -15,7 +15,7 @@ mod terms;
 
 use terms::{Powers, powers, stored};
 
-/// The book of one run.
+/// The balance of one run.
 ///
 /// ```
 /// use smam::scene::Scene;
@@ -23,9 +23,9 @@ use terms::{Powers, powers, stored};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
-/// simulation.keep_energy_book();
+/// simulation.keep_energy_balance();
 /// simulation.advance_to(0.5)?;
-/// let lines = simulation.energy_book().ok_or("it was kept")?.lines();
+/// let lines = simulation.energy_balance().ok_or("it was kept")?.lines();
 /// let line_j = |name: &str| lines.iter().find(|(n, _)| n == name).map_or(f64::NAN, |(_, j)| *j);
 /// let brought = ["input_work", "load_work", "pressure_friction_exchange", "engine_and_contacts"];
 /// let brought_j: f64 = brought.iter().map(|name| line_j(name)).sum();
@@ -37,7 +37,7 @@ use terms::{Powers, powers, stored};
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct EnergyBook {
+pub struct EnergyBalance {
     stored_0: f64,
     stored: f64,
     sums: Powers,
@@ -60,7 +60,7 @@ pub struct EnergyBook {
     pistons_by_laws: Vec<(usize, usize, f64)>,
 }
 
-/// A law's line of the book.
+/// A law's line of the balance.
 #[derive(Clone, Debug)]
 struct LawLine {
     name: String,
@@ -71,8 +71,8 @@ struct LawLine {
     before_w: f64,
 }
 
-impl EnergyBook {
-    /// Opens the book at a state; `inputs` as they will be over the first step.
+impl EnergyBalance {
+    /// Opens the balance at a state; `inputs` as they will be over the first step.
     pub fn open(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Self {
         let stored = stored(plant, state, inputs, 0.0);
         let held = effect_stores(plant, state, inputs, 0.0);
@@ -151,7 +151,7 @@ impl EnergyBook {
         self.pistons_by_laws = now;
     }
 
-    /// Books a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
+    /// Enters a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
     pub fn engine_changed(
         &mut self,
         plant: &Plant<f64>,

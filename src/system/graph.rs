@@ -68,7 +68,7 @@ impl Simulation {
             contacts: self.mechanism.as_ref().map_or(Vec::new(), |m| m.contacts()),
             joint_positions: self.built.state.y()[..joints].to_vec(),
             events,
-            energy_j: self.energy.as_ref().map_or(Vec::new(), |book| book.lines()),
+            energy_j: self.energy.as_ref().map_or(Vec::new(), |balance| balance.lines()),
         }
     }
 

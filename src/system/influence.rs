@@ -5,7 +5,7 @@ use crate::effects::{Effect, Element, ElementKind, EntryId, Native};
 use crate::recording::parse_column;
 use crate::scene::Scene;
 
-use super::{Schedule, SystemError, Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting, Schedule, SystemError};
 
 /// Multiples of the typical size that are tried.
 const SIZES: [f64; 2] = [1.0, 2.0];
@@ -43,12 +43,12 @@ pub struct Influence {
     pub pressure: Option<Influenced>,
 }
 
-/// Plays the fast model of a scene without and with an effect; `None` where the scene cannot have it.
+/// Plays the reduced-order model of a scene without and with an effect; `None` where the scene cannot have it.
 ///
 /// Where a rig has two of an element the first one gets it. A threshold out of the programme's reach is lowered.
 ///
 /// # Errors
-/// A scene without fast model, a run that diverges.
+/// A scene without reduced-order model, a run that diverges.
 pub fn influence(scene: &Scene, entry: EntryId) -> Result<Option<Influence>, SystemError> {
     let mut effect = place(scene, entry);
     if !takes(scene, &effect) {
@@ -95,27 +95,28 @@ fn takes(scene: &Scene, effect: &Effect<f64>) -> bool {
     Scene::from_file(file, &scene.path).is_ok()
 }
 
-/// A scene's fast model and its stock programme.
+/// A scene's reduced-order model and its stock programme.
 struct Stage<'a> {
     scene: &'a Scene,
-    twin: Twin,
-    run: TwinRun,
+    rom: Rom,
+    run: RomRun,
 }
 
 impl<'a> Stage<'a> {
     fn new(scene: &'a Scene) -> Result<Self, SystemError> {
         let spec = scene.file.simulation;
-        let run = TwinRun::of_programs(scene, &Schedule::even(spec.duration_s, spec.output_interval_s));
-        Ok(Self { scene, twin: Twin::new(scene)?, run })
+        let run = RomRun::of_programs(scene, &Schedule::even(spec.duration_s, spec.output_interval_s));
+        Ok(Self { scene, rom: Rom::new(scene)?, run })
     }
 
     /// All outputs with the scene's own effects and one more.
     fn play(&self, more: Option<Effect<f64>>) -> Result<Vec<Vec<f64>>, SystemError> {
         let own = self.scene.file.effect.iter().filter_map(|t| t.effect().ok());
-        let setting = TwinSetting { parameters: Vec::new(), effects: own.chain(more).collect() };
-        let shown = self.twin.simulate(&self.run, &setting).filter(|outputs| !outputs.is_empty());
+        let setting = RomSetting { parameters: Vec::new(), effects: own.chain(more).collect() };
+        let shown = self.rom.simulate(&self.run, &setting).filter(|outputs| !outputs.is_empty());
         let end_s = self.run.times_s.last().copied().unwrap_or(0.0);
-        shown.ok_or_else(|| SystemError::Diverged { time_s: end_s, what: "the fast model's motion".to_owned() })
+        shown
+            .ok_or_else(|| SystemError::Diverged { time_s: end_s, what: "the reduced-order model's motion".to_owned() })
     }
 
     fn play_sizes(&self, effect: &Effect<f64>) -> Result<Vec<Vec<Vec<f64>>>, SystemError> {

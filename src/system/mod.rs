@@ -1,4 +1,4 @@
-//! A scene as a system in time: wiring, stepping order, energy book, channels.
+//! A scene as a system in time: wiring, stepping order, energy balance, channels.
 //!
 //! [`Simulation`] is the full scene with its rigid-body engine; [`Plant`] the equations it integrates.
 //!
@@ -44,6 +44,7 @@ pub mod observe;
 mod plant;
 mod posed;
 mod rates;
+mod rom;
 mod rosenbrock;
 mod run;
 mod schedule;
@@ -52,10 +53,9 @@ mod standalone;
 mod state;
 mod switching;
 mod tangents;
-mod twin;
 
 pub use elastic::{Elastic, ElasticPoint};
-pub use energy::EnergyBook;
+pub use energy::EnergyBalance;
 pub use error::SystemError;
 pub use events::{Concern, ConcernsS, Warnings};
 pub use expect::{Verdict, judge};
@@ -69,10 +69,10 @@ pub use plant::{
     CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
 };
 pub use posed::Posed;
+pub use rom::{Block, Change, Linear, MuscleNumber, Rom, RomParameter, RomRun, RomSetting, Signals, StepPlan};
 pub use rosenbrock::Stepper;
 pub use run::{Driver, RunError, record, record_driven, record_watched, run};
 pub use schedule::Schedule;
 pub use simulation::Simulation;
 pub use standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber};
 pub use state::PlantState;
-pub use twin::{Block, Change, Linear, MuscleNumber, Signals, StepPlan, Twin, TwinParameter, TwinRun, TwinSetting};

@@ -1,4 +1,4 @@
-//! What follows the pose in the fast model: levers of cables on via points, and weights.
+//! What follows the pose in the reduced-order model: levers of cables on via points, and weights.
 //!
 //! Over one fine step levers and weights stand still, as they do over one engine step in the full scene; at its end they are taken anew, and
 //! cables go on from the stretch that they have. What a number of a derivative, or of a lane, changes of a lever is put in as a force, so

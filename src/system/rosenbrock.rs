@@ -85,7 +85,7 @@ impl<D: Scalar> Stepper<D> {
     ///
     /// Whether everything one-sided acted alike at both stages: where it did not, the step is too long to be trusted.
     pub(super) fn step(&mut self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan], h: f64) -> bool {
-        // The fast model has few coordinates, and a step of it is made of loops over them.
+        // The reduced-order model has few coordinates, and a step of it is made of loops over them.
         let dim = if state.layout.is_of_one_segment() { plant.dim() } else { 0 };
         match dim {
             1 => self.step_on::<1>(plant, state, inputs, h),

@@ -7,7 +7,7 @@ use crate::recording::LONGEST_LOST_S;
 use crate::scene::Scene;
 
 use super::build::{Built, build};
-use super::energy::EnergyBook;
+use super::energy::EnergyBalance;
 use super::laws::PlantLaws;
 use super::plant::InputSpan;
 use super::rosenbrock::Stepper;
@@ -29,12 +29,12 @@ mod engine;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let mut simulation = Simulation::new(Scene::load("muscle_bench", &[])?)?;
-/// simulation.keep_energy_book();
+/// simulation.keep_energy_balance();
 /// simulation.advance_to(1.0)?;
 /// let elongation_m = simulation.joint_position("slide").ok_or("the carriage slides")?;
 /// assert!((2e-3..3e-3).contains(&elongation_m));
-/// let book = simulation.energy_book().ok_or("it was kept")?;
-/// assert!(book.unaccounted_j().abs() < 1e-3 * book.turnover_j());
+/// let balance = simulation.energy_balance().ok_or("it was kept")?;
+/// assert!(balance.unaccounted_j().abs() < 1e-3 * balance.turnover_j());
 /// # Ok(())
 /// # }
 /// ```
@@ -61,7 +61,7 @@ pub struct Simulation {
     /// States of the displacement models, in the order of `built.displacements`.
     hysteresis: Vec<Vec<f64>>,
     has_stepped: bool,
-    pub(super) energy: Option<EnergyBook>,
+    pub(super) energy: Option<EnergyBalance>,
     /// Where muscles are drawn, m.
     pub(super) anchors_m: Vec<[f64; 3]>,
 }
@@ -160,9 +160,9 @@ impl Simulation {
         self.hold_spans();
     }
 
-    /// Opens the energy book; call before the first step.
-    pub fn keep_energy_book(&mut self) {
-        self.energy = Some(EnergyBook::open(&self.built.plant, &self.built.state, &self.spans));
+    /// Opens the energy balance; call before the first step.
+    pub fn keep_energy_balance(&mut self) {
+        self.energy = Some(EnergyBalance::open(&self.built.plant, &self.built.state, &self.spans));
     }
 
     /// The inputs at the present instant.
@@ -179,8 +179,8 @@ impl Simulation {
         spans
     }
 
-    /// The energy book, if kept.
-    pub fn energy_book(&self) -> Option<&EnergyBook> {
+    /// The energy balance, if kept.
+    pub fn energy_balance(&self) -> Option<&EnergyBalance> {
         self.energy.as_ref()
     }
 

@@ -305,7 +305,7 @@ impl<D: Scalar> PlantState<D> {
     }
 
     /// Places of those that something in the plant goes by.
-    pub(super) fn numbers_in_use(&self, plant: &Plant<D>) -> Vec<usize> {
+    pub(super) fn states_in_use(&self, plant: &Plant<D>) -> Vec<usize> {
         let extras = || plant.muscles.iter().map(|m| &m.extras);
         let softens = extras().map(|e| e.mullins.is_some());
         let lags = extras().map(|e| e.backlash.is_some());

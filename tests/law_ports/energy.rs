@@ -66,14 +66,14 @@ fn with(rig: &str, laws: &[LawTable]) -> Option<Simulation> {
 
 /// The greatest share of the turnover that was ever unaccounted for, and laws that supply where they should take.
 fn balance(mut simulation: Simulation) -> (f64, Vec<String>) {
-    simulation.keep_energy_book();
+    simulation.keep_energy_balance();
     let mut worst_j = 0.0_f64;
     for i in 1..=64 {
         simulation.advance_to(UNTIL_S * f64::from(i) / 64.0).unwrap_or_else(|e| panic!("{e}"));
-        worst_j = worst_j.max(simulation.energy_book().expect("kept").unaccounted_j().abs());
+        worst_j = worst_j.max(simulation.energy_balance().expect("kept").unaccounted_j().abs());
     }
-    let book = simulation.energy_book().expect("kept");
-    (worst_j / book.turnover_j(), book.supplying_laws().map(|(name, _)| name.to_owned()).collect())
+    let balance = simulation.energy_balance().expect("kept");
+    (worst_j / balance.turnover_j(), balance.supplying_laws().map(|(name, _)| name.to_owned()).collect())
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Contract: at every port a law does what is known by hand, in the full scene and in the fast model, and the energy balance knows it.
+//! Contract: at every port a law does what is known by hand, in the full scene and in the reduced-order model, and the energy balance knows it.
 
 mod cases;
 mod effects;

@@ -2,11 +2,11 @@
 
 use smam::laws::LawTable;
 use smam::scene::{Override, Scene};
-use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+use smam::system::{Rom, RomRun, RomSetting, Schedule, Simulation, record};
 
 /// Between samples, s.
 pub const SAMPLE_S: f64 = 0.01;
-/// Steps of the fast model in each.
+/// Steps of the reduced-order model in each.
 const FAST_STEPS: u16 = 10;
 
 /// Who simulates.
@@ -60,7 +60,7 @@ pub fn run(model: Model, scene: &Scene, until_s: f64) -> Series {
     run_by(model, scene, until_s, FAST_STEPS)
 }
 
-/// The same with so many steps of the fast model between samples.
+/// The same with so many steps of the reduced-order model between samples.
 pub fn run_by(model: Model, scene: &Scene, until_s: f64, steps: u16) -> Series {
     let schedule = Schedule::even(until_s, SAMPLE_S);
     let outputs = || scene.file.output.iter().map(|o| o.channel.clone());
@@ -71,14 +71,14 @@ pub fn run_by(model: Model, scene: &Scene, until_s: f64, steps: u16) -> Series {
             Series(outputs().map(|c| (c.clone(), recording.channel(&c).expect("an output").values.clone())).collect())
         }
         Model::Fast => {
-            let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
-            let mut run = TwinRun::of_programs(scene, &schedule);
+            let rom = Rom::new(scene).unwrap_or_else(|e| panic!("{e}"));
+            let mut run = RomRun::of_programs(scene, &schedule);
             run.plan = Some(vec![steps; run.times_s.len() - 1].into());
-            // The fast model takes effects from its setting.
+            // The reduced-order model takes effects from its setting.
             let effects = scene.file.effect.iter().map(|e| e.effect().expect("checked")).collect();
-            let setting = TwinSetting::<f64> { parameters: Vec::new(), effects };
-            let values = twin.simulate(&run, &setting).expect("it does not diverge");
-            Series(twin.columns().map(str::to_owned).zip(values).collect())
+            let setting = RomSetting::<f64> { parameters: Vec::new(), effects };
+            let values = rom.simulate(&run, &setting).expect("it does not diverge");
+            Series(rom.columns().map(str::to_owned).zip(values).collect())
         }
     }
 }

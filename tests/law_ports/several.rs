@@ -47,7 +47,7 @@ fn joints_go_by_name() {
     alike(PULLEY, &["joint.torque adds 1e-3"], &["joint(pulley).torque adds 1e-3"], &["joint.torque adds 2e-3"]);
 }
 
-/// In the fast model the named notch becomes a coordinate of its own.
+/// In the reduced-order model the named notch becomes a coordinate of its own.
 #[test]
 fn one_joint_of_a_tube_bends_by_itself() {
     for model in BOTH {

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use smam::files::write_whole;
 use smam::recording::Recording;
-use smam::system::{EnergyBook, Simulation, Verdict, judge};
+use smam::system::{EnergyBalance, Simulation, Verdict, judge};
 
 use super::RunArguments;
 use crate::cli::{CliError, junit};
@@ -12,15 +12,15 @@ use crate::cli::{CliError, junit};
 /// Share of the turnover that may be unaccounted for, %.
 const MOST_UNACCOUNTED: f64 = 1.0;
 
-/// Prints the energy book, and warns of what is wrong with it.
-pub(super) fn print_energy(book: &EnergyBook) {
-    say!("energy book, mJ:");
-    for (name, joule) in book.lines() {
+/// Prints the energy balance, and warns of what is wrong with it.
+pub(super) fn print_energy(balance: &EnergyBalance) {
+    say!("energy balance, mJ:");
+    for (name, joule) in balance.lines() {
         say!("  {name:<28} {:>14.6}", joule * 1e3);
     }
-    let share = book.unaccounted_j().abs() / book.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
-    say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", book.turnover_j() * 1e3);
-    for (line, joule) in book.supplying_laws() {
+    let share = balance.unaccounted_j().abs() / balance.turnover_j().max(f64::MIN_POSITIVE) * 100.0;
+    say!("  unaccounted: {share:.4} % of the plunger's turnover of {:.6} mJ", balance.turnover_j() * 1e3);
+    for (line, joule) in balance.supplying_laws() {
         let name = line.strip_prefix("law_").unwrap_or(line);
         eprintln!(
             "warning: [[law]] \"{name}\" supplies {:.6} mJ at a port that only takes energy; remedy: look at its sign",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::Args;
-use smam::bench::{CASES, Growth, SceneCase, TWINS, TwinSpeed, grow, worst_errors};
+use smam::bench::{CASES, Growth, ROMS, RomSpeed, SceneCase, grow, worst_errors};
 
 use crate::cli::CliError;
 
@@ -48,13 +48,13 @@ pub fn bench(arguments: &BenchArguments) -> Result<ExitCode, CliError> {
     for case in &CASES {
         say!("{}", scene_row(case, arguments)?);
     }
-    say!("\n| fast model of | step | x real time, sets one by one | side by side | ratio | goal |");
+    say!("\n| reduced-order model of | step | x real time, sets one by one | side by side | ratio | goal |");
     say!("|---|---|---|---|---|---|");
-    for (scene, goal) in TWINS {
-        say!("{}", twin_row(&format!("`{scene}`"), TwinSpeed::of(scene, arguments.times)?, goal));
+    for (scene, goal) in ROMS {
+        say!("{}", rom_row(&format!("`{scene}`"), RomSpeed::of(scene, arguments.times)?, goal));
     }
-    let (bench, goal) = TWINS[0];
-    say!("{}", twin_row(&format!("`{bench}` with one law"), TwinSpeed::with_law(bench, arguments.times)?, goal / 1.5));
+    let (bench, goal) = ROMS[0];
+    say!("{}", rom_row(&format!("`{bench}` with one law"), RomSpeed::with_law(bench, arguments.times)?, goal / 1.5));
     let folder = tempfile::tempdir().map_err(|source| CliError::Write { file: std::env::temp_dir(), source })?;
     say!("\n| with more | CPU time of | from | to | exponent | on paper |");
     say!("|---|---|---|---|---|---|");
@@ -62,8 +62,8 @@ pub fn bench(arguments: &BenchArguments) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn twin_row(name: &str, speed: TwinSpeed, goal: f64) -> String {
-    let TwinSpeed { step_s, singly, side_by_side } = speed;
+fn rom_row(name: &str, speed: RomSpeed, goal: f64) -> String {
+    let RomSpeed { step_s, singly, side_by_side } = speed;
     let ratio = side_by_side / singly;
     format!("| {name} | {:.1} ms | {singly:.0} | {side_by_side:.0} | {ratio:.2} | {goal:.0} |", 1e3 * step_s)
 }

@@ -7,7 +7,7 @@ use crate::diagnose::fit::Fit;
 /// So near to an end of its range, in shares of the range, a number stands on it.
 const ON_BOUND: f64 = 1e-6;
 
-/// Clauses for an answer whose scene has the numbers of `fit`; `contradicted` are numbers of which single runs say
+/// Clauses for an answer whose scene has the parameters of `fit`; `contradicted` are parameters of which single runs say
 /// otherwise.
 pub(in crate::diagnose) fn caveats(
     case: &Case,
@@ -16,14 +16,14 @@ pub(in crate::diagnose) fn caveats(
     contradicted: &[String],
 ) -> Vec<String> {
     let clauses = [
-        counted("what these recordings do not tell from a law elsewhere (see forms)", &with_stand_ins(effects)),
+        counted("what these recordings cannot distinguish from a law elsewhere (see forms)", &with_stand_ins(effects)),
         counted(
-            "channels with next to no noise, of whose range a hundred-thousandth is taken for it",
+            "channels with almost no noise, for which 1e-5 of their range is assumed",
             &without_noise(case, noise),
         ),
-        counted("numbers on an end of their range, where intervals say nothing", &on_bounds(case, fit)),
-        counted("numbers that differ from run to run", contradicted),
-        counted("runs that lack the samples in which cables hardly hold the joint", &slack_in(case)),
+        counted("parameters at the end of their range, where intervals say nothing", &on_bounds(case, fit)),
+        counted("parameters that differ from run to run", contradicted),
+        counted("runs without the samples in which slack cables leave the joint free", &slack_in(case)),
     ];
     clauses.into_iter().flatten().collect()
 }
@@ -51,10 +51,10 @@ fn without_noise(case: &Case, noise: &[Noise]) -> Vec<String> {
     at_floor.map(|(_, (own, _))| own.column.clone()).collect()
 }
 
-/// Numbers of calibration and effects that the data would have beyond the end of their range. A zero is no news.
+/// Parameters of calibration and effects that the data would have beyond the end of their range. A zero is no news.
 fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
     let calibrated = fit.on_bound.iter().filter(|&&i| fit.x[i] != 0.0).map(|&i| case.parameters[i].title());
-    let first = fit.x.len() - fit.model.effect_numbers();
+    let first = fit.x.len() - fit.model.effect_parameters();
     let of_effects = fit.model.places().into_iter().zip(&fit.x[first..]).filter_map(|((effect, i), &value)| {
         let placed = &fit.model.effects[effect];
         let p = &placed.spec().parameters[i];
@@ -66,7 +66,7 @@ fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
 }
 
 fn slack_in(case: &Case) -> Vec<String> {
-    case.runs.iter().filter(|r| r.unheld.iter().any(|samples| !samples.is_empty())).map(|r| r.file.clone()).collect()
+    case.runs.iter().filter(|r| r.slack.iter().any(|samples| !samples.is_empty())).map(|r| r.file.clone()).collect()
 }
 
 #[cfg(test)]

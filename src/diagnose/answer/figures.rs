@@ -36,7 +36,7 @@ fn by_chance(standard_errors: f64) -> f64 {
     Normal::standard().sf(standard_errors)
 }
 
-/// The calibrated numbers with their intervals.
+/// The calibrated parameters with their intervals.
 pub(in crate::diagnose) fn calibration(case: &Case, fit: &Fit) -> BTreeMap<String, Estimate> {
     let estimate = |i: usize| {
         let (value, half) = (fit.x[i], fit.half_width(i));
@@ -45,10 +45,10 @@ pub(in crate::diagnose) fn calibration(case: &Case, fit: &Fit) -> BTreeMap<Strin
     case.parameters.iter().enumerate().map(|(i, p)| (p.title(), estimate(i))).collect()
 }
 
-/// What to say of calibrated numbers that ended on an end of their range, which is not a zero.
+/// What to say of calibrated parameters that ended on an end of their range, which is not a zero.
 pub(in crate::diagnose) fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
-    let numbers = fit.on_bound.iter().map(|&i| (&case.parameters[i], fit.x[i])).filter(|(_, value)| *value != 0.0);
-    let words = numbers.map(|(p, value)| {
+    let parameters = fit.on_bound.iter().map(|&i| (&case.parameters[i], fit.x[i])).filter(|(_, value)| *value != 0.0);
+    let words = parameters.map(|(p, value)| {
         format!(
             "{} ended on an end of its range, {value:.3e} of {:.3e} .. {:.3e}: its interval says nothing; give [[calibrate]] a \
              wider range, or look for what else makes the scene want it",

@@ -18,7 +18,7 @@ use crate::diagnose::full::full_simulation;
 /// Replays every run twice; empty when the recordings could not be diagnosed.
 ///
 /// # Errors
-/// A scene that the engine cannot play with the numbers found.
+/// A scene that the engine cannot play with the parameters found.
 pub fn side_by_side(outcome: &Outcome) -> Result<Vec<SideBySide>, DiagnoseError> {
     let (Some(baseline), Some(complete)) = (&outcome.baseline, &outcome.complete) else { return Ok(Vec::new()) };
     outcome.case.runs.par_iter().map(|run| replay(outcome, run, [baseline, complete])).collect()
@@ -66,7 +66,7 @@ impl ZeroOn for Vec<Frame> {
     }
 }
 
-/// The full scene with the numbers of a fit over one run, from the first recorded sample on.
+/// The full scene with the parameters of a fit over one run, from the first recorded sample on.
 fn frames(case: &Case, fit: &Fit, run: &CaseRun) -> Result<(SceneGraph, Vec<Frame>), DiagnoseError> {
     let mut simulation = full_simulation(case, fit, run)?;
     let mut keeper = Keeper::default();

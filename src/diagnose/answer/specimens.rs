@@ -1,4 +1,4 @@
-//! What the answer says of several specimens: the calibrated numbers of each, and which of them differ.
+//! What the answer says of several specimens: the calibrated parameters of each, and which of them differ.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,11 @@ use crate::diagnose::case::Case;
 use crate::diagnose::diagnosis::{Estimate, SpecimenNumber};
 use crate::diagnose::fit::Fit;
 
-/// Standard errors from which numbers of two specimens differ: one pair in a hundred does so by chance.
+/// Standard errors from which parameters of two specimens differ: one pair in a hundred does so by chance.
 const DIFFERS: f64 = 2.58;
 
 /// Every calibrated number as each specimen has it, and whether they differ by more than chance.
-pub(in crate::diagnose) fn numbers(case: &Case, fit: &Fit) -> BTreeMap<String, SpecimenNumber> {
+pub(in crate::diagnose) fn parameters(case: &Case, fit: &Fit) -> BTreeMap<String, SpecimenNumber> {
     let mut found: BTreeMap<String, SpecimenNumber> = BTreeMap::new();
     for (i, p) in case.parameters.iter().enumerate() {
         let Some(specimen) = &p.specimen else { continue };
@@ -28,19 +28,19 @@ pub(in crate::diagnose) fn numbers(case: &Case, fit: &Fit) -> BTreeMap<String, S
 }
 
 /// What is said of them.
-pub(in crate::diagnose) fn words(case: &Case, numbers: &BTreeMap<String, SpecimenNumber>) -> Option<String> {
+pub(in crate::diagnose) fn words(case: &Case, parameters: &BTreeMap<String, SpecimenNumber>) -> Option<String> {
     let names = case.specimens();
     if names.is_empty() {
         return None;
     }
     let value = |(name, e): (&String, &Estimate)| format!("{:.3e} ({name})", e.value);
-    let differ: Vec<String> = numbers
+    let differ: Vec<String> = parameters
         .iter()
         .filter(|(_, n)| n.differs)
         .map(|(key, n)| format!("{key}: {}", n.values.iter().map(value).collect::<Vec<_>>().join(", ")))
         .collect();
     let differences = match differ.is_empty() {
-        true => "no calibrated number differs between them by more than chance".to_owned(),
+        true => "no calibrated parameter differs between them by more than chance".to_owned(),
         false => format!("what differs between them is {}", differ.join("; ")),
     };
     Some(format!("{} specimens ({}), one law for all: {differences}", names.len(), names.join(", ")))

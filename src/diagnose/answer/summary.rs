@@ -82,7 +82,7 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
     if let [only] = &d.effects[..]
         && let Some(number) = mere_number(only)
     {
-        return format!("A number of the scene is another on the rig: {number} explains it. {closed}");
+        return format!("One parameter of the scene differs on the rig: {number} explains the misfit. {closed}");
     }
     if !d.withheld.is_empty() {
         return withheld(&d.withheld);
@@ -98,11 +98,11 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
     };
     match (known.as_str(), law.as_str()) {
         ("", "") => "No known effect explains any of it.".to_owned(),
-        (known, "") => format!("The nearest known effect, {known}, leaves a part of it. {closed}"),
+        (known, "") => format!("The closest known effect, {known}, explains only part of the misfit. {closed}"),
         ("", law) => format!("No known effect explains it as well as a law does: {law}{as_well}. {closed}"),
         (known, law) => {
             format!(
-                "The nearest known effect, {known}, leaves a part of it; a law takes more: {law}{as_well}. {closed}"
+                "The closest known effect, {known}, explains part of the misfit; a law beside it explains more: {law}{as_well}. {closed}"
             )
         }
     }
@@ -113,13 +113,13 @@ fn withheld(effects: &[NamedEffect]) -> String {
     let one = |e: &NamedEffect| if e.hypothetical { law(e) } else { format!("{} in {}", e.name, e.element) };
     let all: Vec<String> = effects.iter().map(one).collect();
     format!(
-        "It is located, not modelled: {} explains the runs that it was fitted to, and does not stand in others (see warnings), so \
-         scene.toml is the calibrated scene.",
+        "Located, not modelled: {} explains the runs it was fitted to but not the others (see warnings), so scene.toml is the \
+         calibrated scene.",
         all.join(" with ")
     )
 }
 
-/// A law with where it acts and its numbers: `muscle.friction times (1 + ...)`.
+/// A law with where it acts and its parameters: `muscle.friction times (1 + ...)`.
 fn law(effect: &NamedEffect) -> String {
     let (law, memory) = effect.law_and_memory();
     let own = match effect.acts.as_str() {

@@ -10,7 +10,7 @@ pub enum Step {
     Pressure,
     /// The calibration stays as the scene has it: nothing is refitted before or beside the effects.
     Refit,
-    /// An effect need not foretell runs that it was not fitted to, held-out ones included.
+    /// An effect need not predict runs that it was not fitted to, held-out ones included.
     CrossValidation,
     /// Something of the catalogue is always the answer: nothing is unknown.
     OpenSet,

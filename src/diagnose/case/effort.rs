@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Samples that the fast model has simulated.
+/// Samples that the reduced-order model has simulated.
 #[derive(Debug, Default)]
 pub struct Effort(Arc<AtomicU64>);
 

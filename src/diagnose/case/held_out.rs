@@ -4,7 +4,7 @@ use super::{Case, CaseRun};
 
 impl Case {
     /// Holds the last run back unless the recordings say which; of a single run its last third is cut off, and of every run where
-    /// nothing drives them: then none foretells another.
+    /// nothing drives them: then none predicts another.
     pub(super) fn seal(&mut self) {
         if self.runs.iter().any(|r| r.is_held_out) && self.runs.iter().any(|r| !r.is_held_out) {
             return;

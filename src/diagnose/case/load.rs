@@ -7,7 +7,7 @@ use crate::effects::Effect;
 use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs, own_start};
 use crate::recording::{Recording, RecordingSet, Role, RunUse, strays};
 use crate::scene::{CalibrateSpec, Override, Scene};
-use crate::system::{Twin, TwinRun};
+use crate::system::{Rom, RomRun};
 
 use super::decimate::thin;
 use super::instants::{at_times, with_points_of};
@@ -23,7 +23,7 @@ impl Case {
     /// Reads the folders; all must be of one scene and have the same channels.
     ///
     /// # Errors
-    /// Unreadable or contradictory recordings, a scene without fast model.
+    /// Unreadable or contradictory recordings, a scene without reduced-order model.
     pub fn load(folders: &[&Path], scene: Option<&str>, overrides: &[Override]) -> Result<Self, DiagnoseError> {
         let sets = folders.iter().map(|f| RecordingSet::load(f)).collect::<Result<Vec<_>, _>>()?;
         Self::of_sets(&sets, folders, scene, overrides)
@@ -45,10 +45,10 @@ impl Case {
         let scene_name = scene.map_or_else(|| first.scene_path(), str::to_owned);
         let base = Scene::load(&scene_name, overrides)?;
         check_channels(first, &base)?;
-        let twin = Twin::new(&base)?;
+        let rom = Rom::new(&base)?;
         let mut case = Self {
-            channels: channels(first, &base, &twin),
-            parameters: parameters(&base, &twin)?,
+            channels: channels(first, &base, &rom),
+            parameters: parameters(&base, &rom)?,
             known_effects: known_effects(&base),
             scene: base,
             folders: folders.iter().map(|f| f.display().to_string()).collect(),
@@ -112,16 +112,16 @@ impl Case {
             None => vec![f64::NAN; times_s.len()],
         });
         let measured = self.without_beginning(measured.collect(), &times_s);
-        let mut drive = TwinRun { times_s, inputs, plan: None };
+        let mut drive = RomRun { times_s, inputs, plan: None };
         let lead_in = self.lead_in(&mut drive);
         self.runs.push(CaseRun {
             file: run.run.file.clone(),
             measured,
             specimen: run.run.specimen.clone(),
             is_held_out: run.run.run_use == Some(RunUse::Holdout),
-            unheld: Vec::new(),
+            slack: Vec::new(),
             open_part: None,
-            twin: Arc::new(Twin::new(&scene)?),
+            rom: Arc::new(Rom::new(&scene)?),
             scene: Arc::new(scene),
             drive,
             lead_in,
@@ -139,7 +139,7 @@ impl Case {
     }
 
     /// Lets a run that does not begin at rest come to where it begins. Returns how many instants.
-    fn lead_in(&self, drive: &mut TwinRun) -> usize {
+    fn lead_in(&self, drive: &mut RomRun) -> usize {
         let first: Vec<f64> = drive.inputs.iter().filter_map(|x| x.first()).copied().collect();
         let Some(way) = LeadIn::before(&self.scene, drive.times_s[0], &first) else { return 0 };
         for input in &mut drive.inputs {
@@ -246,8 +246,8 @@ fn columns(set: &RecordingSet) -> Vec<&str> {
     set.channels.iter().map(|c| c.column.as_str()).collect()
 }
 
-fn channels(set: &RecordingSet, scene: &Scene, twin: &Twin) -> Vec<CaseChannel> {
-    let outputs: Vec<&str> = twin.columns().collect();
+fn channels(set: &RecordingSet, scene: &Scene, rom: &Rom) -> Vec<CaseChannel> {
+    let outputs: Vec<&str> = rom.columns().collect();
     let found = set.of_role(Role::Output).filter_map(|c| {
         let output = outputs.iter().position(|o| *o == c.column)?;
         Some(CaseChannel {
@@ -260,9 +260,9 @@ fn channels(set: &RecordingSet, scene: &Scene, twin: &Twin) -> Vec<CaseChannel> 
     found.collect()
 }
 
-fn parameters(scene: &Scene, twin: &Twin) -> Result<Vec<CaseParameter>, DiagnoseError> {
+fn parameters(scene: &Scene, rom: &Rom) -> Result<Vec<CaseParameter>, DiagnoseError> {
     let parameter = |spec: &CalibrateSpec| {
-        let parameter = twin
+        let parameter = rom
             .parameter(&spec.key)
             .ok_or_else(|| DiagnoseError::Parameter { file: scene.path.clone(), key: spec.key.clone() })?;
         let start = scene.number(&spec.key).unwrap_or((spec.min + spec.max) / 2.0);

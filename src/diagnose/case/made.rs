@@ -6,7 +6,7 @@ use super::Case;
 use crate::scene::{Override, Scene};
 use crate::system::{Schedule, Simulation, record};
 
-/// 20 s of a scene's stock programme, with some numbers changed and without noise, as a case of the stock scene.
+/// 20 s of a scene's stock programme, with some parameters changed and without noise, as a case of the stock scene.
 pub(in crate::diagnose) fn recorded(scene: &str, set: &[Override], inputs: &[&str], outputs: &[&str]) -> Case {
     recorded_for(scene, [set, &[]], inputs, outputs)
 }

@@ -1,4 +1,4 @@
-//! The recordings of one rig beside the fast model of their scene, read, decimated, one run held out; and their noise.
+//! The recordings of one rig beside the reduced-order model of their scene, read, decimated, one run held out; and their noise.
 //!
 //! May import `error`.
 
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use crate::effects::Effect;
 use crate::scene::Scene;
-use crate::system::{Twin, TwinParameter, TwinRun, TwinSetting};
+use crate::system::{Rom, RomParameter, RomRun, RomSetting};
 
 pub use ablation::Step;
 pub use effort::Effort;
@@ -31,7 +31,7 @@ pub use noise::Noise;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseChannel {
     pub column: String,
-    /// Its place among the outputs of the fast model.
+    /// Its place among the outputs of the reduced-order model.
     pub output: usize,
     /// Standard deviation of its noise as stated, in its unit.
     pub stated_sd: Option<f64>,
@@ -43,16 +43,16 @@ pub struct CaseChannel {
 #[derive(Clone, Debug)]
 pub struct CaseRun {
     pub file: String,
-    /// The scene under this run's conditions, and its fast model.
+    /// The scene under this run's conditions, and its reduced-order model.
     pub scene: Arc<Scene>,
-    pub twin: Arc<Twin>,
-    pub drive: TwinRun,
+    pub rom: Arc<Rom>,
+    pub drive: RomRun,
     /// Instants at the start of `drive` that were not recorded: the way from rest to where the recording begins.
     pub lead_in: usize,
     /// Of each channel, its values at the recorded times; missing ones are NaN.
     pub measured: Vec<Vec<f64>>,
     /// Of each channel, the samples and values that were left out because next to nothing held the joint that they show.
-    pub unheld: Vec<Vec<(usize, f64)>>,
+    pub slack: Vec<Vec<(usize, f64)>>,
     /// Which sample, or set-up, it was recorded on, if that is stated.
     pub specimen: Option<String>,
     pub is_held_out: bool,
@@ -105,7 +105,7 @@ impl Direction {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseParameter {
     pub key: String,
-    pub parameter: TwinParameter,
+    pub parameter: RomParameter,
     /// Where several were recorded: the specimen whose number it is.
     pub specimen: Option<String>,
     pub min: f64,
@@ -138,29 +138,33 @@ pub struct Case {
 }
 
 impl Case {
-    /// Plans the fast model's steps at a setting for each run, so that what they leave out vanishes in the noise.
-    /// `None` when the fast model diverges.
-    pub fn plan_steps(&mut self, settings: &[TwinSetting<f64>], noise: &[Noise]) -> Option<()> {
+    /// Plans the reduced-order model's steps at a setting for each run, so that what they leave out vanishes in the noise.
+    /// `None` when the reduced-order model diverges.
+    pub fn plan_steps(&mut self, settings: &[RomSetting<f64>], noise: &[Noise]) -> Option<()> {
         let count = self.scene.file.output.len();
         let mut tolerance = vec![None; count];
         for (channel, noise) in self.channels.iter().zip(noise) {
             tolerance[channel.output] = Some(STEP_TOLERANCE * noise.sd);
         }
-        let plan = |(run, setting): (&mut CaseRun, &TwinSetting<f64>)| -> Option<()> {
-            run.drive.plan = Some(run.twin.plan(&run.drive, setting, &tolerance)?);
+        let plan = |(run, setting): (&mut CaseRun, &RomSetting<f64>)| -> Option<()> {
+            run.drive.plan = Some(run.rom.plan(&run.drive, setting, &tolerance)?);
             Some(())
         };
         self.runs.par_iter_mut().zip(settings).map(plan).collect()
     }
 
-    /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the fast model diverges.
-    pub fn leave_out_unheld(&mut self, settings: &[TwinSetting<f64>]) -> Option<()> {
-        let unheld: Vec<_> =
-            self.runs.par_iter().zip(settings).map(|(r, s)| r.twin.unheld(&r.drive, s)).collect::<Option<Vec<_>>>()?;
-        for (run, unheld) in self.runs.iter_mut().zip(&unheld) {
-            run.unheld.resize(self.channels.len(), Vec::new());
+    /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the reduced-order model diverges.
+    pub fn leave_out_slack(&mut self, settings: &[RomSetting<f64>]) -> Option<()> {
+        let slack: Vec<_> = self
+            .runs
+            .par_iter()
+            .zip(settings)
+            .map(|(r, s)| r.rom.slack_joints(&r.drive, s))
+            .collect::<Option<Vec<_>>>()?;
+        for (run, slack) in self.runs.iter_mut().zip(&slack) {
+            run.slack.resize(self.channels.len(), Vec::new());
             for (c, channel) in self.channels.iter().enumerate() {
-                run.unheld[c].extend(leave_out(&mut run.measured[c], &unheld[channel.output][run.lead_in..]));
+                run.slack[c].extend(leave_out(&mut run.measured[c], &slack[channel.output][run.lead_in..]));
             }
         }
         Some(())
@@ -168,14 +172,14 @@ impl Case {
 
     /// Whether joints were held by next to nothing somewhere.
     pub fn goes_slack(&self) -> bool {
-        self.runs.iter().any(|r| r.unheld.iter().any(|samples| !samples.is_empty()))
+        self.runs.iter().any(|r| r.slack.iter().any(|samples| !samples.is_empty()))
     }
 
     /// What was done with the recordings, for whoever reads the answer.
     pub fn notes(&self) -> Vec<String> {
         let counted = |r: &CaseRun| -> Vec<String> {
-            let left_out = self.channels.iter().zip(&r.unheld).filter(|(_, samples)| !samples.is_empty());
-            left_out.map(|(c, samples)| unheld_note(&r.file, &c.column, samples.len())).collect()
+            let left_out = self.channels.iter().zip(&r.slack).filter(|(_, samples)| !samples.is_empty());
+            left_out.map(|(c, samples)| slack_note(&r.file, &c.column, samples.len())).collect()
         };
         self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
     }
@@ -191,7 +195,7 @@ impl Case {
     }
 }
 
-fn unheld_note(file: &str, column: &str, count: usize) -> String {
+fn slack_note(file: &str, column: &str, count: usize) -> String {
     format!(
         "{file}: {count} samples of {column} are left out: the cables hardly hold the joint there, and the smallest force decides \
          where it lies"
@@ -206,14 +210,14 @@ pub enum RunSet {
     All,
 }
 
-/// Samples around an unheld one that are left out with it: cables go taut for moments while it swings.
-const AROUND_UNHELD: usize = 10;
+/// Samples around a slack one that are left out with it: cables go taut for moments while it swings.
+const AROUND_SLACK: usize = 10;
 
-/// Blanks what is unheld and its neighbours, and gives the values that were there. Nothing if it would be most of them.
-fn leave_out(measured: &mut [f64], unheld: &[bool]) -> Vec<(usize, f64)> {
+/// Blanks what is slack and its neighbours, and gives the values that were there. Nothing if it would be most of them.
+fn leave_out(measured: &mut [f64], slack: &[bool]) -> Vec<(usize, f64)> {
     let near = |i: usize| {
-        let (from, to) = (i.saturating_sub(AROUND_UNHELD), (i + AROUND_UNHELD + 1).min(unheld.len()));
-        unheld[from..to].contains(&true)
+        let (from, to) = (i.saturating_sub(AROUND_SLACK), (i + AROUND_SLACK + 1).min(slack.len()));
+        slack[from..to].contains(&true)
     };
     let blank: Vec<usize> = (0..measured.len()).filter(|&i| measured[i].is_finite() && near(i)).collect();
     let there = measured.iter().filter(|m| m.is_finite()).count();

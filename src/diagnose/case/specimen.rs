@@ -1,8 +1,8 @@
-//! Specimens: runs of several samples, or of set-ups of several days, in one diagnosis. The calibrated numbers are each specimen's
+//! Specimens: runs of several samples, or of set-ups of several days, in one diagnosis. The calibrated parameters are each specimen's
 //! own; what is missing from the scene is one law for all.
 
 use crate::diagnose::error::DiagnoseError;
-use crate::system::TwinParameter;
+use crate::system::RomParameter;
 
 use super::{Case, CaseParameter, CaseRun};
 
@@ -28,7 +28,7 @@ impl Case {
         if names.len() > 1 { names } else { Vec::new() }
     }
 
-    /// Gives every specimen that an open run shows calibrated numbers of its own. The others have the mean of those.
+    /// Gives every specimen that an open run shows calibrated parameters of its own. The others have the mean of those.
     pub(super) fn untie(&mut self) {
         let is_open =
             |name: &&str| self.runs.iter().any(|run| !run.is_held_out && run.specimen.as_deref() == Some(*name));
@@ -73,8 +73,8 @@ impl Case {
         self.specimens().into_iter().any(|name| !has_open(name))
     }
 
-    /// The calibrated numbers of a run's specimen out of those of all: each by its place in `x`, or the mean of several.
-    pub(in crate::diagnose) fn numbers_of(&self, specimen: Option<&str>, x: &[f64]) -> Vec<(&CaseParameter, f64)> {
+    /// The calibrated parameters of a run's specimen out of those of all: each by its place in `x`, or the mean of several.
+    pub(in crate::diagnose) fn parameters_of(&self, specimen: Option<&str>, x: &[f64]) -> Vec<(&CaseParameter, f64)> {
         let is_own = |p: &CaseParameter| p.specimen.is_none() || p.specimen.as_deref() == specimen;
         let own: Vec<(&CaseParameter, f64)> =
             self.parameters.iter().zip(x).filter(|(p, _)| is_own(p)).map(|(p, v)| (p, *v)).collect();
@@ -93,10 +93,10 @@ impl Case {
         means
     }
 
-    /// The same as the fast model takes it.
-    pub(in crate::diagnose) fn twin_parameters(&self, run: &CaseRun, x: &[f64]) -> Vec<(TwinParameter, f64)> {
-        let numbers = self.numbers_of(run.specimen.as_deref(), x);
-        numbers.into_iter().map(|(p, value)| (p.parameter.clone(), value)).collect()
+    /// The same as the reduced-order model takes it.
+    pub(in crate::diagnose) fn rom_parameters(&self, run: &CaseRun, x: &[f64]) -> Vec<(RomParameter, f64)> {
+        let parameters = self.parameters_of(run.specimen.as_deref(), x);
+        parameters.into_iter().map(|(p, value)| (p.parameter.clone(), value)).collect()
     }
 }
 
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(case.parameters.len(), 2 * tied);
         assert_eq!(case.parameters[1].title(), format!("{} (b)", case.parameters[0].key));
         let x: Vec<f64> = (0..2 * tied).map(|i| i as f64).collect();
-        let of = |name: &str| case.numbers_of(Some(name), &x).into_iter().map(|(_, v)| v).collect::<Vec<_>>();
+        let of = |name: &str| case.parameters_of(Some(name), &x).into_iter().map(|(_, v)| v).collect::<Vec<_>>();
         let even: Vec<f64> = (0..tied).map(|i| 2.0 * i as f64).collect();
         assert_eq!(of("a"), even);
         assert_eq!(of("b"), even.iter().map(|x| x + 1.0).collect::<Vec<_>>());

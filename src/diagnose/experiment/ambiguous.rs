@@ -152,8 +152,8 @@ mod tests {
             let entry = find(id).expect("of the catalogue");
             let model = Model::baseline().plus(&Placed { entry, element, channel: None }, values);
             let x = whole.start(&model, None);
-            let numbers = x.len();
-            Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(numbers, numbers), on_bound: Vec::new() }
+            let parameters = x.len();
+            Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(parameters, parameters), on_bound: Vec::new() }
         };
         let leak = fit("leak", Element::of(ElementKind::Line, 0, 1), &[1e-17]);
         let creep = fit("viscoelasticity", Element::of(ElementKind::Muscle, 0, 1), &[4.0, 2.0, 0.0]);

@@ -8,7 +8,7 @@ use crate::diagnose::case::{Case, CaseRun, Noise};
 use crate::diagnose::diagnosis::NextExperiment;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::recording::{Recording, RecordingError};
-use crate::system::TwinRun;
+use crate::system::RomRun;
 
 /// Length of a proposed run, s.
 pub(super) const DURATION_S: f64 = 60.0;
@@ -191,7 +191,7 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
     for input in &case.scene.file.input {
         series.push(inputs.si(&input.channel)?);
     }
-    let drive = TwinRun { times_s: inputs.time_s().to_vec(), inputs: series, plan: None };
+    let drive = RomRun { times_s: inputs.time_s().to_vec(), inputs: series, plan: None };
     let mut alone = case.clone();
     let blank = vec![vec![f64::NAN; drive.times_s.len()]; case.channels.len()];
     alone.runs.truncate(1);

@@ -61,7 +61,7 @@ impl<'a> Question<'a> {
             rivals: open.rivals.clone(),
             counted: (0..open.rivals.len()).collect(),
             unit: open.unit,
-            known: Some(Digest::of(&rows.slopes, &apart)),
+            known: Some(Digest::of(&rows.jacobian, &apart)),
             case,
             noise,
             recorded: whole.case.channels.len(),
@@ -89,8 +89,8 @@ impl<'a> Question<'a> {
     pub fn foresee(&self, run: &CaseRun) -> Option<Foreseen> {
         let problem = Problem { case: &self.case, runs: Vec::new(), noise: &self.noise };
         let (model, x) = (&self.best.model, &self.best.x);
-        let numbers = problem.numbers(model);
-        let response = respond(&self.case, run, model, x, &probes(&numbers, x, 0..x.len(), Sides::One))?;
+        let parameters = problem.parameters(model);
+        let response = respond(&self.case, run, model, x, &probes(&parameters, x, 0..x.len(), Sides::One))?;
         let measuring = |values: Vec<Vec<f64>>| CaseRun { measured: values, ..run.clone() };
         let apart = |rival: &&Fit| -> Option<Vec<Vec<f64>>> {
             let there = measuring(simulate(&self.case, run, &rival.model, &rival.x)?);
@@ -99,22 +99,22 @@ impl<'a> Question<'a> {
         let apart = self.rivals.iter().map(apart).collect::<Option<Vec<_>>>()?;
         let shown = measuring(response.values.clone());
         let channel = |c: usize| {
-            let slopes: Vec<DVector<f64>> = numbers
+            let sensitivities: Vec<DVector<f64>> = parameters
                 .iter()
-                .zip(&response.slopes)
+                .zip(&response.sensitivities)
                 .map(|(n, slope)| {
-                    DVector::from_iterator(slope[c].len(), problem.weighted_slope(&shown, c, &slope[c], n))
+                    DVector::from_iterator(slope[c].len(), problem.weighted_sensitivity(&shown, c, &slope[c], n))
                 })
                 .collect();
             let weighted = |rival: &Vec<Vec<f64>>| DVector::from_column_slice(&rival[c]) / self.noise[c].scale();
-            Digest::of(&DMatrix::from_columns(&slopes), &apart.iter().map(weighted).collect::<Vec<_>>())
+            Digest::of(&DMatrix::from_columns(&sensitivities), &apart.iter().map(weighted).collect::<Vec<_>>())
         };
         let recorded: Vec<Digest> = (0..self.recorded).map(channel).collect();
         let sensors = (self.recorded..self.case.channels.len()).map(channel).collect();
         Some(Foreseen { recorded: Digest::stack(&recorded.iter().collect::<Vec<_>>()), sensors })
     }
 
-    /// Distance in standard errors from each rival, after the best's numbers have been fitted to that rival on all there would
+    /// Distance in standard errors from each rival, after the best's parameters have been fitted to that rival on all there would
     /// then be. What the best's law leaves grows with the run, and with it what counts as a difference: more of the same
     /// settles nothing.
     pub fn separations(&self, foreseen: &Foreseen, more: More) -> Vec<f64> {
@@ -153,22 +153,22 @@ fn with_every_sensor(problem: &Problem) -> (Case, Vec<Noise>) {
     (case, noise)
 }
 
-/// Many rows in few: slopes to the best's numbers, then the difference of each rival. A rotation of the rows leaves all lengths
+/// Many rows in few: sensitivities to the best's parameters, then the difference of each rival. A rotation of the rows leaves all lengths
 /// and angles as they are; this one leaves no more rows than columns.
 #[derive(Clone)]
 struct Digest {
     rows: DMatrix<f64>,
-    numbers: usize,
+    parameters: usize,
     /// Rows that there were.
     samples: usize,
 }
 
 impl Digest {
-    fn of(slopes: &DMatrix<f64>, apart: &[DVector<f64>]) -> Self {
-        let mut rows = DMatrix::zeros(slopes.nrows(), slopes.ncols() + apart.len());
-        rows.columns_mut(0, slopes.ncols()).copy_from(slopes);
-        apart.iter().enumerate().for_each(|(i, apart)| rows.set_column(slopes.ncols() + i, apart));
-        Self { rows: rows.qr().unpack_r(), numbers: slopes.ncols(), samples: slopes.nrows() }
+    fn of(sensitivities: &DMatrix<f64>, apart: &[DVector<f64>]) -> Self {
+        let mut rows = DMatrix::zeros(sensitivities.nrows(), sensitivities.ncols() + apart.len());
+        rows.columns_mut(0, sensitivities.ncols()).copy_from(sensitivities);
+        apart.iter().enumerate().for_each(|(i, apart)| rows.set_column(sensitivities.ncols() + i, apart));
+        Self { rows: rows.qr().unpack_r(), parameters: sensitivities.ncols(), samples: sensitivities.nrows() }
     }
 
     fn stack(parts: &[&Self]) -> Self {
@@ -180,15 +180,15 @@ impl Digest {
             rows.rows_mut(at, part.rows.nrows()).copy_from(&part.rows);
             at += part.rows.nrows();
         }
-        let numbers = parts.first().map_or(0, |p| p.numbers);
-        Self { rows, numbers, samples: parts.iter().map(|p| p.samples).sum() }
+        let parameters = parts.first().map_or(0, |p| p.parameters);
+        Self { rows, parameters, samples: parts.iter().map(|p| p.samples).sum() }
     }
 
-    /// Length of each difference less what the slopes can make of it.
+    /// Length of each difference less what the sensitivities can make of it.
     fn beyond(&self) -> Vec<f64> {
-        let basis = directions(&self.rows.columns(0, self.numbers).into_owned());
+        let basis = directions(&self.rows.columns(0, self.parameters).into_owned());
         let left = |r: DVectorView<f64>| (r - &basis * basis.tr_mul(&r)).norm();
-        (self.numbers..self.rows.ncols()).map(|i| left(self.rows.column(i))).collect()
+        (self.parameters..self.rows.ncols()).map(|i| left(self.rows.column(i))).collect()
     }
 }
 
@@ -216,9 +216,9 @@ fn directions(columns: &DMatrix<f64>) -> DMatrix<f64> {
 mod tests {
     use super::*;
 
-    fn digest(slopes: &[[f64; 2]], apart: &[f64]) -> Digest {
-        let slopes = DMatrix::from_fn(slopes.len(), 2, |i, j| slopes[i][j]);
-        Digest::of(&slopes, &[DVector::from_row_slice(apart), DVector::from_row_slice(apart) * 2.0])
+    fn digest(sensitivities: &[[f64; 2]], apart: &[f64]) -> Digest {
+        let sensitivities = DMatrix::from_fn(sensitivities.len(), 2, |i, j| sensitivities[i][j]);
+        Digest::of(&sensitivities, &[DVector::from_row_slice(apart), DVector::from_row_slice(apart) * 2.0])
     }
 
     #[test]
@@ -229,13 +229,13 @@ mod tests {
         assert!((beyond[0] - 5.0).abs() < 1e-12 && (beyond[1] - 10.0).abs() < 1e-12, "{beyond:?}");
     }
 
-    /// Numbers are fitted to all parts together: what one part alone could imitate, two cannot.
+    /// Parameters are fitted to all parts together: what one part alone could imitate, two cannot.
     #[test]
     fn parts_below_each_other_are_what_the_whole_is() {
-        let slopes = [[1.0, 0.3], [0.5, -2.0], [0.1, 1e-4], [2.0, 0.0], [-1.0, 3.0], [0.2, 0.7]];
+        let sensitivities = [[1.0, 0.3], [0.5, -2.0], [0.1, 1e-4], [2.0, 0.0], [-1.0, 3.0], [0.2, 0.7]];
         let apart = [1.0, -0.4, 2.0, 0.3, 0.1, -1.5];
-        let whole = digest(&slopes, &apart).beyond();
-        let [a, b] = [digest(&slopes[..2], &apart[..2]), digest(&slopes[2..], &apart[2..])];
+        let whole = digest(&sensitivities, &apart).beyond();
+        let [a, b] = [digest(&sensitivities[..2], &apart[..2]), digest(&sensitivities[2..], &apart[2..])];
         let parts = Digest::stack(&[&a, &b]);
         assert_eq!(parts.samples, 6);
         for (whole, parts) in whole.iter().zip(parts.beyond()) {

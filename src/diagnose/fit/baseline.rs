@@ -35,7 +35,7 @@ pub(in crate::diagnose) fn baseline(case: &mut Case) -> Result<Baseline, Diagnos
     let residuals = problem(case, &noise).residuals(&fit.model, &fit.x).ok_or_else(diverges)?;
     noise = estimate(case, &residuals);
     plan_steps(case, &noise, Some(&fit.x)).ok_or_else(diverges)?;
-    case.leave_out_unheld(&fit.model.settings(case, &fit.x)).ok_or_else(diverges)?;
+    case.leave_out_slack(&fit.model.settings(case, &fit.x)).ok_or_else(diverges)?;
     let fit = self::fit(case, &noise, Some(&fit.x))?;
     Ok(Baseline { fit, noise, warnings })
 }

@@ -3,16 +3,16 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::model::{Model, Sides};
-use super::normal::{Normal, Number, Rows, prior_cost};
+use super::normal::{FitParameter, Normal, Rows, prior_cost};
 use super::problem::{Fit, Problem};
 
-/// Stop when an iteration promises less than this many units of chi²: enough to choose by, and for the numbers of the answer, which
+/// Stop when an iteration promises less than this many units of chi²: enough to choose by, and for the parameters of the answer, which
 /// otherwise lie up to a standard error from where the data would have them.
 const GAIN: f64 = 0.5;
 const LAST_GAIN: f64 = 0.01;
 /// Chi² by which a fit from elsewhere is another: less is where descents stop.
 const LOWER: f64 = 5.0;
-/// Steps on mended slopes, and how often slopes are taken anew.
+/// Steps on an updated Jacobian, and how often it is evaluated anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
 const TRIES: usize = 8;
@@ -21,7 +21,7 @@ const PLAYED_GAIN: f64 = 0.05;
 const PLAYED_ITERATIONS: usize = 4;
 const PLAYED_TRIES: usize = 3;
 const PLAYED_REFRESHES: usize = 4;
-/// The first steps are undamped: the laws are nearly linear in their numbers, and damping crawls along narrow valleys.
+/// The first steps are undamped: the laws are nearly linear in their parameters, and damping crawls along narrow valleys.
 const LEAST_DAMPING: f64 = 1e-10;
 
 impl Problem<'_> {
@@ -44,11 +44,11 @@ impl Problem<'_> {
     }
 
     fn fit_until(&self, gain: f64, model: &Model, start: &[f64]) -> Option<Fit> {
-        let numbers = self.numbers(model);
-        let x = within(start, &numbers);
+        let parameters = self.parameters(model);
+        let x = within(start, &parameters);
         let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
         let residual = |x: &[f64]| self.weighted_residual(model, x);
-        let mut descent = Descent::new(self, model, &numbers, x, rows, &residual);
+        let mut descent = Descent::new(self, model, &parameters, x, rows, &residual);
         descent.gain = gain;
         descent.run();
         for _ in 0..REFRESHES {
@@ -63,15 +63,15 @@ impl Problem<'_> {
         Some(descent.finish())
     }
 
-    /// Fits a model from `start` with slopes known from nearby, which are mended on the way: quick, and good enough to
+    /// Fits a model from `start` with a Jacobian known from nearby, updated on the way (Broyden): quick, and good enough to
     /// tell which models are worth [`Problem::fit`].
-    pub fn fit_roughly(&self, model: &Model, start: &[f64], slopes: DMatrix<f64>) -> Option<Fit> {
-        let x = within(start, &self.numbers(model));
-        let rows = Rows { residual: self.weighted_residual(model, &x)?, slopes };
+    pub fn fit_roughly(&self, model: &Model, start: &[f64], jacobian: DMatrix<f64>) -> Option<Fit> {
+        let x = within(start, &self.parameters(model));
+        let rows = Rows { residual: self.weighted_residual(model, &x)?, jacobian };
         Some(self.end(self.go_on(self.begin(model, x, rows), ITERATIONS)))
     }
 
-    /// Begins [`Problem::fit_roughly`] at numbers within their ranges, where residuals and slopes are known.
+    /// Begins [`Problem::fit_roughly`] at parameters within their ranges, where residuals and Jacobian are known.
     pub fn begin(&self, model: &Model, x: Vec<f64>, rows: Rows) -> Underway {
         Underway { model: model.clone(), x, rows, damping: LEAST_DAMPING }
     }
@@ -79,9 +79,9 @@ impl Problem<'_> {
     /// Goes on for so many steps at most.
     pub fn go_on(&self, underway: Underway, iterations: usize) -> Underway {
         let Underway { model, x, rows, damping } = underway;
-        let numbers = self.numbers(&model);
+        let parameters = self.parameters(&model);
         let residual = |x: &[f64]| self.weighted_residual(&model, x);
-        let mut descent = Descent::new(self, &model, &numbers, x, rows, &residual);
+        let mut descent = Descent::new(self, &model, &parameters, x, rows, &residual);
         (descent.damping, descent.iterations) = (damping, iterations);
         descent.run();
         let Descent { x, rows, damping, .. } = descent;
@@ -91,18 +91,18 @@ impl Problem<'_> {
     /// The fit as it stands.
     pub fn end(&self, underway: Underway) -> Fit {
         let Underway { model, x, rows, .. } = underway;
-        let numbers = self.numbers(&model);
+        let parameters = self.parameters(&model);
         let residual = |x: &[f64]| self.weighted_residual(&model, x);
-        Descent::new(self, &model, &numbers, x, rows, &residual).finish()
+        Descent::new(self, &model, &parameters, x, rows, &residual).finish()
     }
 
-    /// Goes on from `start` with something else than the fast model playing: `played` gives the residuals in units of the noise, the fast
-    /// model the slopes. Every play may cost seconds, so there are few. With it the step that the slopes still ask for and that
-    /// does not come nearer, in the numbers' units; `None` where nothing can be played.
+    /// Goes on from `start` with something else than the reduced-order model playing: `played` gives the residuals in units of the noise, the fast
+    /// model the Jacobian. Every play may cost seconds, so there are few. With it the step that the Jacobian still asks for and that
+    /// does not come nearer, in the parameters' units; `None` where nothing can be played.
     pub fn fit_played(&self, model: &Model, start: &[f64], played: &Play) -> Option<(Fit, Vec<f64>)> {
-        let numbers = self.numbers(model);
+        let parameters = self.parameters(model);
         let rows = Rows { residual: played(start)?, ..self.rows(model, start, 0..start.len(), Sides::Both)? };
-        let mut descent = Descent::new(self, model, &numbers, start.to_vec(), rows, played);
+        let mut descent = Descent::new(self, model, &parameters, start.to_vec(), rows, played);
         descent.gain = PLAYED_GAIN;
         descent.iterations = PLAYED_ITERATIONS;
         descent.tries = PLAYED_TRIES;
@@ -112,17 +112,17 @@ impl Problem<'_> {
             if cost - descent.normal().cost < PLAYED_GAIN * descent.unit() {
                 break;
             }
-            descent.rows.slopes = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?.slopes;
+            descent.rows.jacobian = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?.jacobian;
             descent.damping = LEAST_DAMPING;
         }
-        let refused = descent.normal().bounded_step(&numbers, &descent.x, 0.0)?;
-        let refused = refused.iter().zip(&numbers).map(|(step, n)| step * n.scale).collect();
+        let refused = descent.normal().bounded_step(&parameters, &descent.x, 0.0)?;
+        let refused = refused.iter().zip(&parameters).map(|(step, n)| step * n.scale).collect();
         Some((descent.finish(), refused))
     }
 }
 
-fn within(x: &[f64], numbers: &[Number]) -> Vec<f64> {
-    x.iter().zip(numbers).map(|(x, n)| x.clamp(n.min, n.max)).collect()
+fn within(x: &[f64], parameters: &[FitParameter]) -> Vec<f64> {
+    x.iter().zip(parameters).map(|(x, n)| x.clamp(n.min, n.max)).collect()
 }
 
 /// A rough fit that can be left and taken up again.
@@ -140,14 +140,14 @@ impl Underway {
     }
 }
 
-/// Residuals at some numbers, in units of the noise; none where the model diverges.
+/// Residuals at some parameters, in units of the noise; none where the model diverges.
 pub(super) type Play<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + 'a;
 
 /// A fit on its way.
 struct Descent<'a> {
     problem: &'a Problem<'a>,
     model: &'a Model,
-    numbers: &'a [Number],
+    parameters: &'a [FitParameter],
     x: Vec<f64>,
     rows: Rows,
     residual: &'a Play<'a>,
@@ -163,17 +163,17 @@ impl<'a> Descent<'a> {
     fn new(
         problem: &'a Problem<'a>,
         model: &'a Model,
-        numbers: &'a [Number],
+        parameters: &'a [FitParameter],
         x: Vec<f64>,
         rows: Rows,
         residual: &'a Play<'a>,
     ) -> Self {
         let (damping, gain, iterations, tries) = (LEAST_DAMPING, GAIN, ITERATIONS, TRIES);
-        Self { problem, model, numbers, x, rows, residual, damping, gain, iterations, tries }
+        Self { problem, model, parameters, x, rows, residual, damping, gain, iterations, tries }
     }
 
     fn normal(&self) -> Normal {
-        Normal::of(&self.rows, self.numbers, &self.x)
+        Normal::of(&self.rows, self.parameters, &self.x)
     }
 
     /// Chi² per sample, at least 1: a model that is far off need not be far off to the last digit.
@@ -181,7 +181,7 @@ impl<'a> Descent<'a> {
         (self.rows.residual.norm_squared() / self.rows.residual.len().max(1) as f64).max(1.0)
     }
 
-    /// Steps until the slopes promise no more.
+    /// Steps until the Jacobian promises no more.
     fn run(&mut self) {
         for _ in 0..self.iterations {
             let least = self.gain * self.unit();
@@ -195,17 +195,17 @@ impl<'a> Descent<'a> {
     fn improve(&mut self, least: f64) -> Option<f64> {
         let here = self.normal();
         for _ in 0..self.tries {
-            let step = here.bounded_step(self.numbers, &self.x, self.damping)?;
+            let step = here.bounded_step(self.parameters, &self.x, self.damping)?;
             if here.promised_gain(&step) < least / 3.0 {
                 return None;
             }
             let moved: Vec<f64> =
-                self.x.iter().zip(self.numbers).zip(step.iter()).map(|((x, n), s)| x + s * n.scale).collect();
-            let next = within(&moved, self.numbers);
-            let made = self.x.iter().zip(&next).zip(self.numbers).map(|((from, to), n)| (to - from) / n.scale);
+                self.x.iter().zip(self.parameters).zip(step.iter()).map(|((x, n), s)| x + s * n.scale).collect();
+            let next = within(&moved, self.parameters);
+            let made = self.x.iter().zip(&next).zip(self.parameters).map(|((from, to), n)| (to - from) / n.scale);
             let made = DVector::from_iterator(next.len(), made);
             let residual = (self.residual)(&next);
-            let there = residual.map(|r| (r.norm_squared() + prior_cost(self.numbers, &next), r));
+            let there = residual.map(|r| (r.norm_squared() + prior_cost(self.parameters, &next), r));
             if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
                 self.rows.move_on(&made, residual);
                 self.x = next;
@@ -219,12 +219,12 @@ impl<'a> Descent<'a> {
 
     fn finish(self) -> Fit {
         let here = self.normal();
-        let (numbers, x) = (self.numbers, self.x);
+        let (parameters, x) = (self.parameters, self.x);
         let on_bound = (0..self.problem.case.parameters.len())
-            .filter(|&i| (x[i] - numbers[i].min).min(numbers[i].max - x[i]) < 1e-6 * numbers[i].scale)
+            .filter(|&i| (x[i] - parameters[i].min).min(parameters[i].max - x[i]) < 1e-6 * parameters[i].scale)
             .collect();
-        let scales = DVector::from_iterator(numbers.len(), numbers.iter().map(|n| n.scale));
-        let cost = here.cost - prior_cost(numbers, &x);
+        let scales = DVector::from_iterator(parameters.len(), parameters.iter().map(|n| n.scale));
+        let cost = here.cost - prior_cost(parameters, &x);
         let covariance = here.covariance().component_mul(&(&scales * scales.transpose()));
         Fit { model: self.model.clone(), cost, covariance, x, on_bound }
     }

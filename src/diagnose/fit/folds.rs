@@ -1,4 +1,4 @@
-//! Parts of the recordings that are left out by turns: what a model foretells it has not only been fitted to.
+//! Parts of the recordings that are left out by turns: for cross-validation.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -28,10 +28,10 @@ impl Problem<'_> {
             [(0..half, half..end), (half..end, 0..half)].map(|(kept, left_out)| {
                 let mut rest = self.borrowed();
                 rest[i] = Cow::Owned(without_samples(run, left_out));
-                // What is left out is foretold with the zero that the rest decides.
-                let mut foretold = without_samples(run, kept);
-                foretold.open_part = Some(rest[i].measured.clone());
-                (self.part(rest), self.part(vec![Cow::Owned(foretold)]))
+                // What is left out is predicted with the zero that the rest decides.
+                let mut predicted = without_samples(run, kept);
+                predicted.open_part = Some(rest[i].measured.clone());
+                (self.part(rest), self.part(vec![Cow::Owned(predicted)]))
             })
         };
         (0..self.runs.len()).flat_map(one).collect()

@@ -18,17 +18,17 @@ const BLOCK_S: f64 = 2.0;
 /// `J_b`, `r_b`: derivatives and residuals in units of the noise in block `b`; `P`: the priors' weights. No interval becomes
 /// narrower: of few blocks the sum says little.
 pub(in crate::diagnose) fn widen(whole: &Problem, fit: &mut Fit) {
-    let numbers = whole.numbers(&fit.model);
+    let parameters = whole.parameters(&fit.model);
     let Some(rows) = whole.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return };
     let mut scores: Vec<DVector<f64>> = Vec::new();
     for (row, block) in blocks(whole).into_iter().enumerate() {
-        scores.resize_with(scores.len().max(block + 1), || DVector::zeros(numbers.len()));
-        scores[block].axpy(rows.residual[row], &rows.slopes.row(row).transpose(), 1.0);
+        scores.resize_with(scores.len().max(block + 1), || DVector::zeros(parameters.len()));
+        scores[block].axpy(rows.residual[row], &rows.jacobian.row(row).transpose(), 1.0);
     }
-    let meat = scores.iter().fold(DMatrix::zeros(numbers.len(), numbers.len()), |sum, g| sum + g * g.transpose());
-    let bread = Normal::of(&rows, &numbers, &fit.x).covariance();
+    let meat = scores.iter().fold(DMatrix::zeros(parameters.len(), parameters.len()), |sum, g| sum + g * g.transpose());
+    let bread = Normal::of(&rows, &parameters, &fit.x).covariance();
     let sandwich = &bread * meat * &bread;
-    for (i, n) in numbers.iter().enumerate() {
+    for (i, n) in parameters.iter().enumerate() {
         let variance = sandwich[(i, i)] * n.scale * n.scale;
         if variance.is_finite() {
             fit.covariance[(i, i)] = fit.covariance[(i, i)].max(variance);

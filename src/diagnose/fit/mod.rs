@@ -15,5 +15,5 @@ pub use problem::Fit;
 
 pub(super) use descent::Underway;
 pub(super) use model::{Probe, Sides, Variant, respond, simulate, simulate_many};
-pub(super) use normal::{Normal, Number, Rows, orthogonal};
+pub(super) use normal::{FitParameter, Normal, Rows, orthogonal};
 pub(super) use problem::{Problem, probe, probes};

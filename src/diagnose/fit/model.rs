@@ -1,11 +1,11 @@
 //! What is compared with the recordings: calibrated parameters and a set of effects.
 
 use crate::effects::{Effect, Element, Entry, EntryId};
-use crate::system::TwinSetting;
+use crate::system::RomSetting;
 
 use crate::diagnose::case::{Case, CaseRun};
 
-/// An effect on its element, without numbers.
+/// An effect on its element, without parameters.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Placed {
     pub entry: EntryId,
@@ -32,13 +32,13 @@ impl Placed {
         self.spec().name == other.spec().name && self.element == other.element && self.channel == other.channel
     }
 
-    /// With numbers.
+    /// With parameters.
     pub fn with(&self, values: &[f64]) -> Effect<f64> {
         Effect { entry: self.entry, element: self.element, channel: self.channel.clone(), values: values.to_vec() }
     }
 }
 
-/// An effect with numbers to start from; the size is the first of them.
+/// An effect with parameters to start from; the size is the first of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     pub placed: Placed,
@@ -48,13 +48,13 @@ pub struct Variant {
 /// Relaxation times of one muscle, or terms of one hypothesis, at most.
 const MOST_BRANCHES: usize = 3;
 
-/// A set of effects beside the calibration, and the numbers that are not fitted.
+/// A set of effects beside the calibration, and the parameters that are not fitted.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Model {
     pub effects: Vec<Placed>,
-    /// All numbers of each effect; those that are fitted are replaced.
+    /// All parameters of each effect; those that are fitted are replaced.
     pub values: Vec<Vec<f64>>,
-    /// Of each effect: which of its numbers are fitted.
+    /// Of each effect: which of its parameters are fitted.
     pub fitted: Vec<Vec<usize>>,
 }
 
@@ -72,7 +72,7 @@ impl Model {
         self.effects.iter().map(Placed::title).collect::<Vec<_>>().join(" + ")
     }
 
-    /// One effect more, its numbers starting at `values`.
+    /// One effect more, its parameters starting at `values`.
     pub fn plus(&self, placed: &Placed, values: &[f64]) -> Self {
         let mut model = self.clone();
         let spec = placed.spec();
@@ -106,8 +106,8 @@ impl Model {
         model
     }
 
-    /// Number of fitted numbers of the effects.
-    pub fn effect_numbers(&self) -> usize {
+    /// Number of fitted parameters of the effects.
+    pub fn effect_parameters(&self) -> usize {
         self.fitted.iter().map(Vec::len).sum()
     }
 
@@ -116,7 +116,7 @@ impl Model {
         self.fitted.iter().enumerate().flat_map(|(e, list)| list.iter().map(move |&i| (e, i))).collect()
     }
 
-    /// The effects with the fitted numbers at `x`, which follows the calibration in the vector of a fit.
+    /// The effects with the fitted parameters at `x`, which follows the calibration in the vector of a fit.
     pub fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
         let mut effects: Vec<Effect<f64>> = self.effects.iter().zip(&self.values).map(|(p, v)| p.with(v)).collect();
         for ((effect, index), value) in self.places().into_iter().zip(x) {
@@ -127,29 +127,29 @@ impl Model {
 }
 
 impl Model {
-    /// What the fast model is given for a run; `x` holds the calibration, then the fitted numbers of the effects.
-    pub(in crate::diagnose) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> TwinSetting<f64> {
-        let parameters = case.twin_parameters(run, x);
+    /// What the reduced-order model is given for a run; `x` holds the calibration, then the fitted parameters of the effects.
+    pub(in crate::diagnose) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> RomSetting<f64> {
+        let parameters = case.rom_parameters(run, x);
         let mut effects = case.known_effects.clone();
         effects.extend(self.effects_at(&x[case.parameters.len()..]));
-        TwinSetting { parameters, effects }
+        RomSetting { parameters, effects }
     }
 
     /// The same for every run of a case.
-    pub(in crate::diagnose) fn settings(&self, case: &Case, x: &[f64]) -> Vec<TwinSetting<f64>> {
+    pub(in crate::diagnose) fn settings(&self, case: &Case, x: &[f64]) -> Vec<RomSetting<f64>> {
         case.runs.iter().map(|run| self.setting(case, run, x)).collect()
     }
 }
 
-/// Simulated channels of one run, and their derivatives to the numbers asked for.
+/// Simulated channels of one run, and their derivatives to the parameters asked for.
 pub(in crate::diagnose) struct Response {
     /// By channel, then time.
     pub values: Vec<Vec<f64>>,
     /// By number, then channel, then time.
-    pub slopes: Vec<Vec<Vec<f64>>>,
+    pub sensitivities: Vec<Vec<Vec<f64>>>,
 }
 
-/// Simulates a run; `x` holds the calibration, then the fitted numbers of the effects.
+/// Simulates a run; `x` holds the calibration, then the fitted parameters of the effects.
 pub(in crate::diagnose) fn simulate(case: &Case, run: &CaseRun, model: &Model, x: &[f64]) -> Option<Vec<Vec<f64>>> {
     simulate_many(case, run, &[model.setting(case, run, x)]).pop()?
 }
@@ -158,12 +158,12 @@ pub(in crate::diagnose) fn simulate(case: &Case, run: &CaseRun, model: &Model, x
 pub(in crate::diagnose) fn simulate_many(
     case: &Case,
     run: &CaseRun,
-    settings: &[TwinSetting<f64>],
+    settings: &[RomSetting<f64>],
 ) -> Vec<Option<Vec<Vec<f64>>>> {
     let compared =
         |series: Vec<Vec<f64>>| case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect();
     case.effort.add(settings.len() * run.drive.times_s.len());
-    let many = run.twin.simulate_many(&run.drive, settings);
+    let many = run.rom.simulate_many(&run.drive, settings);
     many.into_iter().map(|series| series.map(compared)).collect()
 }
 
@@ -177,12 +177,12 @@ pub(in crate::diagnose) struct Probe {
 
 impl Probe {
     /// Derivative of every channel from its values at the probe's step and without it.
-    pub fn slope(&self, ahead: &[Vec<f64>], behind: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        slope(ahead, behind, self.step)
+    pub fn sensitivity(&self, ahead: &[Vec<f64>], behind: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        sensitivity(ahead, behind, self.step)
     }
 }
 
-fn slope(ahead: &[Vec<f64>], behind: &[Vec<f64>], way: f64) -> Vec<Vec<f64>> {
+fn sensitivity(ahead: &[Vec<f64>], behind: &[Vec<f64>], way: f64) -> Vec<Vec<f64>> {
     let channels = ahead.iter().zip(behind);
     channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
 }
@@ -196,7 +196,7 @@ pub(in crate::diagnose) enum Sides {
 
 /// Simulates with derivatives, as differences over the probes' steps.
 ///
-/// The exact derivatives that the fast model also has would cost the same. But where a cable hangs between taut and
+/// The exact derivatives that the reduced-order model also has would cost the same. But where a cable hangs between taut and
 /// slack they are those of the branch taken at every step, and grow without bound; a finite step does not.
 pub(in crate::diagnose) fn respond(
     case: &Case,
@@ -222,6 +222,7 @@ pub(in crate::diagnose) fn respond(
     }
     let settings: Vec<_> = jobs.iter().map(|x| model.setting(case, run, x)).collect();
     let series = simulate_many(case, run, &settings).into_iter().collect::<Option<Vec<_>>>()?;
-    let slopes = ends.into_iter().map(|(ahead, behind, way)| slope(&series[ahead], &series[behind], way)).collect();
-    Some(Response { values: series[0].clone(), slopes })
+    let sensitivities =
+        ends.into_iter().map(|(ahead, behind, way)| sensitivity(&series[ahead], &series[behind], way)).collect();
+    Some(Response { values: series[0].clone(), sensitivities })
 }

@@ -1,10 +1,10 @@
-//! Normal equations in scaled numbers, and the steps they give.
+//! Normal equations in scaled parameters, and the steps they give.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Range, scale and prior of one fitted number.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::diagnose) struct Number {
+pub(in crate::diagnose) struct FitParameter {
     pub min: f64,
     pub max: f64,
     pub scale: f64,
@@ -15,11 +15,11 @@ pub(in crate::diagnose) struct Number {
     pub prior_weight: f64,
 }
 
-/// Residuals in units of the noise and the derivatives of what is simulated to numbers in units of each scale, one row
+/// Residuals in units of the noise and the derivatives of what is simulated to parameters in units of each scale, one row
 /// per sample.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Rows {
-    pub slopes: DMatrix<f64>,
+    pub jacobian: DMatrix<f64>,
     pub residual: DVector<f64>,
 }
 
@@ -28,23 +28,23 @@ impl Rows {
     pub fn stack(parts: &[Self]) -> Option<Self> {
         let count = parts.iter().map(|p| p.residual.len()).sum();
         let mut all =
-            Self { slopes: DMatrix::zeros(count, parts.first()?.slopes.ncols()), residual: DVector::zeros(count) };
+            Self { jacobian: DMatrix::zeros(count, parts.first()?.jacobian.ncols()), residual: DVector::zeros(count) };
         let mut at = 0;
         for part in parts {
-            all.slopes.rows_mut(at, part.residual.len()).copy_from(&part.slopes);
+            all.jacobian.rows_mut(at, part.residual.len()).copy_from(&part.jacobian);
             all.residual.rows_mut(at, part.residual.len()).copy_from(&part.residual);
             at += part.residual.len();
         }
         Some(all)
     }
 
-    /// Moves on by `step` to where `residual` is left, and mends the slopes so that they agree with what the step did
+    /// Moves on by `step` to where `residual` is left, and updates the Jacobian so that it agrees with what the step did
     /// (Broyden's update: the least change that does).
     pub fn move_on(&mut self, step: &DVector<f64>, residual: DVector<f64>) {
         let length = step.norm_squared();
         if length > 0.0 {
-            let unforeseen = &self.residual - &residual - &self.slopes * step;
-            self.slopes.ger(1.0 / length, &unforeseen, step, 1.0);
+            let unforeseen = &self.residual - &residual - &self.jacobian * step;
+            self.jacobian.ger(1.0 / length, &unforeseen, step, 1.0);
         }
         self.residual = residual;
     }
@@ -59,14 +59,14 @@ pub(in crate::diagnose) struct Normal {
 }
 
 impl Normal {
-    /// Those of rows and of the numbers' priors at `x`.
-    pub fn of(rows: &Rows, numbers: &[Number], x: &[f64]) -> Self {
+    /// Those of rows and of the parameters' priors at `x`.
+    pub fn of(rows: &Rows, parameters: &[FitParameter], x: &[f64]) -> Self {
         let mut normal = Self {
-            matrix: rows.slopes.tr_mul(&rows.slopes),
-            gradient: rows.slopes.tr_mul(&rows.residual),
-            cost: rows.residual.norm_squared() + prior_cost(numbers, x),
+            matrix: rows.jacobian.tr_mul(&rows.jacobian),
+            gradient: rows.jacobian.tr_mul(&rows.residual),
+            cost: rows.residual.norm_squared() + prior_cost(parameters, x),
         };
-        for (i, (n, x)) in numbers.iter().zip(x).enumerate() {
+        for (i, (n, x)) in parameters.iter().zip(x).enumerate() {
             let weight = n.prior_weight * n.scale;
             normal.matrix[(i, i)] += weight * weight;
             normal.gradient[i] -= weight * (x - n.prior) * n.prior_weight;
@@ -74,13 +74,13 @@ impl Normal {
         normal
     }
 
-    /// A damped step in scaled numbers from `x`; numbers that a bound holds back stay.
-    pub fn bounded_step(&self, numbers: &[Number], x: &[f64], damping: f64) -> Option<DVector<f64>> {
+    /// A damped step in scaled parameters from `x`; parameters that a bound holds back stay.
+    pub fn bounded_step(&self, parameters: &[FitParameter], x: &[f64], damping: f64) -> Option<DVector<f64>> {
         let mut held = vec![false; x.len()];
         loop {
             let step = self.damped(&held, damping).cholesky()?.solve(&self.free_gradient(&held));
             let blocked = (0..x.len()).find(|&i| {
-                let n = &numbers[i];
+                let n = &parameters[i];
                 !held[i] && ((x[i] <= n.min && step[i] < 0.0) || (x[i] >= n.max && step[i] > 0.0))
             });
             match blocked {
@@ -124,9 +124,9 @@ impl Normal {
     }
 }
 
-/// Squared distance of numbers from their priors.
-pub(super) fn prior_cost(numbers: &[Number], x: &[f64]) -> f64 {
-    numbers.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
+/// Squared distance of parameters from their priors.
+pub(super) fn prior_cost(parameters: &[FitParameter], x: &[f64]) -> f64 {
+    parameters.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
 }
 
 /// What of `v` the columns of an orthonormal `basis` cannot make up.
@@ -138,11 +138,12 @@ pub(in crate::diagnose) fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) ->
 mod tests {
     use super::*;
 
-    const FREE: Number = Number { min: -9.0, max: 9.0, scale: 1.0, step: 1e-3, prior: 0.0, prior_weight: 0.0 };
+    const FREE: FitParameter =
+        FitParameter { min: -9.0, max: 9.0, scale: 1.0, step: 1e-3, prior: 0.0, prior_weight: 0.0 };
 
     fn line(at: &[f64]) -> Rows {
         Rows {
-            slopes: DMatrix::from_fn(at.len(), 2, |i, j| if j == 0 { 1.0 } else { at[i] }),
+            jacobian: DMatrix::from_fn(at.len(), 2, |i, j| if j == 0 { 1.0 } else { at[i] }),
             residual: DVector::from_fn(at.len(), |i, _| 2.0 - 0.5 * at[i]),
         }
     }
@@ -153,11 +154,11 @@ mod tests {
         let step = normal.bounded_step(&[FREE, FREE], &[0.0, 0.0], 0.0).expect("definite");
         assert!((step[0] - 2.0).abs() < 1e-9 && (step[1] + 0.5).abs() < 1e-9, "{step}");
         assert!((normal.promised_gain(&step) - normal.cost).abs() < 1e-9);
-        let floor = Number { min: 0.0, ..FREE };
+        let floor = FitParameter { min: 0.0, ..FREE };
         let held = normal.bounded_step(&[FREE, floor], &[0.0, 0.0], 0.0).expect("definite");
         assert!(held[1] == 0.0 && (held[0] - 1.0).abs() < 1e-9, "{held}");
     }
-    /// Two numbers that are seen through a square: wrong slopes mend themselves on the way to the answer.
+    /// Two parameters that are seen through a square: a wrong Jacobian corrects itself on the way to the answer.
     #[test]
     fn slopes_carried_from_elsewhere_still_lead_to_the_answer() {
         let at = [0.0, 0.5, 1.0, 2.0, 3.0];

@@ -7,14 +7,14 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::model::{Model, Probe, Sides, respond, simulate};
-use super::normal::{Number, Rows};
+use super::normal::{FitParameter, Rows};
 use crate::diagnose::case::{Case, CaseRun, Noise};
 
 /// A fitted model.
 #[derive(Clone, Debug)]
 pub struct Fit {
     pub model: Model,
-    /// Calibration, then the fitted numbers of the effects.
+    /// Calibration, then the fitted parameters of the effects.
     pub x: Vec<f64>,
     /// Sum of squared residuals in units of the noise, colour allowed for.
     pub cost: f64,
@@ -27,7 +27,7 @@ pub struct Fit {
 impl Fit {
     /// The same with one of the effects behind the others.
     pub fn with_last(&self, effect: usize) -> Self {
-        let calibration = self.x.len() - self.model.effect_numbers();
+        let calibration = self.x.len() - self.model.effect_parameters();
         let places = self.model.places();
         let (own, others): (Vec<usize>, Vec<usize>) =
             (calibration..self.x.len()).partition(|i| places[i - calibration].0 == effect);
@@ -47,20 +47,25 @@ impl Fit {
     }
 }
 
-/// Steps of the differences, as shares of the numbers' scales: above what kinks of the laws make of a smaller one.
+/// Steps of the differences, as shares of the parameters' scales: above what kinks of the laws make of a smaller one.
 const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
-/// The same for calibrated numbers where cables go slack. Where a joint comes to rest after that depends on how it bounced: over a
+/// The same for calibrated parameters where cables go slack. Where a joint comes to rest after that depends on how it bounced: over a
 /// thousandth of a range that makes derivatives a hundred times too large and intervals too narrow, over a tenth it averages out.
 const STEP_ACROSS_SLACK: f64 = 1e-1;
 
 /// Steps to both sides are alike; away from a bound that is near.
-pub(in crate::diagnose) fn probes(numbers: &[Number], x: &[f64], which: Range<usize>, sides: Sides) -> Vec<Probe> {
-    which.map(|number| probe(&numbers[number], x[number], number, sides)).collect()
+pub(in crate::diagnose) fn probes(
+    parameters: &[FitParameter],
+    x: &[f64],
+    which: Range<usize>,
+    sides: Sides,
+) -> Vec<Probe> {
+    which.map(|number| probe(&parameters[number], x[number], number, sides)).collect()
 }
 
 /// The step over which a number at `x` is differentiated.
-pub(in crate::diagnose) fn probe(n: &Number, x: f64, number: usize, sides: Sides) -> Probe {
+pub(in crate::diagnose) fn probe(n: &FitParameter, x: f64, number: usize, sides: Sides) -> Probe {
     // A number grown far beyond its scale is probed in proportion.
     let size = (n.step * n.scale).max(1e-3 * x.abs());
     let has_room = x - size >= n.min && x + size <= n.max;
@@ -76,27 +81,34 @@ pub(in crate::diagnose) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    pub fn numbers(&self, model: &Model) -> Vec<Number> {
+    pub fn parameters(&self, model: &Model) -> Vec<FitParameter> {
         let step = if self.case.goes_slack() { STEP_ACROSS_SLACK } else { CALIBRATION_STEP };
-        let mut numbers: Vec<Number> = self
+        let mut parameters: Vec<FitParameter> = self
             .case
             .parameters
             .iter()
             .map(|p| {
                 let half = (p.max - p.min) / 2.0;
-                Number { min: p.min, max: p.max, scale: half, step, prior: p.start, prior_weight: 1.0 / (2.0 * half) }
+                FitParameter {
+                    min: p.min,
+                    max: p.max,
+                    scale: half,
+                    step,
+                    prior: p.start,
+                    prior_weight: 1.0 / (2.0 * half),
+                }
             })
             .collect();
         for (effect, index) in model.places() {
             let p = &model.effects[effect].spec().parameters[index];
             let scale = p.typical.abs().max(1e-3 * p.range.max.abs().min(1.0));
             let (min, max) = (p.range.min, p.range.max);
-            numbers.push(Number { min, max, scale, step: EFFECT_STEP, prior: 0.0, prior_weight: 0.0 });
+            parameters.push(FitParameter { min, max, scale, step: EFFECT_STEP, prior: 0.0, prior_weight: 0.0 });
         }
-        numbers
+        parameters
     }
 
-    /// Where a fit of a model starts: calibration as in `near` (or the scene), effects at their numbers.
+    /// Where a fit of a model starts: calibration as in `near` (or the scene), effects at their parameters.
     pub fn start(&self, model: &Model, near: Option<&[f64]>) -> Vec<f64> {
         let n = self.case.parameters.len();
         let mut x: Vec<f64> = match near {
@@ -118,15 +130,16 @@ impl Problem<'_> {
         all.into_iter().collect()
     }
 
-    /// Residuals at `x` and the derivatives to the numbers `wanted`, one row per sample that is there.
+    /// Residuals at `x` and the derivatives to the parameters `wanted`, one row per sample that is there.
     pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
-        let numbers = self.numbers(model);
-        let probes = probes(&numbers, x, wanted.clone(), sides);
+        let parameters = self.parameters(model);
+        let probes = probes(&parameters, x, wanted.clone(), sides);
         let one = |run: &Cow<'_, CaseRun>| -> Option<Vec<Rows>> {
             let response = respond(self.case, run, model, x, &probes)?;
             let residuals = self.subtract(run, &response.values);
             let channels = residuals.iter().enumerate();
-            let rows = channels.map(|(c, r)| self.weighted_rows(run, c, r, &response.slopes, &numbers[wanted.clone()]));
+            let rows = channels
+                .map(|(c, r)| self.weighted_rows(run, c, r, &response.sensitivities, &parameters[wanted.clone()]));
             Some(rows.collect())
         };
         let parts: Vec<Option<Vec<Rows>>> = self.runs.par_iter().map(one).collect();
@@ -134,7 +147,7 @@ impl Problem<'_> {
         Rows::stack(&parts.concat())
     }
 
-    /// The same at a fit, with the derivatives to all its numbers, taken to both sides.
+    /// The same at a fit, with the derivatives to all its parameters, taken to both sides.
     pub fn rows_of(&self, fit: &Fit) -> Option<Rows> {
         self.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)
     }
@@ -161,48 +174,49 @@ impl Problem<'_> {
         run: &CaseRun,
         channel: usize,
         residual: &[f64],
-        slopes: &[Vec<Vec<f64>>],
-        numbers: &[Number],
+        sensitivities: &[Vec<Vec<f64>>],
+        parameters: &[FitParameter],
     ) -> Rows {
         let weight = 1.0 / self.noise[channel].scale();
         let there = |(measured, residual): (&f64, &f64)| measured.is_finite().then_some(residual * weight);
         let residual: Vec<f64> = run.measured[channel].iter().zip(residual).filter_map(there).collect();
         let mut rows =
-            Rows { slopes: DMatrix::zeros(residual.len(), numbers.len()), residual: DVector::from_vec(residual) };
-        for (k, (slope, number)) in slopes.iter().zip(numbers).enumerate() {
-            let column = self.weighted_slope(run, channel, &slope[channel], number);
-            rows.slopes.column_mut(k).iter_mut().zip(column).for_each(|(to, from)| *to = from);
+            Rows { jacobian: DMatrix::zeros(residual.len(), parameters.len()), residual: DVector::from_vec(residual) };
+        for (k, (sensitivity, number)) in sensitivities.iter().zip(parameters).enumerate() {
+            let column = self.weighted_sensitivity(run, channel, &sensitivity[channel], number);
+            rows.jacobian.column_mut(k).iter_mut().zip(column).for_each(|(to, from)| *to = from);
         }
         rows
     }
 
     /// Derivative of a channel where it was measured, in units of the noise and of the number's scale.
-    pub fn weighted_slope(
+    pub fn weighted_sensitivity(
         &self,
         run: &CaseRun,
         channel: usize,
-        slope: &[f64],
-        number: &Number,
+        sensitivity: &[f64],
+        number: &FitParameter,
     ) -> impl Iterator<Item = f64> {
-        let zero = self.zero(run, channel, |i, _| slope[i]);
-        self.slope_in_noise(run, channel, slope, number.scale).map(move |(slope, weight)| (slope - zero) * weight)
+        let zero = self.zero(run, channel, |i, _| sensitivity[i]);
+        self.sensitivity_in_noise(run, channel, sensitivity, number.scale)
+            .map(move |(sensitivity, weight)| (sensitivity - zero) * weight)
     }
 
     /// What a small change of this size does to a channel where it was measured, in units of the noise, whatever its zero.
-    pub fn seen(&self, run: &CaseRun, channel: usize, slope: &[f64], size: f64) -> impl Iterator<Item = f64> {
-        self.slope_in_noise(run, channel, slope, size).map(|(slope, weight)| slope * weight)
+    pub fn seen(&self, run: &CaseRun, channel: usize, sensitivity: &[f64], size: f64) -> impl Iterator<Item = f64> {
+        self.sensitivity_in_noise(run, channel, sensitivity, size).map(|(sensitivity, weight)| sensitivity * weight)
     }
 
-    fn slope_in_noise(
+    fn sensitivity_in_noise(
         &self,
         run: &CaseRun,
         channel: usize,
-        slope: &[f64],
+        sensitivity: &[f64],
         size: f64,
     ) -> impl Iterator<Item = (f64, f64)> {
         let weight = 1.0 / self.noise[channel].scale() * size;
-        let there = run.measured[channel].iter().zip(slope).filter(|(measured, _)| measured.is_finite());
-        there.map(move |(_, slope)| (*slope, weight))
+        let there = run.measured[channel].iter().zip(sensitivity).filter(|(measured, _)| measured.is_finite());
+        there.map(move |(_, sensitivity)| (*sensitivity, weight))
     }
 
     /// A column for every run and channel whose zero is free there, one in each row of it.
@@ -261,12 +275,12 @@ impl Problem<'_> {
         self.noise.iter().enumerate().map(|(c, noise)| count(c) as f64 / noise.inflation()).sum()
     }
 
-    /// The numbers of a fit without those of one effect.
+    /// The parameters of a fit without those of one effect.
     pub fn start_without(&self, fit: &Fit, effect: usize) -> Vec<f64> {
         let n = self.case.parameters.len();
         let mut x = fit.x[..n].to_vec();
-        let numbers = fit.model.places().into_iter().zip(&fit.x[n..]);
-        x.extend(numbers.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
+        let parameters = fit.model.places().into_iter().zip(&fit.x[n..]);
+        x.extend(parameters.filter(|((e, _), _)| *e != effect).map(|(_, v)| *v));
         x
     }
 }
@@ -277,7 +291,7 @@ mod tests {
     use crate::diagnose::fit::Placed;
     use crate::effects::{Element, ElementKind, find};
 
-    /// Calibration, two numbers of one effect, one of another.
+    /// Calibration, two parameters of one effect, one of another.
     #[test]
     fn an_effect_goes_behind_the_others_with_its_numbers() {
         let placed = |id: &str| {
@@ -286,7 +300,7 @@ mod tests {
         };
         let [(first, two), (second, one)] = ["viscoelasticity", "coil_preload"].map(placed);
         let model = Model::baseline().plus(&first, &two).plus(&second, &one);
-        let n = 1 + model.effect_numbers();
+        let n = 1 + model.effect_parameters();
         let own = model.fitted[0].len();
         let x: Vec<f64> = (0..n).map(|i| i as f64).collect();
         let covariance = DMatrix::from_fn(n, n, |i, j| (10 * i.min(j) + i.max(j)) as f64);

@@ -1,4 +1,4 @@
-//! The full scene with the numbers of a fit: as text, played beside the fast model, and with the last word on the numbers.
+//! The full scene with the parameters of a fit: as text, played beside the reduced-order model, and with the last word on the parameters.
 //!
 //! May import `fit`, `case`, `diagnosis` and `error`.
 

@@ -1,4 +1,4 @@
-//! The fast model against the full scene: on every diagnosis, with the numbers that were found.
+//! The reduced-order model against the full scene: on every diagnosis, with the parameters that were found.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::diagnose::fit::{Fit, simulate};
 /// Difference between the models, in units of the noise, up to which they agree.
 const AGREES: f64 = 0.5;
 
-/// The full scene's channels of one run, and how far the fast model is from them.
+/// The full scene's channels of one run, and how far the reduced-order model is from them.
 #[derive(Clone, Debug)]
 pub struct FullRun {
     pub is_held_out: bool,
@@ -26,10 +26,10 @@ pub struct FullRun {
     pub difference_over_noise: Vec<f64>,
 }
 
-/// Plays every run on the full scene with the numbers of a fit.
+/// Plays every run on the full scene with the parameters of a fit.
 ///
 /// # Errors
-/// A scene that the engine cannot play with these numbers.
+/// A scene that the engine cannot play with these parameters.
 pub fn play_full(case: &Case, fit: &Fit, noise: &[Noise]) -> Result<Vec<FullRun>, DiagnoseError> {
     case.runs.par_iter().map(|run| play(case, fit, noise, run)).collect()
 }
@@ -45,7 +45,7 @@ pub fn agreement(case: &Case, runs: &[FullRun]) -> FullScene {
 fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRun, DiagnoseError> {
     let values = play_on_full(case, fit, run)?;
     let fast = simulate(case, run, &fit.model, &fit.x)
-        .ok_or_else(|| DiagnoseError::Simulation("the fast model diverges".to_owned()))?;
+        .ok_or_else(|| DiagnoseError::Simulation("the reduced-order model diverges".to_owned()))?;
     let difference = |c: usize| {
         let pairs = values[c].iter().zip(&fast[c]).zip(&run.measured[c]);
         let compared: Vec<f64> = pairs.filter(|(_, m)| m.is_finite()).map(|((a, b), _)| a - b).collect();
@@ -55,20 +55,20 @@ fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRu
     Ok(FullRun { is_held_out: run.is_held_out, values, difference_over_noise })
 }
 
-/// What the full scene shows in a run, with the numbers of a fit: by channel, then time.
+/// What the full scene shows in a run, with the parameters of a fit: by channel, then time.
 ///
 /// # Errors
-/// A scene that the engine cannot play with these numbers.
+/// A scene that the engine cannot play with these parameters.
 pub fn play_on_full(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Vec<Vec<f64>>, DiagnoseError> {
     let mut simulation = full_simulation(case, fit, run)?;
     let shown = record(&mut simulation, &Schedule::at(run.drive.times_s.clone()))?;
     case.channels.iter().map(|c| Ok(shown.channel(&c.column)?.values[run.lead_in..].to_vec())).collect()
 }
 
-/// The full scene of a run with the numbers of a fit, driven by what was recorded.
+/// The full scene of a run with the parameters of a fit, driven by what was recorded.
 ///
 /// # Errors
-/// Numbers that the scene's own checks refuse.
+/// Parameters that the scene's own checks refuse.
 pub fn full_simulation(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Simulation, DiagnoseError> {
     let scene = corrected_run_scene(case, fit, run.specimen.as_deref(), &run.scene)?;
     let columns: Vec<String> = scene.file.input.iter().map(|i| i.channel.clone()).collect();

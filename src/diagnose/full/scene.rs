@@ -9,7 +9,7 @@ use crate::stock;
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::Fit;
 
-/// The scene of a specimen (or of the only one) with the numbers of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
+/// The scene of a specimen (or of the only one) with the parameters of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
 /// scene may stand anywhere.
 ///
 /// # Errors
@@ -29,17 +29,17 @@ pub fn fitted_scene(
     file.name = format!("{}_{suffix}", file.name);
     file.title = title.to_owned();
     file.expect.clear();
-    let text = with_numbers(case, fit, specimen, file)?;
+    let text = with_parameters(case, fit, specimen, file)?;
     Scene::parse(&text, &case.scene.path, &[])?;
     Ok(text)
 }
 
-/// The scene of a run of a specimen, its conditions kept, with the numbers of a fit.
+/// The scene of a run of a specimen, its conditions kept, with the parameters of a fit.
 ///
 /// # Errors
 /// A fitted number that the scene's own checks refuse.
 pub fn corrected_run_scene(case: &Case, fit: &Fit, specimen: Option<&str>, base: &Scene) -> Result<Scene, SceneError> {
-    Scene::parse(&with_numbers(case, fit, specimen, base.file.clone())?, &case.scene.path, &[])
+    Scene::parse(&with_parameters(case, fit, specimen, base.file.clone())?, &case.scene.path, &[])
 }
 
 /// A law under a name that no other has.
@@ -50,7 +50,7 @@ fn with_own_name(law: LawTable, others: &[LawTable]) -> LawTable {
     LawTable { name: name.unwrap_or_default(), ..law }
 }
 
-fn with_numbers(case: &Case, fit: &Fit, specimen: Option<&str>, mut file: SceneFile) -> Result<String, SceneError> {
+fn with_parameters(case: &Case, fit: &Fit, specimen: Option<&str>, mut file: SceneFile) -> Result<String, SceneError> {
     let effects = fit.model.effects_at(&fit.x[case.parameters.len()..]);
     file.law.retain(|law| !law.candidate);
     for effect in &effects {
@@ -61,7 +61,7 @@ fn with_numbers(case: &Case, fit: &Fit, specimen: Option<&str>, mut file: SceneF
     }
     let refuse = |message: String| SceneError::Syntax { file: case.scene.path.clone(), message };
     let mut table: Table = Table::try_from(&file).map_err(|e| refuse(e.to_string()))?;
-    for (p, value) in case.numbers_of(specimen, &fit.x) {
+    for (p, value) in case.parameters_of(specimen, &fit.x) {
         Override::number(&p.key, value).apply(&mut table)?;
     }
     toml::to_string(&table).map_err(|e| refuse(e.to_string()))

@@ -62,8 +62,8 @@ pub fn injected(case: &Case, address: &str, action: &Action) -> Option<Placed> {
 }
 
 /// A law as something that a model can hold.
-pub fn written(case: &Case, table: &LawTable, law: &Law, numbers: &[Fitted], size: usize) -> Placed {
-    let entry = EntryId::write(table, law, size, numbers);
+pub fn written(case: &Case, table: &LawTable, law: &Law, parameters: &[Fitted], size: usize) -> Placed {
+    let entry = EntryId::write(table, law, size, parameters);
     let number = law.address.number;
     let count = match law.address.port.spec().carrier {
         Carrier::Cable => case.scene.file.cable.len(),

@@ -1,4 +1,4 @@
-//! Laws of the grammar with their numbers: a slot's in a shape or as a curve, and one that the scene proposes.
+//! Laws of the grammar with their parameters: a slot's in a shape or as a curve, and one that the scene proposes.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     };
     let law = table.law(known).ok()?;
     let size = law.parameter("a")?;
-    let numbers: Vec<Fitted> = law
+    let parameters: Vec<Fitted> = law
         .parameters
         .iter()
         .map(|p| match (p.name.as_str(), &more) {
@@ -55,7 +55,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
             },
         })
         .collect();
-    let placed = written(case, &table, &law, &numbers, size);
+    let placed = written(case, &table, &law, &parameters, size);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
 }
@@ -79,8 +79,8 @@ pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
     let own = Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true };
     let fixed = Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false };
     let is_size = |name: &str| SIZES.contains(&name);
-    let numbers: Vec<Fitted> = law.parameters.iter().map(|p| if is_size(&p.name) { own } else { fixed }).collect();
-    let placed = written(case, &table, &law, &numbers, law.parameter(SIZES[0])?);
+    let parameters: Vec<Fitted> = law.parameters.iter().map(|p| if is_size(&p.name) { own } else { fixed }).collect();
+    let placed = written(case, &table, &law, &parameters, law.parameter(SIZES[0])?);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
 }
@@ -103,7 +103,7 @@ fn around(typical: f64, is_fitted: bool) -> Fitted {
     Fitted { typical, range: Range { min: 0.02 * typical, max: 50.0 * typical }, is_fitted }
 }
 
-/// A law that the scene proposes, tried from its own numbers. A parameter without a range has that of its scale.
+/// A law that the scene proposes, tried from its own parameters. A parameter without a range has that of its scale.
 pub fn candidate(case: &Case, own: &Candidate) -> Variant {
     let number = |(i, p): (usize, &crate::laws::Parameter)| {
         let scale = p.value.abs().max(f64::MIN_POSITIVE);
@@ -112,8 +112,8 @@ pub fn candidate(case: &Case, own: &Candidate) -> Variant {
         let range = Range { min: or(p.min, low.min(high)), max: or(p.max, low.max(high)) };
         Fitted { typical: p.value, range, is_fitted: true }
     };
-    let numbers: Vec<Fitted> = own.law.parameters.iter().enumerate().map(number).collect();
-    let placed = written(case, &own.table, &own.law, &numbers, own.size);
+    let parameters: Vec<Fitted> = own.law.parameters.iter().enumerate().map(number).collect();
+    let placed = written(case, &own.table, &own.law, &parameters, own.size);
     let values = placed.spec().typical();
     Variant { placed, values }
 }

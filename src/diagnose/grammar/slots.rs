@@ -189,7 +189,7 @@ const PLAIN_ON_A_CHANNEL: f64 = 0.02;
 /// Slots on what each channel shows. A straight line is a gain, which the catalogue has.
 fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
     let open = case.runs.iter().filter(|run| !run.is_held_out);
-    let shown = open.map(|run| run.twin.simulate(&run.drive, &from.model.setting(case, run, &from.x)));
+    let shown = open.map(|run| run.rom.simulate(&run.drive, &from.model.setting(case, run, &from.x)));
     let Some(shown) = shown.collect::<Option<Vec<_>>>() else { return Vec::new() };
     let slot = |channel: &CaseChannel| {
         let unit = parse_column(&channel.column).ok()?.unit;
@@ -233,7 +233,7 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
     let laws: Vec<Law> = asked.iter().map(|(law, ..)| law.clone()).collect();
     let open = case.runs.iter().filter(|run| !run.is_held_out);
     let Some(visited) = open
-        .map(|run| run.twin.visited(&run.drive, &from.model.setting(case, run, &from.x), &laws))
+        .map(|run| run.rom.visited(&run.drive, &from.model.setting(case, run, &from.x), &laws))
         .collect::<Option<Vec<_>>>()
     else {
         return Vec::new();

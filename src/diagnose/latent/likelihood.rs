@@ -25,7 +25,7 @@ pub struct Likelihood {
 
 /// Innovations of one run, each divided by its standard deviation.
 struct Innovations {
-    /// Their products, residual first, then its slopes to the numbers of the fit.
+    /// Their products, residual first, then the Jacobian.
     products: DMatrix<f64>,
     /// Sum of the logarithms of their variances.
     spread: f64,
@@ -37,7 +37,7 @@ impl Likelihood {
         let runs: Vec<Innovations> = runs.iter().map(|run| filtered(run, walk).without_own(run.shared)).collect();
         let Some(first) = runs.first() else { return Self { cost: 0.0, left_sigma: Vec::new() } };
         let all = runs.iter().skip(1).fold(first.products.clone(), |sum, run| sum + &run.products);
-        // Residual less slopes times numbers.
+        // Residual less Jacobian times parameters.
         let direction = DVector::from_iterator(all.nrows(), std::iter::once(1.0).chain(sizes(&all).iter().map(|x| -x)));
         let square = |run: &Innovations| direction.dot(&(&run.products * &direction));
         let sigma = |run: &Innovations| (square(run) - run.count) / (2.0 * run.count.max(1.0)).sqrt();
@@ -49,7 +49,7 @@ impl Likelihood {
 }
 
 impl Innovations {
-    /// With the numbers of the run alone, which come behind `shared` others, as they explain most.
+    /// With the parameters of the run alone, which come behind `shared` others, as they explain most.
     fn without_own(self, shared: usize) -> Self {
         let own = self.products.nrows() - shared;
         if own == 0 {
@@ -62,11 +62,11 @@ impl Innovations {
     }
 }
 
-/// The sizes of the slopes that explain most of the residual, from the products of both.
+/// The parameters that explain most of the residual, from the products of both.
 fn sizes(products: &DMatrix<f64>) -> DVector<f64> {
     let n = products.nrows() - 1;
-    let slopes = products.view((1, 1), (n, n)).into_owned();
-    inverse(&slopes) * products.view((1, 0), (n, 1)).column(0)
+    let jacobian = products.view((1, 1), (n, n)).into_owned();
+    inverse(&jacobian) * products.view((1, 0), (n, 1)).column(0)
 }
 
 /// Inverse of a matrix of products; of what others do as well nothing is asked.
@@ -80,7 +80,7 @@ fn inverse(products: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// State and signals, as far as they are known.
 struct Filter {
-    /// Best guesses, for the residual and each of its slopes.
+    /// Best guesses, for the residual and each column of the Jacobian.
     mean: DMatrix<f64>,
     covariance: DMatrix<f64>,
     found: Innovations,
@@ -146,7 +146,7 @@ mod tests {
     const STRETCHES: usize = 6;
     const CHANNELS: usize = 2;
 
-    /// A run of two state numbers and two ports, with one number of the fit and one free zero: all entries of one smooth disorder.
+    /// A run of two states and two ports, with one parameter of the fit and one free zero: all entries of one smooth disorder.
     fn run(salt: f64) -> Condensed {
         let entry =
             |i: usize, j: usize, k: usize| (salt + 1.7 * i as f64 + 2.9 * j as f64 + 4.3 * k as f64).powi(2).sin();
@@ -212,17 +212,17 @@ mod tests {
             whitened.push(root.l().solve_lower_triangular(&rows).expect("regular"));
         }
         let count: usize = whitened.iter().map(DMatrix::nrows).sum();
-        let mut slopes = DMatrix::zeros(count, 1 + runs.len());
+        let mut jacobian = DMatrix::zeros(count, 1 + runs.len());
         let mut residual = DVector::zeros(count);
         let mut at = 0;
         for (r, rows) in whitened.iter().enumerate() {
             residual.rows_mut(at, rows.nrows()).copy_from(&rows.column(0));
-            slopes.view_mut((at, 0), (rows.nrows(), 1)).copy_from(&rows.column(1));
-            slopes.view_mut((at, 1 + r), (rows.nrows(), 1)).copy_from(&rows.column(2));
+            jacobian.view_mut((at, 0), (rows.nrows(), 1)).copy_from(&rows.column(1));
+            jacobian.view_mut((at, 1 + r), (rows.nrows(), 1)).copy_from(&rows.column(2));
             at += rows.nrows();
         }
-        let sizes = slopes.clone().svd(true, true).solve(&residual, 1e-12).expect("both sides");
-        spread + (residual - slopes * sizes).norm_squared()
+        let sizes = jacobian.clone().svd(true, true).solve(&residual, 1e-12).expect("both sides");
+        spread + (residual - jacobian * sizes).norm_squared()
     }
 
     #[test]

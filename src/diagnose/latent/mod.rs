@@ -61,7 +61,7 @@ impl Latent {
 /// Nothing where the model cannot be made linear: it diverges, is not integrated, or has sensors that act on what they show.
 pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let settings: Vec<_> = problem.runs.iter().map(|run| fit.model.setting(problem.case, run, &fit.x)).collect();
-    if problem.runs.iter().zip(&settings).any(|(run, setting)| run.twin.has_sensors(setting)) {
+    if problem.runs.iter().zip(&settings).any(|(run, setting)| run.rom.has_sensors(setting)) {
         return Vec::new();
     }
     let places = places(problem.case);
@@ -137,7 +137,7 @@ mod tests {
     use crate::diagnose::fit::{Model, Sides};
     use crate::scene::Override;
 
-    /// The latents of a case whose scene is played with some numbers changed, without calibration to take them up.
+    /// The latents of a case whose scene is played with some parameters changed, without calibration to take them up.
     fn of(scene: &str, set: &[(&str, &str)], (inputs, outputs): (&[&str], &[&str]), sd: &[f64]) -> Vec<Latent> {
         let set: Vec<Override> =
             set.iter().map(|(key, value)| Override::parse(&format!("{key}={value}")).expect("one")).collect();

@@ -12,19 +12,19 @@ use super::Place;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Problem, Rows};
 use crate::effects::Effect;
-use crate::system::{Linear, TwinSetting};
+use crate::system::{Linear, RomSetting};
 
 /// A run: what was measured over each stretch, and what the model makes of states and signals there.
 pub struct Condensed {
     pub measured: Vec<Measured>,
-    /// How many numbers come before those of the run alone: the residual, then the numbers of the fit.
+    /// How many parameters come before those of the run alone: the residual, then the parameters of the fit.
     pub shared: usize,
     /// What a signal at each port comes to at the first sample: the state. Behind the ports stand the channels, a signal on each.
     pub start: DMatrix<f64>,
     pub maps: Vec<Map>,
 }
 
-/// Of one stretch: a row for each channel, of residual, its slopes to the numbers of the fit, and to the free zeros of the run.
+/// Of one stretch: a row for each channel, of residual, Jacobian, and derivatives to the free zeros of the run.
 pub struct Measured {
     pub rows: DMatrix<f64>,
     /// How many samples of each channel there are.
@@ -43,7 +43,7 @@ pub struct Map {
 /// Every run in stretches of so many seconds; none where the model diverges or is not integrated.
 pub fn condensed(
     problem: &Problem,
-    settings: &[TwinSetting<f64>],
+    settings: &[RomSetting<f64>],
     known: &Rows,
     places: &[&Place],
     stretch_s: f64,
@@ -60,11 +60,11 @@ pub fn condensed(
     let one = |(r, run): (usize, &Cow<CaseRun>)| {
         let ends = ends(&run.drive.times_s, stretch_s);
         let measured = measured(problem, run, (known, first_rows[r]), &ends);
-        let linear = run.twin.linear(&run.drive, &settings[r], &at)?;
-        let start = DMatrix::from_fn(linear.numbers.len(), at.len(), |i, p| linear.start(p)[i] * typical[p]);
+        let linear = run.rom.linear(&run.drive, &settings[r], &at)?;
+        let start = DMatrix::from_fn(linear.states.len(), at.len(), |i, p| linear.start(p)[i] * typical[p]);
         let start = start.resize_horizontally(at.len() + problem.case.channels.len(), 0.0);
         let maps = maps(problem, run, linear, &typical, &ends, &measured)?;
-        Some(Condensed { measured, shared: 1 + known.slopes.ncols(), start, maps })
+        Some(Condensed { measured, shared: 1 + known.jacobian.ncols(), start, maps })
     };
     problem.runs.par_iter().enumerate().map(one).collect()
 }
@@ -89,7 +89,7 @@ fn ends(times_s: &[f64], stretch_s: f64) -> Vec<usize> {
 fn measured(problem: &Problem, run: &CaseRun, (known, mut row): (&Rows, usize), ends: &[usize]) -> Vec<Measured> {
     let channels = &problem.case.channels;
     let zeros: Vec<usize> = (0..channels.len()).filter(|&c| channels[c].has_free_zero).collect();
-    let shared = 1 + known.slopes.ncols();
+    let shared = 1 + known.jacobian.ncols();
     let times_s = &run.drive.times_s;
     let starts = std::iter::once(0).chain(ends.iter().map(|end| end - 1));
     let none = |(start, end): (usize, &usize)| Measured {
@@ -105,7 +105,7 @@ fn measured(problem: &Problem, run: &CaseRun, (known, mut row): (&Rows, usize), 
                 let stretch = &mut all[ends.partition_point(|&end| end <= sample)];
                 stretch.counts[c] += 1.0;
                 stretch.rows[(c, 0)] += known.residual[row];
-                (1..shared).for_each(|j| stretch.rows[(c, j)] += known.slopes[(row, j - 1)]);
+                (1..shared).for_each(|j| stretch.rows[(c, j)] += known.jacobian[(row, j - 1)]);
                 if let Some(zero) = zeros.iter().position(|&zero| zero == c) {
                     stretch.rows[(c, shared + zero)] += 1.0;
                 }
@@ -130,7 +130,7 @@ fn maps(
     ends: &[usize],
     measured: &[Measured],
 ) -> Option<Vec<Map>> {
-    let (n, ports) = (linear.numbers.len(), typical.len());
+    let (n, ports) = (linear.states.len(), typical.len());
     let channels = &problem.case.channels;
     let fresh = || DMatrix::identity(n, n + ports + channels.len());
     let nothing = || DMatrix::zeros(channels.len(), n + ports + channels.len());

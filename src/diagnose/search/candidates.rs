@@ -1,4 +1,4 @@
-//! Which effects a rig could have, and with which numbers each is first tried.
+//! Which effects a rig could have, and with which parameters each is first tried.
 
 use crate::effects::{Element, ElementKind, EntryId, Levels, catalogue};
 use crate::recording::parse_column;
@@ -52,8 +52,8 @@ fn places(case: &Case, entry: EntryId) -> Vec<Placed> {
 
 /// How many chambers were recorded: each run may be another's.
 fn chambers(case: &Case) -> usize {
-    let numbers = case.runs.iter().filter_map(|r| r.scene.file.chamber.as_ref()).map(|c| c.number);
-    numbers.max().unwrap_or(1)
+    let parameters = case.runs.iter().filter_map(|r| r.scene.file.chamber.as_ref()).map(|c| c.number);
+    parameters.max().unwrap_or(1)
 }
 
 /// Whether the scene takes the effect: the checks of a scene file decide.
@@ -82,7 +82,7 @@ fn has_flexures(scene: &Scene) -> bool {
     joints.any(|j| j.stiffness_n_m_rad.is_some_and(|k| k > 0.0))
 }
 
-/// Starting numbers. Where a second number bends the law (a time, a threshold), several are tried.
+/// Starting parameters. Where a second number bends the law (a time, a threshold), several are tried.
 fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
     let typical = placed.spec().typical();
     let trying = &placed.spec().trying;

@@ -1,12 +1,12 @@
 //! Relaxations one by one, or one that goes on over decades of time.
 //!
 //! A polymer creeps along the logarithm of time. Exponentials fit what was recorded of that, one for each decade of it, and then end:
-//! they do not foretell the decade to come. With fewer numbers a broad relaxation does.
+//! they do not predict the decade to come. With fewer parameters logarithmic creep does.
 
-use super::refits::foretells_runs;
+use super::refits::cross_validates_runs;
 use super::reweight::open_runs;
 use super::screening::least_gain;
-use super::stepwise::{Found, settled};
+use super::stepwise::{Found, converged};
 use crate::diagnose::case::{Case, Noise, Step};
 use crate::diagnose::fit::{Fit, Model, Placed, Problem, Variant};
 use crate::effects::Native;
@@ -16,8 +16,8 @@ const DECADES: f64 = 5.0;
 /// Where the shortest time begins, as shares of the shortest that was found.
 const SHORTER: [f64; 2] = [1.0, 0.1];
 
-/// Replaces all relaxations of a muscle by one broad one, where that foretells runs better that it was not fitted to, and either has
-/// fewer numbers or leaves less. Where no runs are foretold it must leave less.
+/// Replaces all relaxations of a muscle by logarithmic creep, where that predicts runs better that it was not fitted to, and either has
+/// fewer parameters or leaves less. Where no runs are predicted it must leave less.
 ///
 /// It begins to relax far earlier than the others: both are compared with steps that are short enough for it, which the case keeps
 /// where it is taken.
@@ -37,7 +37,7 @@ pub(in crate::diagnose) fn broaden(
         let problem = open_runs(case, noise);
         if is_better(&problem, &was, &broad) {
             say(format!("{} over decades: chi2 {:.0} -> {:.0}", placed.title(), was.cost, broad.cost));
-            found = settled(&problem, Found { baseline, ..found }, broad, variants, say);
+            found = converged(&problem, Found { baseline, ..found }, broad, variants, say);
         } else {
             case.runs = former;
         }
@@ -59,7 +59,7 @@ fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {
     if problem.case.is_without(Step::CrossValidation) {
         return is_nearer;
     }
-    (is_nearer || broad.x.len() < was.x.len()) && foretells_runs(problem, was, broad)
+    (is_nearer || broad.x.len() < was.x.len()) && cross_validates_runs(problem, was, broad)
 }
 
 /// Whether an effect is a relaxation over decades.

@@ -13,7 +13,7 @@ const ROUNDS: usize = 5;
 pub(in crate::diagnose) fn confirm_least_sizes(problem: &Problem, fit: &Fit, screened: &mut [Screened]) {
     let Some(rows) = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return };
     let needed = least_gain(rows.residual.len()).sqrt();
-    let basis = rows.slopes.qr().q();
+    let basis = rows.jacobian.qr().q();
     let mut open: Vec<usize> = (0..screened.len()).filter(|i| screened[*i].typical_over_least() < 1.0).collect();
     for _ in 0..ROUNDS {
         open.retain(|i| screened[*i].is_possible());

@@ -1,22 +1,22 @@
 //! Deletions and exchanges: what stands in a model must be needed, and better than anything else in its place.
 
-use super::refits::{BRANCH_TIE, Swallowed, pick, refit};
+use super::refits::{Absorbed, BRANCH_TIE, pick, refit};
 use super::screening::screen;
 use crate::diagnose::fit::{Fit, Model, Placed, Problem, Variant};
 
 /// Exchanges in one search, and what they have come to.
-pub(super) struct Swaps<'a> {
+pub(super) struct Exchange<'a> {
     pub problem: &'a Problem<'a>,
     pub variants: &'a [Variant],
     /// Effects that have been worth something somewhere: they are tried again even where the calibration takes them in.
     pub known: Vec<Placed>,
     /// Ends of former exchanges: those that come there again end with them.
-    ends: Vec<Settled>,
+    ends: Vec<Converged>,
 }
 
 /// A model in which nothing is needless and nothing else is better, with the others tried in place of each of its effects.
 #[derive(Clone, Debug)]
-pub(super) struct Settled {
+pub(super) struct Converged {
     pub best: Fit,
     pub rivals: Vec<Vec<Fit>>,
 }
@@ -27,14 +27,14 @@ pub(super) struct Stage<'a> {
     pub refits: &'a [Fit],
 }
 
-impl<'a> Swaps<'a> {
+impl<'a> Exchange<'a> {
     pub fn new(problem: &'a Problem<'a>, variants: &'a [Variant], known: Vec<Placed>) -> Self {
         Self { problem, variants, known, ends: Vec::new() }
     }
 
     /// Leaves out effects that others have made needless and puts better ones in their place, until neither helps. `last`:
     /// how the start's last effect was added, if that is known; it is not done again.
-    pub fn settle(&mut self, start: Fit, least: f64, mut last: Option<Stage>, say: &dyn Fn(String)) -> Settled {
+    pub fn converge(&mut self, start: Fit, least: f64, mut last: Option<Stage>, say: &dyn Fn(String)) -> Converged {
         let mut best = start;
         let mut rivals: Vec<Vec<Fit>> = Vec::new();
         while rivals.len() < best.model.effects.len() {
@@ -65,7 +65,7 @@ impl<'a> Swaps<'a> {
             rivals.clear();
             last = None;
         }
-        let end = Settled { best, rivals };
+        let end = Converged { best, rivals };
         self.ends.push(end.clone());
         end
     }
@@ -75,7 +75,7 @@ impl<'a> Swaps<'a> {
         let start = self.problem.start_without(best, index);
         let fewer = self.problem.fit(&best.model.without(index), &start)?;
         let refits = screen(self.problem, &fewer, self.variants).map_or_else(Vec::new, |screening| {
-            let mut others = pick(&screening.screened, least, Swallowed::Among(&self.known));
+            let mut others = pick(&screening.screened, least, Absorbed::Among(&self.known));
             // What stands there already would only be found again.
             others.retain(|s| s.variant.placed != best.model.effects[index]);
             refit(self.problem, &screening, &others)

@@ -14,20 +14,20 @@ const NEAR: f64 = 0.1;
 /// Candidates that promise less than this share of the best are not refitted.
 const WORTH: f64 = 0.1;
 /// At most so many that the calibration may hide.
-const MOST_SWALLOWED: usize = 2;
+const MOST_ABSORBED: usize = 2;
 /// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
 pub(super) const BRANCH_TIE: f64 = 0.02;
 
 /// Which effects are tried that the calibration has taken in. From the scene's calibration their fits are the dearest of all.
 #[derive(Clone, Copy)]
-pub(super) enum Swallowed<'a> {
+pub(super) enum Absorbed<'a> {
     Any,
     /// Those of these.
     Among(&'a [Placed]),
 }
 
 /// The candidates worth a full refit: the most promising of every effect, and some that the calibration may hide.
-pub(super) fn pick(screened: &[Screened], least: f64, swallowed: Swallowed) -> Vec<Screened> {
+pub(super) fn pick(screened: &[Screened], least: f64, absorbed: Absorbed) -> Vec<Screened> {
     let mut picked: Vec<Screened> = Vec::new();
     let top = screened.first().map_or(0.0, |s| s.gain);
     for s in screened {
@@ -40,20 +40,20 @@ pub(super) fn pick(screened: &[Screened], least: f64, swallowed: Swallowed) -> V
             break;
         }
     }
-    picked.extend(taken_in(screened, swallowed));
+    picked.extend(absorbed_ones(screened, absorbed));
     picked
 }
 
 /// Effects that the calibration has taken in, the most visible first. Their signatures promise nothing: at another calibration
 /// they may explain more than all that do.
-fn taken_in(screened: &[Screened], which: Swallowed) -> Vec<Screened> {
+fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
     let is_tried = |s: &&Screened| match which {
-        Swallowed::Any => s.is_swallowed,
-        Swallowed::Among(known) => s.is_swallowed && known.contains(&s.variant.placed),
+        Absorbed::Any => s.is_absorbed,
+        Absorbed::Among(known) => s.is_absorbed && known.contains(&s.variant.placed),
     };
-    let mut taken_in: Vec<&Screened> = screened.iter().filter(is_tried).collect();
-    taken_in.sort_by(|a, b| a.typical_over_least().total_cmp(&b.typical_over_least()).reverse());
-    taken_in.into_iter().take(MOST_SWALLOWED).cloned().collect()
+    let mut absorbed: Vec<&Screened> = screened.iter().filter(is_tried).collect();
+    absorbed.sort_by(|a, b| a.typical_over_least().total_cmp(&b.typical_over_least()).reverse());
+    absorbed.into_iter().take(MOST_ABSORBED).cloned().collect()
 }
 
 /// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
@@ -73,7 +73,7 @@ pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Scre
 /// The effects that do best beside a fit, refitted jointly; cheapest first.
 pub(in crate::diagnose) fn beside(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Fit> {
     let Some(screening) = screen(problem, fit, variants) else { return Vec::new() };
-    refit(problem, &screening, &pick(&screening.screened, least_gain(problem.samples()), Swallowed::Any))
+    refit(problem, &screening, &pick(&screening.screened, least_gain(problem.samples()), Absorbed::Any))
 }
 
 /// The same refits, cheapest first, those near the best also fitted from the scene's calibration: only where the best one gains by
@@ -104,23 +104,23 @@ fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits
 }
 
-/// A rough fit with one effect more, on the slopes of the fit it starts from and those of the effect's numbers.
+/// A rough fit with one effect more, on the Jacobian of the fit it starts from and that of the effect's parameters.
 fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
     let (from, values) = (&screening.from, start_values(candidate));
     let model = from.model.plus(&candidate.variant.placed, &values);
     let mut start = from.x.clone();
     start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
-    if candidate.is_swallowed {
+    if candidate.is_absorbed {
         // Where the calibration stands the effect is not wanted: it begins where the scene has it.
         let calibrated = problem.case.parameters.iter().map(|p| p.start);
         start.iter_mut().zip(calibrated).for_each(|(x, scene)| *x = scene);
-        let slopes = problem.rows(&model, &start, 0..start.len(), Sides::One)?.slopes;
-        return problem.fit_roughly(&model, &start, slopes);
+        let jacobian = problem.rows(&model, &start, 0..start.len(), Sides::One)?.jacobian;
+        return problem.fit_roughly(&model, &start, jacobian);
     }
-    let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.slopes;
-    let mut slopes = screening.slopes.clone().resize_horizontally(start.len(), 0.0);
-    slopes.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
-    problem.fit_roughly(&model, &start, slopes)
+    let own = problem.rows(&model, &start, from.x.len()..start.len(), Sides::One)?.jacobian;
+    let mut jacobian = screening.jacobian.clone().resize_horizontally(start.len(), 0.0);
+    jacobian.columns_mut(from.x.len(), own.ncols()).copy_from(&own);
+    problem.fit_roughly(&model, &start, jacobian)
 }
 
 /// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
@@ -134,17 +134,17 @@ pub(super) fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64
 /// Share of the best's gain from which another refit may stand in for it.
 const NEARLY_AS_GOOD: f64 = 0.5;
 
-pub(super) fn first_that_foretells<'a>(
+pub(super) fn first_that_cross_validates<'a>(
     problem: &Problem,
     before: &Fit,
     fits: impl Iterator<Item = &'a Fit>,
     say: &dyn Fn(String),
 ) -> Option<&'a Fit> {
     for fit in fits {
-        if foretells(problem, before, fit) {
+        if cross_validates(problem, before, fit) {
             return Some(fit);
         }
-        say(format!("{}: does not foretell runs it was not fitted to", fit.model.title()));
+        say(format!("{}: does not predict runs it was not fitted to", fit.model.title()));
     }
     None
 }
@@ -161,30 +161,30 @@ fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&
     refits.iter().take_while(|f| f.cost <= tie).find(|f| adds_branch(before, f)).or(Some(cheapest))
 }
 
-/// Share of its gain that an effect must foretell of halves of runs where it does not foretell whole ones.
-const FORETOLD: f64 = 0.5;
+/// Share of its gain that an effect must predict of halves of runs where it does not predict whole ones.
+const PREDICTED: f64 = 0.5;
 
 /// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
 ///
-/// Where the other runs say too little about an effect or the calibration beside it, it is carried too far: then it must foretell halves
+/// Where the other runs say too little about an effect or the calibration beside it, it is carried too far: then it must predict halves
 /// of runs, all others known, and much better.
-pub(in crate::diagnose) fn foretells(problem: &Problem, before: &Fit, after: &Fit) -> bool {
-    foretells_runs(problem, before, after)
-        || foretold(problem.halves_left_out(), before, after) > FORETOLD * (before.cost - after.cost)
+pub(in crate::diagnose) fn cross_validates(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    cross_validates_runs(problem, before, after)
+        || gain_left_out(problem.halves_left_out(), before, after) > PREDICTED * (before.cost - after.cost)
 }
 
 /// Whether a model predicts whole runs, each fitted to the others, better than another does. A single run is cut in two.
-pub(in crate::diagnose) fn foretells_runs(problem: &Problem, before: &Fit, after: &Fit) -> bool {
-    problem.case.is_without(Step::CrossValidation) || foretold(problem.runs_left_out(), before, after) > 0.0
+pub(in crate::diagnose) fn cross_validates_runs(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    problem.case.is_without(Step::CrossValidation) || gain_left_out(problem.runs_left_out(), before, after) > 0.0
 }
 
 /// By how much less chi² a model leaves in what its fits have not seen.
-fn foretold(folds: Vec<(Problem, Problem)>, before: &Fit, after: &Fit) -> f64 {
-    // A fold on which the model before cannot be played says nothing; one on which that with more in it cannot is not foretold.
+fn gain_left_out(folds: Vec<(Problem, Problem)>, before: &Fit, after: &Fit) -> f64 {
+    // A fold on which the model before cannot be played says nothing; one on which that with more in it cannot is not predicted.
     let gain = |(rest, left_out): (Problem, Problem)| -> f64 {
         let cost = |fit: &Fit| {
-            let slopes = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.slopes;
-            let fitted = rest.fit_roughly(&fit.model, &fit.x, slopes)?;
+            let jacobian = rest.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::One)?.jacobian;
+            let fitted = rest.fit_roughly(&fit.model, &fit.x, jacobian)?;
             left_out.cost_at(&fit.model, &fitted.x)
         };
         cost(before).map_or(0.0, |was| was - cost(after).unwrap_or(f64::INFINITY))

@@ -20,7 +20,7 @@ pub(in crate::diagnose) fn weigh(
         }
         let former = case.runs.clone();
         let Some(renewed) = renew(case, &noise, &found) else {
-            // With the former steps the fast model could follow; what it cannot on a held-out run is taken back later.
+            // With the former steps the reduced-order model could follow; what it cannot on a held-out run is taken back later.
             case.runs = former;
             break;
         };
@@ -51,7 +51,7 @@ pub(in crate::diagnose) struct Renewed {
     pub baseline: Fit,
 }
 
-/// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the fast model then
+/// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the reduced-order model then
 /// diverges; the case's steps are those that it does so with.
 pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
     let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
@@ -59,7 +59,7 @@ pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Foun
     let weights_hold = noise.iter().zip(former).all(|(new, old)| new.is_near(old));
     let settings = found.best.model.settings(case, &found.best.x);
     case.plan_steps(&settings, &noise)?;
-    case.leave_out_unheld(&settings)?;
+    case.leave_out_slack(&settings)?;
     let problem = open_runs(case, &noise);
     let start = problem.fit(&found.best.model, &found.best.x)?;
     let start = problem.fit_afresh(&start.model, &start.x, start.cost).unwrap_or(start);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::effects::Effect;
 
 use crate::diagnose::case::CaseRun;
-use crate::diagnose::fit::{Fit, Number, Probe, Problem, Rows, Sides, Variant, orthogonal, probe, simulate_many};
+use crate::diagnose::fit::{Fit, FitParameter, Probe, Problem, Rows, Sides, Variant, orthogonal, probe, simulate_many};
 
 /// Share of an effect in chi² per sample below which it is not called missing physics.
 const LEAST_SHARE: f64 = 2e-3;
@@ -32,7 +32,7 @@ pub struct Screened {
     pub least_size: f64,
     /// Whether the calibration has taken the effect in: it imitates nearly all of the signature, and what it does not
     /// points out of the effect's range. A misfit may then still be that effect's, at a size that only a refit finds.
-    pub is_swallowed: bool,
+    pub is_absorbed: bool,
     /// The signature without what the calibration can imitate, of unit length.
     direction: Arc<DVector<f64>>,
 }
@@ -72,7 +72,7 @@ impl Screened {
     }
 }
 
-/// Numbers to start a refit from: the size that the signature promises, kept within reason.
+/// Parameters to start a refit from: the size that the signature promises, kept within reason.
 pub(super) fn start_values(s: &Screened) -> Vec<f64> {
     let mut values = s.variant.values.clone();
     let p = &s.variant.placed.spec().parameters[0];
@@ -82,11 +82,11 @@ pub(super) fn start_values(s: &Screened) -> Vec<f64> {
     values
 }
 
-/// A fit with its slopes, and what the signatures of all variants promise there, best first.
+/// A fit with its Jacobian, and what the signatures of all variants promise there, best first.
 #[derive(Clone)]
 pub(super) struct Screening {
     pub from: Fit,
-    pub slopes: DMatrix<f64>,
+    pub jacobian: DMatrix<f64>,
     pub screened: Vec<Screened>,
 }
 
@@ -94,19 +94,19 @@ pub(super) struct Screening {
 pub(super) fn screen(problem: &Problem, from: &Fit, variants: &[Variant]) -> Option<Screening> {
     let known = problem.rows(&from.model, &from.x, 0..from.x.len(), Sides::Both)?;
     let screened = promises(problem, from, &known, variants);
-    Some(Screening { from: from.clone(), slopes: known.slopes, screened })
+    Some(Screening { from: from.clone(), jacobian: known.jacobian, screened })
 }
 
 /// The same share from which on nothing is left but rounding.
 const NOTHING_LEFT: f64 = 1e-9;
 /// Length of what the calibration cannot imitate of a signature, as a share of the signature, below which it may have taken
 /// the effect in.
-const SWALLOWED: f64 = 0.5;
+const ABSORBED: f64 = 0.5;
 
 /// What every variant promises, best first.
 fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
     let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
-    let basis = known.slopes.clone().qr().q();
+    let basis = known.jacobian.clone().qr().q();
     let left = orthogonal(&basis, &known.residual);
     let samples = known.residual.len();
     let signatures = signatures(problem, fit, &fresh.iter().map(|v| (*v, None)).collect::<Vec<_>>());
@@ -122,7 +122,7 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
             Screened {
                 gain: if feasible { amplitude * amplitude } else { 0.0 },
                 size: amplitude / length.max(f64::MIN_POSITIVE) * scale,
-                is_swallowed: !feasible && length > NOTHING_LEFT * raw.norm() && length < SWALLOWED * raw.norm(),
+                is_absorbed: !feasible && length > NOTHING_LEFT * raw.norm() && length < ABSORBED * raw.norm(),
                 least_size: least_gain(samples).sqrt() / length.max(f64::MIN_POSITIVE) * scale,
                 direction: Arc::new(signature / length.max(f64::MIN_POSITIVE)),
                 variant: variant.clone(),
@@ -136,7 +136,7 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
 /// A variant, its size as a fitted number, and how far from zero that is tried.
 struct Trial<'a> {
     variant: &'a Variant,
-    number: Number,
+    number: FitParameter,
     probe: Probe,
 }
 
@@ -173,9 +173,9 @@ fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<
     let mut series = simulate_many(case, run, &settings).into_iter();
     let Some(Some(base)) = series.next() else { return vec![None; trials.len()] };
     let column = |(trial, series): (&Trial, Option<Vec<Vec<f64>>>)| {
-        let slopes: Vec<Vec<f64>> = trial.probe.slope(&series?, &base);
-        let channels = 0..slopes.len();
-        let weighted = channels.flat_map(|c| problem.weighted_slope(run, c, &slopes[c], &trial.number));
+        let jacobian: Vec<Vec<f64>> = trial.probe.sensitivity(&series?, &base);
+        let channels = 0..jacobian.len();
+        let weighted = channels.flat_map(|c| problem.weighted_sensitivity(run, c, &jacobian[c], &trial.number));
         Some(DVector::from_vec(weighted.collect()))
     };
     trials.iter().zip(series).map(column).collect()
@@ -189,8 +189,8 @@ impl<'a> Trial<'a> {
         model.effects.push(variant.placed.clone());
         model.values.push(values);
         model.fitted.push(vec![0]);
-        let numbers = problem.numbers(&model);
-        let number = numbers[fit.x.len()];
+        let parameters = problem.parameters(&model);
+        let number = parameters[fit.x.len()];
         let small = probe(&number, 0.0, fit.x.len(), Sides::One);
         Self { variant, number, probe: Probe { step: size.unwrap_or(small.step), ..small } }
     }

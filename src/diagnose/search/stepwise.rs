@@ -1,6 +1,6 @@
 //! Which effects explain the recordings: ways up from the calibration, effect by effect.
 
-use super::exchange::Swaps;
+use super::exchange::Exchange;
 use super::screening::{Screened, least_gain, screen};
 use super::way::{Bound, MOST_EFFECTS, Seen, Up, Way, climb, leaves_much, several_to_begin};
 use crate::diagnose::fit::{Fit, Placed, Problem, Variant};
@@ -59,9 +59,9 @@ impl Begun {
         let screening = screen(problem, &baseline, variants);
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
         let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
-        let (mut swaps, mut seen) = (Swaps::new(problem, variants, Vec::new()), Seen::default());
-        let way = climb(&mut swaps, &baseline, way, &mut seen, (Up::to(1), Bound(None)), say);
-        Self { baseline, way, seen, known: swaps.known, screened, is_new: true }
+        let (mut exchange, mut seen) = (Exchange::new(problem, variants, Vec::new()), Seen::default());
+        let way = climb(&mut exchange, &baseline, way, &mut seen, (Up::to(1), Bound(None)), say);
+        Self { baseline, way, seen, known: exchange.known, screened, is_new: true }
     }
 
     /// From what a former search has found and known.
@@ -76,18 +76,18 @@ impl Begun {
             return Self { known, ..Self::with_one(problem, baseline, variants, say) };
         }
         let screened = screen(problem, &baseline, variants).map_or_else(Vec::new, |s| s.screened);
-        let mut swaps = Swaps::new(problem, variants, known);
-        let settled = swaps.settle(start, least_gain(problem.samples()), None, say);
-        let way = Way::at(settled.best, settled.rivals);
-        Self { baseline, way, seen: Seen::default(), known: swaps.known, screened, is_new: false }
+        let mut exchange = Exchange::new(problem, variants, known);
+        let converged = exchange.converge(start, least_gain(problem.samples()), None, say);
+        let way = Way::at(converged.best, converged.rivals);
+        Self { baseline, way, seen: Seen::default(), known: exchange.known, screened, is_new: false }
     }
 
     /// Goes on to so many effects one by one, and no further.
     pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
-        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let singly = Up { most, is_singly: true };
-        self.way = climb(&mut swaps, &self.baseline, self.way, &mut self.seen, (singly, Bound(None)), say);
-        self.known = swaps.known;
+        self.way = climb(&mut exchange, &self.baseline, self.way, &mut self.seen, (singly, Bound(None)), say);
+        self.known = exchange.known;
         self
     }
 
@@ -109,12 +109,12 @@ impl Begun {
     /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
     /// beginnings are tried as well. Where a law outdoes two effects the way ends there.
     pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
-        let mut swaps = Swaps::new(problem, variants, std::mem::take(&mut self.known));
+        let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();
         if self.is_new && self.way.best.model.effects.is_empty() {
-            self.way = several_to_begin(&mut swaps, self.way, say);
+            self.way = several_to_begin(&mut exchange, self.way, say);
         }
-        self.way = climb(&mut swaps, &baseline, self.way, &mut self.seen, (Up::to(MOST_EFFECTS), law), say);
+        self.way = climb(&mut exchange, &baseline, self.way, &mut self.seen, (Up::to(MOST_EFFECTS), law), say);
         let best = &self.way.best;
         let is_done = law.outdoes(problem, &baseline, best) || !leaves_much(problem, &baseline, best);
         if !self.is_new || best.model.effects.len() < 2 || is_done {
@@ -130,7 +130,7 @@ impl Begun {
             say(format!("once more, beginning with {}", other.model.title()));
             let mut way = Way::at(other, Vec::new());
             for most in 2..=MOST_EFFECTS {
-                way = climb(&mut swaps, &baseline, way, &mut self.seen, (Up::to(most), law), say);
+                way = climb(&mut exchange, &baseline, way, &mut self.seen, (Up::to(most), law), say);
                 if self.seen.is_behind(&way.best) {
                     break;
                 }
@@ -161,13 +161,14 @@ fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
 }
 
 /// What was found with another best model, and the rivals of that.
-pub(in crate::diagnose) fn settled(
+pub(in crate::diagnose) fn converged(
     problem: &Problem,
     found: Found,
     best: Fit,
     variants: &[Variant],
     say: &dyn Fn(String),
 ) -> Found {
-    let settled = Swaps::new(problem, variants, found.known()).settle(best, least_gain(problem.samples()), None, say);
-    Found { rivals_against: settled.best.cost, best: settled.best, rivals: settled.rivals, ..found }
+    let converged =
+        Exchange::new(problem, variants, found.known()).converge(best, least_gain(problem.samples()), None, say);
+    Found { rivals_against: converged.best.cost, best: converged.best, rivals: converged.rivals, ..found }
 }

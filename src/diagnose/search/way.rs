@@ -1,7 +1,9 @@
 //! One way up from a fit: effect by effect, or several at once.
 
-use super::exchange::{Settled, Stage, Swaps, is_same};
-use super::refits::{Swallowed, adds_branch, afresh, candidates, first_that_foretells, foretells, pick, refit};
+use super::exchange::{Converged, Exchange, Stage, is_same};
+use super::refits::{
+    Absorbed, adds_branch, afresh, candidates, cross_validates, first_that_cross_validates, pick, refit,
+};
 use super::screening::{Screening, least_gain, screen};
 use crate::diagnose::fit::{Fit, Problem};
 
@@ -86,17 +88,23 @@ impl Seen {
 }
 
 /// A way on which no single effect helped, begun with several at once; as it was where those do not help either.
-pub(super) fn several_to_begin(swaps: &mut Swaps, mut way: Way, say: &dyn Fn(String)) -> Way {
-    let least = least_gain(swaps.problem.samples());
-    if let Some(next) = together(swaps, &way.best, &way.first, least, say) {
+pub(super) fn several_to_begin(exchange: &mut Exchange, mut way: Way, say: &dyn Fn(String)) -> Way {
+    let least = least_gain(exchange.problem.samples());
+    if let Some(next) = together(exchange, &way.best, &way.first, least, say) {
         (way.best, way.rivals, way.is_at_end) = (next.best, next.rivals, false);
     }
     way
 }
 
 /// [`several_at_once`], and says so.
-fn together(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64, say: &dyn Fn(String)) -> Option<Settled> {
-    let next = several_at_once(swaps, before, refits, least)?;
+fn together(
+    exchange: &mut Exchange,
+    before: &Fit,
+    refits: &[Fit],
+    least: f64,
+    say: &dyn Fn(String),
+) -> Option<Converged> {
+    let next = several_at_once(exchange, before, refits, least)?;
     say(format!("together {}: chi2 {:.0} -> {:.0}", next.best.model.title(), before.cost, next.best.cost));
     Some(next)
 }
@@ -117,19 +125,19 @@ impl Up {
 
 /// Adds effect by effect, and settles after each, until nothing helps, a law outdoes them or another way has been there.
 pub(super) fn climb(
-    swaps: &mut Swaps,
+    exchange: &mut Exchange,
     baseline: &Fit,
     mut way: Way,
     seen: &mut Seen,
     (up, law): (Up, Bound),
     say: &dyn Fn(String),
 ) -> Way {
-    let problem = swaps.problem;
+    let problem = exchange.problem;
     while !way.is_at_end && way.best.model.effects.len() < up.most && !law.outdoes(problem, baseline, &way.best) {
         let best = &way.best;
         let tried = way.none_alone.take().map(Tried::NoneAlone).or_else(|| {
-            let screening = way.screening.take().or_else(|| screen(problem, best, swaps.variants))?;
-            Some(step_up(swaps, baseline, best, &screening, &mut way.first, say))
+            let screening = way.screening.take().or_else(|| screen(problem, best, exchange.variants))?;
+            Some(step_up(exchange, baseline, best, &screening, &mut way.first, say))
         });
         let next = match tried {
             Some(Tried::Better(next)) => Some(next),
@@ -139,7 +147,7 @@ pub(super) fn climb(
                 way.none_alone = Some(refits);
                 break;
             }
-            Some(Tried::NoneAlone(refits)) => together(swaps, best, &refits, least_of(problem, baseline, best), say),
+            Some(Tried::NoneAlone(refits)) => together(exchange, best, &refits, least_of(problem, baseline, best), say),
             None => None,
         };
         match next {
@@ -155,7 +163,7 @@ pub(super) fn climb(
 
 /// What comes of one effect more.
 enum Tried {
-    Better(Settled),
+    Better(Converged),
     /// None does its share by itself; with the refits of all that were tried, of which several together may.
     NoneAlone(Vec<Fit>),
 }
@@ -165,18 +173,18 @@ fn least_of(problem: &Problem, baseline: &Fit, best: &Fit) -> f64 {
     least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0))
 }
 
-/// The best with one effect more, settled. `first` gets the refits where there was none before.
+/// The best with one effect more, converged. `first` gets the refits where there was none before.
 fn step_up(
-    swaps: &mut Swaps,
+    exchange: &mut Exchange,
     baseline: &Fit,
     best: &Fit,
     screening: &Screening,
     first: &mut Vec<Fit>,
     say: &dyn Fn(String),
 ) -> Tried {
-    let problem = swaps.problem;
+    let problem = exchange.problem;
     let least = least_of(problem, baseline, best);
-    let refits = refit(problem, screening, &pick(&screening.screened, least, Swallowed::Any));
+    let refits = refit(problem, screening, &pick(&screening.screened, least, Absorbed::Any));
     let refits = afresh(problem, refits);
     if best.model.effects.is_empty() {
         first.clone_from(&refits);
@@ -184,16 +192,16 @@ fn step_up(
     let worthy = candidates(&refits, best, baseline.cost)
         .into_iter()
         .filter(|f| best.cost - f.cost > least && explains_its_share(problem, baseline.cost, best, f));
-    swaps.keep_in_mind(best, &refits, least);
-    let Some(winner) = first_that_foretells(problem, best, worthy, say).cloned() else {
+    exchange.keep_in_mind(best, &refits, least);
+    let Some(winner) = first_that_cross_validates(problem, best, worthy, say).cloned() else {
         return Tried::NoneAlone(refits);
     };
     say(format!("{}: chi2 {:.0} -> {:.0}", winner.model.title(), best.cost, winner.cost));
     if winner.model.effects.len() > 1 {
-        return Tried::Better(swaps.settle(winner, least, Some(Stage { before: best, refits: &refits }), say));
+        return Tried::Better(exchange.converge(winner, least, Some(Stage { before: best, refits: &refits }), say));
     }
     let rivals = refits.into_iter().filter(|f| f.model != winner.model).collect();
-    Tried::Better(Settled { best: winner, rivals: vec![rivals] })
+    Tried::Better(Converged { best: winner, rivals: vec![rivals] })
 }
 
 /// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which
@@ -204,24 +212,24 @@ const MUCH_PER_SAMPLE: f64 = 0.3;
 
 /// Two effects or more that explain together what is left over, where none of them does its share by itself: the first that was found
 /// may stand for another, and then each of the others alone changes little. `None` if they do not, or not on runs left out.
-fn several_at_once(swaps: &mut Swaps, before: &Fit, refits: &[Fit], least: f64) -> Option<Settled> {
-    let problem = swaps.problem;
+fn several_at_once(exchange: &mut Exchange, before: &Fit, refits: &[Fit], least: f64) -> Option<Converged> {
+    let problem = exchange.problem;
     let left = before.cost - problem.noise_cost();
     if left < MUCH_PER_SAMPLE * problem.samples() as f64 {
         return None;
     }
     let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();
     loop {
-        let settled = swaps.settle(best, least, None, &|_| {});
-        if before.cost - settled.best.cost > TOGETHER * left {
-            return foretells(problem, before, &settled.best).then_some(settled);
+        let converged = exchange.converge(best, least, None, &|_| {});
+        if before.cost - converged.best.cost > TOGETHER * left {
+            return cross_validates(problem, before, &converged.best).then_some(converged);
         }
-        if settled.best.model.effects.len() >= MOST_EFFECTS {
+        if converged.best.model.effects.len() >= MOST_EFFECTS {
             return None;
         }
-        let screening = screen(problem, &settled.best, swaps.variants)?;
-        let refits = refit(problem, &screening, &pick(&screening.screened, least, Swallowed::Any));
-        best = refits.into_iter().next().filter(|f| settled.best.cost - f.cost > least)?;
+        let screening = screen(problem, &converged.best, exchange.variants)?;
+        let refits = refit(problem, &screening, &pick(&screening.screened, least, Absorbed::Any));
+        best = refits.into_iter().next().filter(|f| converged.best.cost - f.cost > least)?;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Other places at which a law would do the same: what the sensors cannot tell apart.
 //!
 //! Where two places come out alike, the search stumbles on one of them. Along the runs of the model that was found signals are injected at
-//! every port; a slot whose curves imitate what the found effect does, all but what chance could make, the numbers of the calibration free,
+//! every port; a slot whose curves imitate what the found effect does, all but what chance could make, the parameters of the calibration free,
 //! is another place for it: over the same variable, over none, or, of a law, over another that goes with it in these runs.
 
 use super::shown::{Located, Shown};
@@ -131,9 +131,9 @@ mod tests {
         let others = elsewhere(&problem, &answered, 6.0);
         let as_good = others.iter().filter(|fit| fit.cost < answered.cost + 6.0);
         let last = as_good.filter_map(|fit| fit.model.effects.last());
-        let numbers = last.filter(|law| law.spec().unlisted().is_some_and(|own| own.law.variables().is_empty()));
-        let numbers: Vec<String> = numbers.map(verdict::port).collect();
-        assert_eq!(numbers, ["syringe.compliance"]);
+        let parameters = last.filter(|law| law.spec().unlisted().is_some_and(|own| own.law.variables().is_empty()));
+        let parameters: Vec<String> = parameters.map(verdict::port).collect();
+        assert_eq!(parameters, ["syringe.compliance"]);
         let is_in_muscle =
             |fit: &Fit| fit.model.effects.last().map(verdict::port).is_some_and(|p| p.starts_with("muscle"));
         assert!(answered.cost < baseline.cost - 1000.0 && !others.iter().any(is_in_muscle));

@@ -22,21 +22,21 @@ const PER_LETTER: f64 = 0.02;
 /// Forms that an answer names beside its own, at most.
 const MOST_FORMS: usize = 4;
 
-/// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + numbers ln(samples)`.
+/// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + parameters ln(samples)`.
 pub(super) struct Criterion {
     dispersion: f64,
-    per_number: f64,
+    per_parameter: f64,
 }
 
 impl Criterion {
     pub fn of<'a>(problem: &Problem, fits: impl IntoIterator<Item = &'a Fit>) -> Self {
         let least = fits.into_iter().map(|f| f.cost).fold(f64::INFINITY, f64::min);
         let dispersion = (least / problem.noise_cost().max(1.0)).max(1.0);
-        Self { dispersion, per_number: (problem.samples() as f64).ln() }
+        Self { dispersion, per_parameter: (problem.samples() as f64).ln() }
     }
 
     pub fn at(&self, fit: &Fit) -> f64 {
-        fit.cost / self.dispersion + fit.model.effect_numbers() as f64 * self.per_number
+        fit.cost / self.dispersion + fit.model.effect_parameters() as f64 * self.per_parameter
     }
 }
 

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::settled::{basis, in_noise, settled, where_settled};
+use super::linear_range::{basis, in_noise, linear_rows, where_linear};
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::diagnosis::{Curve, Freehand};
 use crate::diagnose::fit::{Fit, Placed, Problem, orthogonal};
@@ -35,10 +35,10 @@ pub(in crate::diagnose) fn freehand(problem: &Problem, fit: &Fit, at: usize, cur
         // What scales is scaled beside the law that is there.
         if law.acts == Acts::Scales { hat / read(curve, value) } else { hat }
     })?;
-    let settled = settled(problem, fit);
-    let (basis, left) = others(problem, fit, at, &settled)?;
+    let linear = linear_rows(problem, fit);
+    let (basis, left) = others(problem, fit, at, &linear)?;
     let seen: Vec<DVector<f64>> =
-        seen.into_iter().map(|column| orthogonal(&basis, &where_settled(column, &settled))).collect();
+        seen.into_iter().map(|column| orthogonal(&basis, &where_linear(column, &linear))).collect();
     let seen = DMatrix::from_columns(&seen);
     let (low, high) = curve.y.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
     let (gram, onto, known) = (seen.tr_mul(&seen), seen.tr_mul(&left), 1.0 / (high - low).powi(2));
@@ -48,7 +48,7 @@ pub(in crate::diagnose) fn freehand(problem: &Problem, fit: &Fit, at: usize, cur
     };
     // What even this leaves counts as noise.
     let (off, _) = solved(1.0)?;
-    let rows = settled.iter().filter(|settled| **settled).count().max(1) as f64;
+    let rows = linear.iter().filter(|linear| **linear).count().max(1) as f64;
     let (off, covariance) = solved(((&left - &seen * off).norm_squared() / rows).max(1.0))?;
     let (off, covariance) =
         if law.acts == Acts::Scales { about_its_level(&off, &covariance) } else { (off, covariance) };
@@ -111,14 +111,14 @@ fn in_run(
 ) -> Option<Vec<Vec<f64>>> {
     let setting = fit.model.setting(problem.case, run, &fit.x);
     let laws: Vec<Law> = parts.iter().map(|(law, _)| law.clone()).collect();
-    let visited = run.twin.visited(&run.drive, &setting, &laws)?;
+    let visited = run.rom.visited(&run.drive, &setting, &laws)?;
     let at: Vec<_> = parts.iter().map(|(_, acts)| acts.with(&[0.0])).collect();
     let of_knot = |series: &Vec<f64>, knot| series.iter().map(|value| hat(*value, knot)).collect();
     let signals = at
         .iter()
         .zip(&visited)
         .map(|(at, series)| Signals { at, values: (0..KNOTS).map(|knot| of_knot(series, knot)).collect() });
-    let changes = run.twin.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
+    let changes = run.rom.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
     let of_knot = |knot: usize| -> Option<Vec<f64>> {
         let mut sum: Option<Vec<f64>> = None;
         for part in &changes {
@@ -133,15 +133,16 @@ fn in_run(
     (0..KNOTS).map(of_knot).collect()
 }
 
-/// What all numbers but those of an effect, and the free zeros, can imitate where signals say something; what is left there without that.
-fn others(problem: &Problem, fit: &Fit, at: usize, settled: &[bool]) -> Option<(DMatrix<f64>, DVector<f64>)> {
+/// What all parameters but those of an effect, and the free zeros, can imitate where signals say something; what is left there without that.
+fn others(problem: &Problem, fit: &Fit, at: usize, linear: &[bool]) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let rows = problem.rows_of(fit)?;
     let calibration = problem.case.parameters.len();
     let is_other =
         |column: &usize| column.checked_sub(calibration).is_none_or(|number| fit.model.places()[number].0 != at);
-    let numbers = (0..rows.slopes.ncols()).filter(is_other).map(|column| rows.slopes.column(column).into_owned());
-    let basis = basis(numbers.chain(problem.free_zeros()), settled, rows.residual.len());
-    let left = orthogonal(&basis, &where_settled(rows.residual, settled));
+    let parameters =
+        (0..rows.jacobian.ncols()).filter(is_other).map(|column| rows.jacobian.column(column).into_owned());
+    let basis = basis(parameters.chain(problem.free_zeros()), linear, rows.residual.len());
+    let left = orthogonal(&basis, &where_linear(rows.residual, linear));
     Some((basis, left))
 }
 

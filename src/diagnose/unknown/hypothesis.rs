@@ -8,7 +8,9 @@ use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Placed, Problem};
 use crate::diagnose::grammar::Reach;
-use crate::diagnose::search::{Found, MOST_EFFECTS, foretells, foretells_runs, least_gain, leaves_much, reweight};
+use crate::diagnose::search::{
+    Found, MOST_EFFECTS, cross_validates, cross_validates_runs, least_gain, leaves_much, reweight,
+};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 
 /// Laws in one answer, at most.
@@ -128,8 +130,8 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
 pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
     let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
-        true => foretells(open, &found.baseline, lawful),
-        false => foretells_runs(open, &found.best, lawful),
+        true => cross_validates(open, &found.baseline, lawful),
+        false => cross_validates_runs(open, &found.best, lawful),
     };
     criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
 }

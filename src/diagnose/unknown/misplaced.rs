@@ -53,8 +53,8 @@ fn elsewhere(open: &Problem, found: &Found, index: usize, say: &dyn Fn(String)) 
 
 /// Whether something unknown at the likeliest place makes what an effect leaves out likelier than the effect does.
 fn is_likelier(open: &Problem, latents: &[Latent], bare: &Fit, with: &Fit) -> bool {
-    let numbers = with.model.effect_numbers() - bare.model.effect_numbers();
-    let explained = bare.cost - with.cost - numbers as f64 * (open.samples() as f64).ln();
+    let parameters = with.model.effect_parameters() - bare.model.effect_parameters();
+    let explained = bare.cost - with.cost - parameters as f64 * (open.samples() as f64).ln();
     latents.first().is_some_and(|likeliest| likeliest.log_odds > explained + CLEARLY)
 }
 

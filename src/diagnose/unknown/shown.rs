@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::settled::{basis, settled, where_settled};
+use super::linear_range::{basis, linear_rows, where_linear};
 use super::span::{explained, sizes};
 use crate::diagnose::case::CaseRun;
-use crate::diagnose::fit::{Fit, Model, Number, Problem, Rows, Sides, Underway, Variant, orthogonal};
+use crate::diagnose::fit::{Fit, FitParameter, Model, Problem, Rows, Sides, Underway, Variant, orthogonal};
 use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
@@ -51,7 +51,7 @@ fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
 }
 
-/// A law with numbers to start from.
+/// A law with parameters to start from.
 struct Candidate {
     model: Model,
     x: Vec<f64>,
@@ -64,10 +64,10 @@ pub(super) struct Shown<'a> {
     along: &'a Fit,
     /// The model that laws are added to.
     from: Fit,
-    /// What is measured by the numbers of `from`, and what these can imitate.
-    slopes: DMatrix<f64>,
+    /// What is measured by the parameters of `from`, and what these can imitate.
+    jacobian: DMatrix<f64>,
     /// Rows at which signals say something; what calibration and free zeros can imitate there.
-    settled: Vec<bool>,
+    linear: Vec<bool>,
     basis: DMatrix<f64>,
     /// What has to be explained there, less what these can imitate.
     left: DVector<f64>,
@@ -76,7 +76,7 @@ pub(super) struct Shown<'a> {
 impl<'a> Shown<'a> {
     /// What a fit leaves, whose rows are `known`.
     pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit, known: Rows) -> Self {
-        Self::along(problem, fit, fit.clone(), known.slopes, known.residual)
+        Self::along(problem, fit, fit.clone(), known.jacobian, known.residual)
     }
 
     /// What the last effect of a fit does, by its size. `None` where the model cannot be simulated, or the size is not fitted.
@@ -85,20 +85,20 @@ impl<'a> Shown<'a> {
         let without = Fit { x: problem.start_without(fit, last), model: fit.model.without(last), ..fit.clone() };
         let size = problem.case.parameters.len() + fit.model.places().iter().position(|p| *p == (last, 0))?;
         let known = problem.rows_of(fit)?;
-        let scale = problem.numbers(&fit.model)[size].scale;
-        let does = known.slopes.column(size) * (fit.x[size] / scale);
+        let scale = problem.parameters(&fit.model)[size].scale;
+        let does = known.jacobian.column(size) * (fit.x[size] / scale);
         let own = fit.x.len() - without.x.len();
-        let slopes = known.slopes.remove_columns(fit.x.len() - own, own);
-        Some(Self::along(problem, fit, without, slopes, does))
+        let jacobian = known.jacobian.remove_columns(fit.x.len() - own, own);
+        Some(Self::along(problem, fit, without, jacobian, does))
     }
 
-    /// What is `left` of a model along the runs of a fit, with what is measured by the model's numbers.
-    fn along(problem: &'a Problem<'a>, along: &'a Fit, from: Fit, slopes: DMatrix<f64>, left: DVector<f64>) -> Self {
-        let settled = settled(problem, along);
-        let free = slopes.column_iter().map(|column| column.into_owned()).chain(problem.free_zeros());
-        let basis = basis(free, &settled, left.len());
-        let left = orthogonal(&basis, &where_settled(left, &settled));
-        Self { problem, along, from, slopes, settled, basis, left }
+    /// What is `left` of a model along the runs of a fit, with what is measured by the model's parameters.
+    fn along(problem: &'a Problem<'a>, along: &'a Fit, from: Fit, jacobian: DMatrix<f64>, left: DVector<f64>) -> Self {
+        let linear = linear_rows(problem, along);
+        let free = jacobian.column_iter().map(|column| column.into_owned()).chain(problem.free_zeros());
+        let basis = basis(free, &linear, left.len());
+        let left = orthogonal(&basis, &where_linear(left, &linear));
+        Self { problem, along, from, jacobian, linear, basis, left }
     }
 
     /// Keeps of what has to be explained the part that curves over a slot's variable can. Differences hold more than signals along one run
@@ -146,9 +146,9 @@ impl<'a> Shown<'a> {
         let begin = |candidate: &Candidate| {
             let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
             let own = problem.rows(model, start, known..start.len(), Sides::One)?;
-            let mut slopes = self.slopes.clone().resize_horizontally(start.len(), 0.0);
-            slopes.columns_mut(known, own.slopes.ncols()).copy_from(&own.slopes);
-            let rows = Rows { residual: own.residual, slopes };
+            let mut jacobian = self.jacobian.clone().resize_horizontally(start.len(), 0.0);
+            jacobian.columns_mut(known, own.jacobian.ncols()).copy_from(&own.jacobian);
+            let rows = Rows { residual: own.residual, jacobian };
             Some(problem.go_on(problem.begin(model, start.clone(), rows), FIRST_STEPS))
         };
         let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
@@ -218,7 +218,7 @@ impl<'a> Shown<'a> {
         Some(self.with(&own))
     }
 
-    /// A law with its numbers beside the model that laws are added to.
+    /// A law with its parameters beside the model that laws are added to.
     fn with(&self, own: &Variant) -> Candidate {
         let model = self.from.model.plus(&own.placed, &own.values);
         let mut x = self.from.x.clone();
@@ -259,7 +259,7 @@ impl<'a> Shown<'a> {
             for &i in parts {
                 sum += signatures[i].as_ref()?;
             }
-            Some(orthogonal(&self.basis, &where_settled(sum, &self.settled)))
+            Some(orthogonal(&self.basis, &where_linear(sum, &self.linear)))
         };
         members.par_iter().map(sum).collect()
     }
@@ -288,7 +288,7 @@ impl<'a> Shown<'a> {
             .iter()
             .zip(&at)
             .map(|((_, own), at)| Signals { at, values: own.iter().map(|&i| signal(&wanted[i])).collect() });
-        let changes = run.twin.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
+        let changes = run.rom.injected(&run.drive, &setting, &signals.collect::<Vec<_>>());
         for ((port, own), changes) in ports.iter().zip(changes) {
             for (&i, change) in own.iter().zip(changes) {
                 found[i] = change.map(|change| self.weighted(run, &change, port.action.typical));
@@ -314,7 +314,9 @@ impl<'a> Shown<'a> {
         let number = number(size);
         let channels = self.problem.case.channels.iter().enumerate();
         let each = channels.flat_map(|(c, channel)| {
-            self.problem.weighted_slope(run, c, &change[channel.output][run.lead_in..], &number).collect::<Vec<f64>>()
+            self.problem
+                .weighted_sensitivity(run, c, &change[channel.output][run.lead_in..], &number)
+                .collect::<Vec<f64>>()
         });
         each.collect()
     }
@@ -332,6 +334,6 @@ fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> 
     if others.is_empty() { vec![slot].into_iter() } else { others.into_iter() }
 }
 
-fn number(scale: f64) -> Number {
-    Number { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: 1.0, prior: 0.0, prior_weight: 0.0 }
+fn number(scale: f64) -> FitParameter {
+    FitParameter { min: f64::NEG_INFINITY, max: f64::INFINITY, scale, step: 1.0, prior: 0.0, prior_weight: 0.0 }
 }

@@ -19,7 +19,7 @@ const SLOTS_OF_PORT: usize = 3;
 const SLOTS_BY_PLACE: usize = 8;
 const SLOTS_OF_PLACE: usize = 2;
 const WIDENED: usize = 4;
-/// Mere numbers that are refitted beside them.
+/// Constant laws that are refitted beside them.
 const NUMBERS: usize = 4;
 /// Shapes of one slot that are refitted there, and refits that are fitted to the end.
 const SHAPES_OF_SLOT: usize = 6;
@@ -79,9 +79,9 @@ pub(in crate::diagnose) fn propose(
         wide.first().map_or("", |s| &s.variable),
         wide.first().map_or("", |s| &s.address)
     ));
-    let numbers = some.iter().filter(|slot| slot.is_constant() && !best.contains(slot));
-    let numbers = numbers.filter(|slot| wide.iter().any(|w| w.address == slot.address));
-    let more: Vec<&Slot> = wide.iter().copied().chain(numbers).collect();
+    let parameters = some.iter().filter(|slot| slot.is_constant() && !best.contains(slot));
+    let parameters = parameters.filter(|slot| wide.iter().any(|w| w.address == slot.address));
+    let more: Vec<&Slot> = wide.iter().copied().chain(parameters).collect();
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
@@ -101,7 +101,7 @@ fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) ->
     wide
 }
 
-/// The best slots, few of them at ports of one kind, and the best mere numbers: first those of the likeliest places.
+/// The best slots, few of them at ports of one kind, and the best constant ones: first those of the likeliest places.
 fn several_ports<'a>(located: &'a [Located], latents: &[Latent]) -> Vec<&'a Slot> {
     let mut best: Vec<&Slot> = Vec::new();
     for latent in latents {

@@ -6,7 +6,7 @@ use crate::diagnose::diagnosis::Proof;
 use crate::diagnose::error::DiagnoseError;
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::full::{FullRun, agreement, play_full};
-use crate::diagnose::search::{self, Found, foretells};
+use crate::diagnose::search::{self, Found, cross_validates};
 use crate::diagnose::verdict::{self, Confirmed, misfit};
 use rayon::prelude::*;
 
@@ -49,7 +49,7 @@ fn missing_sensor<'a>(held_out: &Problem<'a>, found: &Found) -> Option<&'a str> 
     (apart < SHOWN).then_some(case.channels[lacking].column.as_str())
 }
 
-/// Takes back what the fast model cannot follow on every run, held-out ones included.
+/// Takes back what the reduced-order model cannot follow on every run, held-out ones included.
 pub(in crate::diagnose) fn take_back_unplayable(
     whole: &Problem,
     mut found: Found,
@@ -80,11 +80,11 @@ pub(in crate::diagnose) fn prune(
     while found.best.model.effects.len() > 1 {
         let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
         let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
-        let is_idle = |fewer: &Fit| !foretells(open, fewer, &found.best);
+        let is_idle = |fewer: &Fit| !cross_validates(open, fewer, &found.best);
         let idle = fewer.into_iter().flatten().filter(is_idle).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(fewer) = idle else { break };
         say(format!("{} predicts runs left out as well", fewer.model.title()));
-        found = search::settled(open, found, fewer, variants, say);
+        found = search::converged(open, found, fewer, variants, say);
     }
     found
 }
@@ -111,7 +111,7 @@ pub(in crate::diagnose) fn take_back_contradicted(
         warnings.push(format!("{title} {how}: it stands in for something else"));
         let start = open.start_without(&fewer.best, effect);
         match open.fit(&fewer.best.model.without(effect), &start).filter(|f| !f.model.effects.is_empty()) {
-            Some(fit) => fewer = search::settled(open, fewer, fit, variants, &|_| {}),
+            Some(fit) => fewer = search::converged(open, fewer, fit, variants, &|_| {}),
             None => return (found, Confirmed::InPart),
         }
     }
@@ -119,8 +119,8 @@ pub(in crate::diagnose) fn take_back_contradicted(
     if stands { (fewer, Confirmed::Yes) } else { (found, Confirmed::InPart) }
 }
 
-/// Plays what was found on the full scene. Where the fast model is not near it, the full scene's figures are the proof; where it
-/// cannot be played, that is said, and the fast model's stand.
+/// Plays what was found on the full scene. Where the reduced-order model is not near it, the full scene's figures are the proof; where it
+/// cannot be played, that is said, and the reduced-order model's stand.
 ///
 /// Whether the full scene can be played at all.
 pub fn check_on_full_scene(
@@ -133,7 +133,7 @@ pub fn check_on_full_scene(
     let compared = compare_with_full_scene(held_out, found, proof, seed, warnings);
     if let Err(e) = &compared {
         proof.full_scene.agrees = false;
-        warnings.push(format!("the full scene could not be played: all figures are the fast model's ({e})"));
+        warnings.push(format!("the full scene could not be played: all figures are the reduced-order model's ({e})"));
     }
     compared.is_ok()
 }
@@ -160,8 +160,8 @@ fn compare_with_full_scene(
             agreement.rms_difference_over_noise.iter().map(|(c, d)| format!("{c} by {d:.2} of the noise")).collect();
         let named = if found.best.model.effects.is_empty() { "that nothing is missing" } else { "what is named" };
         warnings.push(format!(
-            "the fast model differs from the full scene ({}): the figures of the held-out runs are those of the full scene, {named} rests on \
-             the fast model",
+            "the reduced-order model differs from the full scene ({}): the figures of the held-out runs are those of the full scene, {named} rests on \
+             the reduced-order model",
             differ.join(", ")
         ));
     }

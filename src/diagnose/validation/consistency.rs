@@ -40,13 +40,13 @@ pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
 }
 
 fn size_in(problem: &Problem, fit: &Fit, first: usize, place: usize) -> Option<Estimate> {
-    let numbers = &problem.numbers(&fit.model)[first..];
+    let parameters = &problem.parameters(&fit.model)[first..];
     let rows = problem.rows(&fit.model, &fit.x, first..fit.x.len(), Sides::Both)?;
-    let normal = Normal::of(&rows, numbers, &fit.x[first..]);
-    let step = normal.bounded_step(numbers, &fit.x[first..], 0.0)?[place] * numbers[place].scale;
+    let normal = Normal::of(&rows, parameters, &fit.x[first..]);
+    let step = normal.bounded_step(parameters, &fit.x[first..], 0.0)?[place] * parameters[place].scale;
     // Where a run is not explained down to its noise, what is left pulls at the sizes as well.
     let unit = (rows.residual.norm_squared() / rows.residual.len().max(1) as f64).max(1.0).sqrt();
-    let half = 1.96 * unit * normal.covariance()[(place, place)].max(0.0).sqrt() * numbers[place].scale;
+    let half = 1.96 * unit * normal.covariance()[(place, place)].max(0.0).sqrt() * parameters[place].scale;
     let value = fit.x[first + place] + step;
     half.is_finite().then_some(Estimate { value, ci95: [value - half, value + half] })
 }

@@ -173,11 +173,11 @@ fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
 
 /// Sum of squares of what a fit leaves at the samples of a run that are left out, in the units of [`Fit::cost`].
 fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option<f64> {
-    if run.unheld.iter().all(Vec::is_empty) {
+    if run.slack.iter().all(Vec::is_empty) {
         return Some(0.0);
     }
     let simulated = simulate(case, run, &fit.model, &fit.x)?;
-    let channels = run.unheld.iter().zip(&simulated).zip(noise);
+    let channels = run.slack.iter().zip(&simulated).zip(noise);
     let of_channel = channels.map(|((samples, values), noise)| -> f64 {
         samples.iter().map(|(i, measured)| ((measured - values[*i]) / noise.scale()).powi(2)).sum()
     });

@@ -189,9 +189,9 @@ pub fn lost(found: &Found) -> Vec<(String, f64)> {
     rows
 }
 
-/// A further branch of an effect that is named already: its numbers get the next free number as suffix.
-fn add_branch(effect: &mut NamedEffect, numbers: BTreeMap<String, Estimate>) {
-    for (key, number) in numbers {
+/// A further branch of an effect that is named already: its parameters get the next free number as suffix.
+fn add_branch(effect: &mut NamedEffect, parameters: BTreeMap<String, Estimate>) {
+    for (key, number) in parameters {
         let free = (2..).map(|n| format!("{key}_{n}")).find(|k| !effect.parameters.contains_key(k));
         effect.parameters.extend(free.map(|k| (k, number)));
     }
@@ -243,12 +243,12 @@ fn unit_of(found: &Found, left: f64) -> f64 {
     unit((found.baseline.cost - found.best.cost) / found.best.model.effects.len() as f64, left)
 }
 
-/// Numbers of one effect of a fit, with intervals for those that were fitted. An interval ends where its law does: a width of
+/// Parameters of one effect of a fit, with intervals for those that were fitted. An interval ends where its law does: a width of
 /// less than nothing is no news.
 fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
-    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let calibration = fit.x.len() - fit.model.effect_parameters();
     let spec = fit.model.effects[effect].spec();
-    let mut numbers = BTreeMap::new();
+    let mut parameters = BTreeMap::new();
     for (i, p) in spec.parameters.iter().enumerate() {
         let place = fit.model.places().iter().position(|&at| at == (effect, i));
         let estimate = match place {
@@ -261,9 +261,9 @@ fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
                 Estimate { value, ci95: [value, value] }
             }
         };
-        numbers.insert(p.key.to_owned(), estimate);
+        parameters.insert(p.key.to_owned(), estimate);
     }
-    numbers
+    parameters
 }
 
 #[cfg(test)]
@@ -280,7 +280,7 @@ mod tests {
             let placed = Placed { entry, element: Element::of(ElementKind::Muscle, 0, 1), channel: None };
             model.plus(&placed, &entry.typical())
         });
-        let n = model.effect_numbers();
+        let n = model.effect_parameters();
         let x = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
         Fit { model, x, cost, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() }
     }

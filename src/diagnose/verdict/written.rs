@@ -16,7 +16,7 @@ fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
     placed.spec().unlisted()
 }
 
-/// Says of an effect where it acts and on what it depends; of a written law also its text with the numbers of the fit.
+/// Says of an effect where it acts and on what it depends; of a written law also its text with the parameters of the fit.
 pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
     effect.port = port(placed);
     if let Some(own) = written(placed) {
@@ -46,18 +46,19 @@ pub fn port(placed: &Placed) -> String {
     }
 }
 
-/// All numbers of an effect of a fit.
+/// All parameters of an effect of a fit.
 fn values(fit: &Fit, effect: usize) -> Vec<f64> {
-    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let calibration = fit.x.len() - fit.model.effect_parameters();
     fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
 }
 
-/// A law with the numbers of an effect: its expression, then what it remembers.
-fn text(own: &WrittenLaw, numbers: &[f64]) -> String {
-    let values = own.values(numbers);
-    let number =
-        |expression: &Option<String>| expression.as_ref().map(|expression| with_numbers(&own.law, expression, &values));
-    let mut text = with_numbers(&own.law, &own.law.expression, &values);
+/// A law with the parameters of an effect: its expression, then what it remembers.
+fn text(own: &WrittenLaw, parameters: &[f64]) -> String {
+    let values = own.values(parameters);
+    let number = |expression: &Option<String>| {
+        expression.as_ref().map(|expression| with_parameters(&own.law, expression, &values))
+    };
+    let mut text = with_parameters(&own.law, &own.law.expression, &values);
     for (name, state) in &own.table.state {
         if let Some(rate) = number(&state.rate) {
             text += &format!("; d{name}/dt = {rate}");
@@ -73,7 +74,7 @@ fn text(own: &WrittenLaw, numbers: &[f64]) -> String {
 }
 
 /// A law's expression, or one of its states', with numbers in place of its parameters.
-fn with_numbers(law: &Law, expression: &str, values: &[f64]) -> String {
+fn with_parameters(law: &Law, expression: &str, values: &[f64]) -> String {
     let mut text = String::new();
     let mut word = String::new();
     for c in expression.chars().chain([' ']) {
@@ -123,13 +124,13 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
     fits.iter().filter_map(form).collect()
 }
 
-/// A written law over its variable, as far as the runs visited it; its band is that of its own numbers.
+/// A written law over its variable, as far as the runs visited it; its band is that of its own parameters.
 pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     let own = written(&fit.model.effects[at])?;
     let [variable] = own.law.variables()[..] else { return None };
     let visited = case.runs.iter().filter_map(|run| {
         let setting = fit.model.setting(case, run, &fit.x);
-        run.twin.visited(&run.drive, &setting, std::slice::from_ref(&own.law))
+        run.rom.visited(&run.drive, &setting, std::slice::from_ref(&own.law))
     });
     let (low, high) = visited
         .flatten()
@@ -140,7 +141,7 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     }
     let x: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect();
     let best = values(fit, at);
-    let over = |numbers: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, numbers, x)).collect() };
+    let over = |parameters: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, parameters, x)).collect() };
     let y = over(&best);
     let half = band(fit, at, &best, &y, &over);
     let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
@@ -149,13 +150,13 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
 }
 
 /// What a law is called by those who know it.
-fn known_as(own: &WrittenLaw, numbers: &[f64]) -> Option<String> {
-    known_as::known_as(&own.law, &own.values(numbers), &|x| value(own, numbers, x)).map(str::to_owned)
+fn known_as(own: &WrittenLaw, parameters: &[f64]) -> Option<String> {
+    known_as::known_as(&own.law, &own.values(parameters), &|x| value(own, parameters, x)).map(str::to_owned)
 }
 
-/// Value of a law at its variable, with the numbers of an effect.
-fn value(own: &WrittenLaw, numbers: &[f64], x: f64) -> f64 {
-    let values = own.values(numbers);
+/// Value of a law at its variable, with the parameters of an effect.
+fn value(own: &WrittenLaw, parameters: &[f64], x: f64) -> f64 {
+    let values = own.values(parameters);
     let read = |symbol: &Symbol| match symbol {
         Symbol::Parameter(p) => values[*p],
         Symbol::Constant(c) => *c,
@@ -165,9 +166,9 @@ fn value(own: &WrittenLaw, numbers: &[f64], x: f64) -> f64 {
     own.law.programs.value.value(&by_symbol)
 }
 
-/// Half of the 95 % band of a curve, from the covariance of the law's fitted numbers.
+/// Half of the 95 % band of a curve, from the covariance of the law's fitted parameters.
 fn band(fit: &Fit, at: usize, best: &[f64], y: &[f64], over: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
-    let calibration = fit.x.len() - fit.model.effect_numbers();
+    let calibration = fit.x.len() - fit.model.effect_parameters();
     let own = fit.model.places().into_iter().enumerate().filter(|(_, (effect, _))| *effect == at);
     let fitted: Vec<(usize, usize)> = own.map(|(k, (_, i))| (calibration + k, i)).collect();
     let slopes: Vec<Vec<f64>> = fitted
@@ -198,13 +199,13 @@ mod tests {
     use crate::effects::{EntryId, Fitted, Range};
     use crate::laws::{LawTable, Surroundings};
 
-    /// A law with a size `a`, absent at zero, as answers write it with these numbers.
+    /// A law with a size `a`, absent at zero, as answers write it with these parameters.
     fn written(table: &str, values: &[f64]) -> String {
         let table: LawTable = toml::from_str(table).expect("TOML");
         let law = table.law(&Surroundings::default()).expect("a law");
         let range = Range { min: -1e9, max: 1e9 };
-        let numbers = law.parameters.iter().map(|p| Fitted { typical: p.value, range, is_fitted: true });
-        let entry = EntryId::write(&table, &law, 0, &numbers.collect::<Vec<_>>());
+        let parameters = law.parameters.iter().map(|p| Fitted { typical: p.value, range, is_fitted: true });
+        let entry = EntryId::write(&table, &law, 0, &parameters.collect::<Vec<_>>());
         text(entry.entry().unlisted().expect("it was written"), values)
     }
 

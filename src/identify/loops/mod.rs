@@ -26,11 +26,11 @@
 //! ```
 
 mod cma;
+mod coarse;
 mod data;
 mod form;
 mod intervals;
 mod problem;
-mod scout;
 mod search;
 mod swarm;
 mod warnings;

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise_with_slopes};
 use super::cma::{CmaOptions, cma};
+use super::coarse::decimated;
 use super::form::ParameterSpec;
 use super::problem::Problem;
-use super::scout::thinned;
 use super::swarm::{SwarmOptions, least, swarm};
 
 /// How parameters are searched.
@@ -68,13 +68,13 @@ pub struct Found {
 const LOOKS: usize = 32;
 /// At most so many on a part of the samples, where they cost little: as many as the box has corners, for with many parameters most places
 /// are no model.
-const MOST_SCOUT_LOOKS: usize = 128;
+const MOST_COARSE_LOOKS: usize = 128;
 /// As far as the sequence goes.
 const MOST_LOOKS: usize = 1 << 16;
 /// Far below what noise decides; each further step costs a Jacobian.
 const DESCENT: LmOptions = LmOptions { max_iterations: 60, relative_decrease: 1e-7, difference: 1e-6 };
 /// Enough to tell which of several ends is the lowest.
-const SCOUTED: LmOptions = LmOptions { relative_decrease: 1e-6, ..DESCENT };
+const COARSE: LmOptions = LmOptions { relative_decrease: 1e-6, ..DESCENT };
 
 /// The free parameters of least F; `None` if no place within the bounds gives a model.
 pub fn search(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
@@ -107,13 +107,13 @@ fn best(found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
 /// of its samples, and then to the end on all of them.
 fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
     let starts = options.starts.max(1);
-    let Some(runs) = thinned(problem.runs) else {
+    let Some(runs) = decimated(problem.runs) else {
         let ends = descend_all(problem, LOOKS, starts, options.seed, DESCENT);
         return best(ends.into_iter().map(Some));
     };
-    let scout = problem.on(&runs);
-    let looks = 2usize.saturating_pow(problem.free().len() as u32).clamp(LOOKS, MOST_SCOUT_LOOKS);
-    let ends = descend_all(&scout, looks, starts, options.seed, SCOUTED);
+    let coarse = problem.on(&runs);
+    let looks = 2usize.saturating_pow(problem.free().len() as u32).clamp(LOOKS, MOST_COARSE_LOOKS);
+    let ends = descend_all(&coarse, looks, starts, options.seed, COARSE);
     let least = ends.first()?.mean_square_mm2;
     let evaluations: usize = ends.iter().map(|f| f.evaluations).sum();
     let mut tried: Vec<Vec<f64>> = Vec::new();
@@ -124,8 +124,8 @@ fn hybrid(problem: &Problem<'_>, options: &SearchOptions) -> Option<Found> {
     }
     let found = best(tried.iter().map(|place| descend(problem, place, DESCENT)))?;
     // Those on a part of the samples count as that part.
-    let scouted = (evaluations * scout.counted()).div_ceil(problem.counted());
-    Some(Found { evaluations: found.evaluations + scouted, ..found })
+    let coarsely = (evaluations * coarse.counted()).div_ceil(problem.counted());
+    Some(Found { evaluations: found.evaluations + coarsely, ..found })
 }
 
 /// Ends of descents that are gone on with: those whose F is no more than this many times the least.

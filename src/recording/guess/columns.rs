@@ -99,7 +99,7 @@ fn rises(layout: &Layout, at: usize) -> bool {
 fn is_clock(file: &Path, layout: &mut Layout, at: usize, label: &Label, sureness: Sureness) -> bool {
     let (options, count) = (layout.options.clone(), layout.said.len());
     declare_time(layout, at, label, sureness);
-    let is_one = mend_clock(file, layout, sureness);
+    let is_one = repair_clock(file, layout, sureness);
     if !is_one {
         layout.options = options;
         layout.said.truncate(count);
@@ -182,7 +182,7 @@ fn pair(column: &GuessedColumn, wanted: &Wanted) -> f64 {
 
 /// Restarts and repeated stamps, over the whole file; `false` for a column that goes back so often, or at all where it was only
 /// assumed to be the time, that it is no clock.
-fn mend_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
+fn repair_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
     // What cannot be read at all is said when what was written is read.
     let Ok(faults) = clock_faults(file, &layout.options) else { return true };
     let most = if sureness == Sureness::Assumed { 0 } else { faults.rows / FEWEST_ROWS };

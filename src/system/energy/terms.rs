@@ -1,4 +1,4 @@
-//! The terms of the energy book at one state: powers, and what is stored.
+//! The terms of the energy balance at one state: powers, and what is stored.
 
 use crate::system::effect_energy::restriction_w;
 use crate::system::elastic::Elastic;

@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::mechanism::Mechanism;
 use crate::system::build::{Built, Displacement};
 use crate::system::contact::foreseen;
-use crate::system::energy::EnergyBook;
+use crate::system::energy::EnergyBalance;
 use crate::system::plant::{InputSpan, Instant, Plant};
 use crate::system::state::PlantState;
 use crate::system::switching::Watch;
@@ -50,8 +50,8 @@ impl Simulation {
     fn fine_step(&mut self, h: f64, pulling: &mut Option<u64>) {
         let Built { plant, state, .. } = &mut self.built;
         let mut now = pulling.unwrap_or_else(|| plant.pulling::<0>(&Instant::of(state, &self.spans, 0.0)));
-        let mut books = Books { energy: self.energy.as_mut(), contact_impulse: &mut self.contact_impulse };
-        self.stepper.advance(plant, state, &mut self.spans, h, &mut now, &mut books);
+        let mut balances = Balances { energy: self.energy.as_mut(), contact_impulse: &mut self.contact_impulse };
+        self.stepper.advance(plant, state, &mut self.spans, h, &mut now, &mut balances);
         *pulling = Some(now);
     }
 
@@ -133,22 +133,22 @@ impl Simulation {
             *w += (position - *y) / h;
             *y = position;
         }
-        if let Some(book) = &mut self.energy {
-            book.engine_changed(plant, state, &self.spans, 0.0);
+        if let Some(balance) = &mut self.energy {
+            balance.engine_changed(plant, state, &self.spans, 0.0);
         }
     }
 }
 
 /// What is summed up over the fine steps.
-struct Books<'a> {
-    energy: Option<&'a mut EnergyBook>,
+struct Balances<'a> {
+    energy: Option<&'a mut EnergyBalance>,
     contact_impulse: &'a mut f64,
 }
 
-impl Watch<f64> for Books<'_> {
+impl Watch<f64> for Balances<'_> {
     fn begin(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
-        if let Some(book) = &mut self.energy {
-            book.before(plant, state, inputs);
+        if let Some(balance) = &mut self.energy {
+            balance.before(plant, state, inputs);
         }
     }
 
@@ -156,8 +156,8 @@ impl Watch<f64> for Books<'_> {
         if let Some(contact) = &plant.coordinates.contact {
             *self.contact_impulse += h * contact.push(state.y(), state.w());
         }
-        if let Some(book) = &mut self.energy {
-            book.after(plant, state, inputs, h);
+        if let Some(balance) = &mut self.energy {
+            balance.after(plant, state, inputs, h);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Small signals at ports of the fast model: what they change of its outputs.
+//! Small signals at ports of the reduced-order model: what they change of its outputs.
 //!
 //! A signal costs a product of a small matrix and a vector for each sample, whatever the model ([`Linear`]).
 
@@ -9,7 +9,7 @@ use crate::scalar::Lanes;
 
 use super::linear::{Block, Linear};
 use super::output::Sensors;
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting};
 
 /// Signals that go through it together.
 const SIGNALS: usize = 8;
@@ -25,11 +25,11 @@ pub struct Signals<'a> {
 /// What a signal changes of every output, in the unit of its column, by output and sample.
 pub type Change = Vec<Vec<f64>>;
 
-impl Twin {
+impl Rom {
     /// What each signal changes, per unit, by port and signal; none where the model diverges.
     ///
     /// Branches are those of the run without signals: what comes out is the response along them.
-    pub fn injected(&self, run: &TwinRun, setting: &TwinSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
+    pub fn injected(&self, run: &RomRun, setting: &RomSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
         let at: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
         let linear = self.linear(run, setting, &at);
         let Some(changes) = linear.and_then(|linear| through(linear, ports)) else {
@@ -41,12 +41,12 @@ impl Twin {
     }
 
     /// Whether something acts on what the model shows.
-    pub fn has_sensors(&self, setting: &TwinSetting<f64>) -> bool {
+    pub fn has_sensors(&self, setting: &RomSetting<f64>) -> bool {
         super::many::without_sensors(setting) != *setting || self.outputs.iter().any(|o| !o.laws.is_empty())
     }
 
     /// What sensors make of a change, which they see on top of what the model shows.
-    fn shown_by_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> impl Fn(Change) -> Change {
+    fn shown_by_sensors(&self, run: &RomRun, setting: &RomSetting<f64>) -> impl Fn(Change) -> Change {
         let without = super::many::without_sensors(setting);
         let base =
             if self.has_sensors(setting) { self.without_laws_of_sensors().simulate(run, &without) } else { None };
@@ -72,7 +72,7 @@ fn through(mut linear: Linear, signals: &[Signals]) -> Option<impl Iterator<Item
     let each = signals.iter().enumerate();
     let mut waves: Vec<Wave> = each
         .flat_map(|(port, own)| own.values.chunks(SIGNALS).map(move |signals| (port, signals)))
-        .map(|(port, signals)| Wave::new(port, signals, linear.numbers.len(), linear.start(port)))
+        .map(|(port, signals)| Wave::new(port, signals, linear.states.len(), linear.start(port)))
         .collect();
     while let Some(block) = linear.next_block() {
         waves.par_iter_mut().for_each(|wave| wave.go_on(&block));
@@ -92,12 +92,12 @@ struct Wave<'a> {
 
 impl<'a> Wave<'a> {
     /// At the first sample, where what acts at its port comes to `start`.
-    fn new(port: usize, signals: &'a [Vec<f64>], numbers: usize, start: &[f64]) -> Self {
+    fn new(port: usize, signals: &'a [Vec<f64>], states: usize, start: &[f64]) -> Self {
         let samples = signals.first().map_or(0, Vec::len);
-        let outputs = start.len() - numbers;
+        let outputs = start.len() - states;
         let changes = vec![vec![Vec::with_capacity(samples); outputs]; signals.len()];
         let none = Lanes([0.0; SIGNALS]);
-        let mut wave = Self { port, signals, state: vec![none; numbers], next: vec![none; numbers + outputs], changes };
+        let mut wave = Self { port, signals, state: vec![none; states], next: vec![none; states + outputs], changes };
         wave.act(|signal| signal[0], start);
         wave.note();
         wave
@@ -172,13 +172,13 @@ mod tests {
 
     /// Derivatives to the size of such a law, by output and sample. By numbers whose values are plain arithmetic's, as those of the
     /// matrices: where cables are about to go slack the last bit decides on the branch.
-    fn exact(twin: &Twin, run: &TwinRun, law: Effect<f64>) -> Vec<Vec<f64>> {
+    fn exact(rom: &Rom, run: &RomRun, law: Effect<f64>) -> Vec<Vec<f64>> {
         let Effect { entry, element, channel, values } = law;
         let mut values: Vec<Jet<1>> = values.into_iter().map(Jet::from).collect();
         values[0].slopes = [1.0];
         let effects = vec![Effect { entry, element, channel, values }];
-        let setting = TwinSetting { parameters: Vec::new(), effects };
-        let series = blended_at_rest(|| twin.simulate(run, &setting)).expect("it does not diverge");
+        let setting = RomSetting { parameters: Vec::new(), effects };
+        let series = blended_at_rest(|| rom.simulate(run, &setting)).expect("it does not diverge");
         series.into_iter().map(|channel| channel.into_iter().map(|x| x.slopes[0]).collect()).collect()
     }
 
@@ -188,8 +188,8 @@ mod tests {
     fn a_small_signal_does_what_a_small_law_does() {
         for name in ["muscle_bench", "antagonistic_pulley", "bending_catheter"] {
             let scene = Scene::load(name, &[]).expect("a stock scene");
-            let twin = Twin::new(&scene).expect("a fast model");
-            let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.002));
+            let rom = Rom::new(&scene).expect("a reduced-order model");
+            let run = RomRun::of_programs(&scene, &Schedule::even(2.0, 0.002));
             let has = |spec: &&PortSpec| match spec.carrier {
                 Carrier::Muscle => true,
                 Carrier::Cable | Carrier::Joint => !scene.file.cable.is_empty(),
@@ -201,18 +201,18 @@ mod tests {
             let steady = vec![1.0; swing.len()];
             let values = [vec![steady; SIGNALS], vec![swing]].concat();
             let signals: Vec<Signals> = at.iter().map(|at| Signals { at, values: values.clone() }).collect();
-            let found = twin.injected(&run, &TwinSetting::default(), &signals);
-            let moving = twin.columns().position(|c| ["elongation_mm", "angle_deg", "bend_deg"].contains(&c));
+            let found = rom.injected(&run, &RomSetting::default(), &signals);
+            let moving = rom.columns().position(|c| ["elongation_mm", "angle_deg", "bend_deg"].contains(&c));
             let moving = moving.expect("what moves");
             for (spec, found) in ports.iter().zip(found) {
                 let [steady, other, swinging] = [0, 7, 8].map(|i| found[i].as_ref().expect("finite"));
                 let port = (name, spec.element, spec.term);
                 assert_eq!(steady, other);
-                for (change, exact) in steady.iter().zip(exact(&twin, &run, law(spec, false))) {
+                for (change, exact) in steady.iter().zip(exact(&rom, &run, law(spec, false))) {
                     let off = off(change, &exact);
                     assert!(off < 1e-6, "{port:?}: {off}");
                 }
-                let off = off(&swinging[moving], &exact(&twin, &run, law(spec, true))[moving]);
+                let off = off(&swinging[moving], &exact(&rom, &run, law(spec, true))[moving]);
                 assert!(off < 0.05, "{port:?} swings: {off}");
             }
         }

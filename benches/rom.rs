@@ -1,22 +1,22 @@
-//! How many times faster than the rig the fast model runs, on one core, and what each step costs in accuracy.
+//! How many times faster than the rig the reduced-order model runs, on one core, and what each step costs in accuracy.
 //!
-//! Every stock scene that has a fast model, over its own programme. The error is the greatest difference from the
+//! Every stock scene that has a reduced-order model, over its own programme. The error is the greatest difference from the
 //! smallest step, in percent of the channel's range, after the start has rung out.
 
 use std::time::Duration;
 
 use cpu_time::ProcessTime;
-use smam::bench::TwinSpeed;
+use smam::bench::RomSpeed;
 use smam::scene::Scene;
-use smam::system::{Schedule, Twin, TwinRun, TwinSetting};
+use smam::system::{Rom, RomRun, RomSetting, Schedule};
 
 const SCENES: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_catheter"];
-/// Shares of the step that the fast model chooses by itself; errors are counted from the first.
+/// Shares of the step that the reduced-order model chooses by itself; errors are counted from the first.
 const STEPS: [f64; 6] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
 
-fn run(twin: &Twin, run: &TwinRun) -> (Option<Vec<Vec<f64>>>, Duration) {
+fn run(rom: &Rom, run: &RomRun) -> (Option<Vec<Vec<f64>>>, Duration) {
     let begun = ProcessTime::now();
-    let series = twin.simulate(run, &TwinSetting::default());
+    let series = rom.simulate(run, &RomSetting::default());
     (series, begun.elapsed())
 }
 
@@ -29,23 +29,23 @@ fn error_percent(reference: &[f64], series: &[f64]) -> f64 {
 fn main() {
     for name in SCENES {
         let scene = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let mut twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-        let drive = TwinRun::of_programs(&scene, &Schedule::even(60.0, 0.01));
-        let chosen_s = twin.step_s;
+        let mut rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+        let drive = RomRun::of_programs(&scene, &Schedule::even(60.0, 0.01));
+        let chosen_s = rom.step_s;
         let mut reference: Option<Vec<Vec<f64>>> = None;
         for share in STEPS {
-            twin.step_s = share * chosen_s;
-            let (series, took) = run(&twin, &drive);
+            rom.step_s = share * chosen_s;
+            let (series, took) = run(&rom, &drive);
             let Some(series) = series else {
-                println!("{name:<20} step {:.3} ms: diverges", 1e3 * twin.step_s);
+                println!("{name:<20} step {:.3} ms: diverges", 1e3 * rom.step_s);
                 continue;
             };
             let finest = reference.get_or_insert_with(|| series.clone());
             let worst = finest.iter().zip(&series).map(|(r, s)| error_percent(r, s)).fold(0.0, f64::max);
             let speed = 60.0 / took.as_secs_f64();
-            println!("{name:<20} step {:.3} ms: {speed:>6.0} x real time, error {worst:.4} %", 1e3 * twin.step_s);
+            println!("{name:<20} step {:.3} ms: {speed:>6.0} x real time, error {worst:.4} %", 1e3 * rom.step_s);
         }
-        let TwinSpeed { singly, side_by_side, .. } = TwinSpeed::of(name, 3).unwrap_or_else(|e| panic!("{e}"));
+        let RomSpeed { singly, side_by_side, .. } = RomSpeed::of(name, 3).unwrap_or_else(|e| panic!("{e}"));
         println!("{name:<20} sets one by one {singly:.0} x real time, side by side {side_by_side:.0}");
     }
 }

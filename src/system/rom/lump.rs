@@ -33,7 +33,7 @@ pub(super) fn refuse_what_has_none(scene: &Scene, built: &Built) -> Result<(), S
         Err(SystemError::Name {
             file: scene.path.clone(),
             table: table.to_owned(),
-            message: format!("{message}: there is no fast model of this scene"),
+            message: format!("{message}: there is no reduced-order model of this scene"),
             remedy: "diagnose a recording of a scene without it".to_owned(),
         })
     };

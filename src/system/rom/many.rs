@@ -1,8 +1,8 @@
-//! Several settings of the fast model over one run, side by side.
+//! Several settings of the reduced-order model over one run, side by side.
 //!
 //! What differs between the settings stands in [`Lanes`]; an instruction then works for several of them. From one sample to
 //! the next the model needs nothing but the state, so an interval in which the settings would not all take the same
-//! branch is taken back and done for each by itself: results are those of [`Twin::simulate`] to the last bit.
+//! branch is taken back and done for each by itself: results are those of [`Rom::simulate`] to the last bit.
 
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::system::plant::Plant;
 
 use super::course::Course;
 use super::output::Sensors;
-use super::{Twin, TwinParameter, TwinRun, TwinSetting};
+use super::{Rom, RomParameter, RomRun, RomSetting};
 
 /// Settings taken together, at most.
 const TOGETHER: usize = 8;
@@ -26,14 +26,14 @@ const LONGEST_APART: u32 = 16;
 
 type Outputs = Option<Vec<Vec<f64>>>;
 
-impl Twin {
-    /// Simulates every setting as [`Twin::simulate`] would, but together what can be: settings that differ in their sensors
+impl Rom {
+    /// Simulates every setting as [`Rom::simulate`] would, but together what can be: settings that differ in their sensors
     /// alone are simulated once, those that differ in numbers side by side, groups on all threads.
-    pub fn simulate_many(&self, run: &TwinRun, settings: &[TwinSetting<f64>]) -> Vec<Outputs> {
+    pub fn simulate_many(&self, run: &RomRun, settings: &[RomSetting<f64>]) -> Vec<Outputs> {
         if self.standalone.is_some() {
             return settings.par_iter().map(|setting| self.simulate(run, setting)).collect();
         }
-        let mut bodies: Vec<TwinSetting<f64>> = Vec::with_capacity(settings.len());
+        let mut bodies: Vec<RomSetting<f64>> = Vec::with_capacity(settings.len());
         let mut body_of = Vec::with_capacity(settings.len());
         for setting in settings {
             let body = without_sensors(setting);
@@ -44,7 +44,7 @@ impl Twin {
             }
         }
         let series = self.bodies(run, &bodies);
-        let shown = |(setting, body): (&TwinSetting<f64>, &usize)| {
+        let shown = |(setting, body): (&RomSetting<f64>, &usize)| {
             let shown = self.through_sensors(run, setting, series[*body].as_ref()?);
             super::output::are_shown(&self.outputs, setting, &shown).then_some(shown)
         };
@@ -52,9 +52,9 @@ impl Twin {
     }
 
     /// What sensors without error would show.
-    fn bodies(&self, run: &TwinRun, bodies: &[TwinSetting<f64>]) -> Vec<Outputs> {
+    fn bodies(&self, run: &RomRun, bodies: &[RomSetting<f64>]) -> Vec<Outputs> {
         let found = groups(bodies).into_par_iter().map(|group| {
-            let settings: Vec<&TwinSetting<f64>> = group.iter().map(|&i| &bodies[i]).collect();
+            let settings: Vec<&RomSetting<f64>> = group.iter().map(|&i| &bodies[i]).collect();
             (self.group(run, &settings), group)
         });
         let mut series = vec![None; bodies.len()];
@@ -64,7 +64,7 @@ impl Twin {
         series
     }
 
-    fn group(&self, run: &TwinRun, group: &[&TwinSetting<f64>]) -> Vec<Outputs> {
+    fn group(&self, run: &RomRun, group: &[&RomSetting<f64>]) -> Vec<Outputs> {
         // Levers that follow the pose are the lanes' own at once.
         let together = match group.len() {
             _ if self.plant.posed.is_some() => None,
@@ -76,15 +76,15 @@ impl Twin {
     }
 
     /// None where the settings cannot go side by side.
-    fn together<const L: usize>(&self, run: &TwinRun, group: &[&TwinSetting<f64>]) -> Option<Vec<Outputs>> {
+    fn together<const L: usize>(&self, run: &RomRun, group: &[&RomSetting<f64>]) -> Option<Vec<Outputs>> {
         let shown = self.bundle::<L>(run, group)?.follow(self);
         Some(shown.into_iter().take(group.len()).collect())
     }
 
     /// The settings as one.
-    fn bundle<'a, const L: usize>(&self, run: &'a TwinRun, group: &[&TwinSetting<f64>]) -> Option<Bundle<'a, L>> {
+    fn bundle<'a, const L: usize>(&self, run: &'a RomRun, group: &[&RomSetting<f64>]) -> Option<Bundle<'a, L>> {
         // A group that is not full is filled up with its last.
-        let filled: [&TwinSetting<f64>; L] = std::array::from_fn(|i| group[i.min(group.len() - 1)]);
+        let filled: [&RomSetting<f64>; L] = std::array::from_fn(|i| group[i.min(group.len() - 1)]);
         let setting = side_by_side(filled);
         take_disagreement();
         let (mut plant, state) = self.prepare(&setting);
@@ -109,7 +109,7 @@ impl Twin {
         })
     }
 
-    fn through_sensors(&self, run: &TwinRun, setting: &TwinSetting<f64>, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    fn through_sensors(&self, run: &RomRun, setting: &RomSetting<f64>, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut sensors = Sensors::new(&self.outputs, setting);
         let channels = self.outputs.iter().zip(series);
         let mut show = |(output, values): (_, &Vec<f64>)| {
@@ -119,15 +119,15 @@ impl Twin {
     }
 }
 
-pub(super) fn without_sensors(setting: &TwinSetting<f64>) -> TwinSetting<f64> {
+pub(super) fn without_sensors(setting: &RomSetting<f64>) -> RomSetting<f64> {
     let mut body = setting.clone();
     body.effects.retain(|effect| effect.element.kind != ElementKind::Sensor);
-    body.parameters.retain(|(parameter, _)| !matches!(parameter, TwinParameter::SensorLaw(..)));
+    body.parameters.retain(|(parameter, _)| !matches!(parameter, RomParameter::SensorLaw(..)));
     body
 }
 
 /// Settings of the same shape, by their places in the list, at most [`TOGETHER`] in a group.
-fn groups(settings: &[TwinSetting<f64>]) -> Vec<Vec<usize>> {
+fn groups(settings: &[RomSetting<f64>]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (i, setting) in settings.iter().enumerate() {
         let has_room = |group: &&mut Vec<usize>| group.len() < TOGETHER && is_like(&settings[group[0]], setting);
@@ -140,7 +140,7 @@ fn groups(settings: &[TwinSetting<f64>]) -> Vec<Vec<usize>> {
 }
 
 /// Whether settings differ in their numbers alone.
-fn is_like(one: &TwinSetting<f64>, other: &TwinSetting<f64>) -> bool {
+fn is_like(one: &RomSetting<f64>, other: &RomSetting<f64>) -> bool {
     let parameters = one.parameters.iter().map(|p| &p.0).eq(other.parameters.iter().map(|p| &p.0));
     let effects = one.effects.iter().zip(&other.effects).all(|(a, b)| {
         (a.entry, a.element, &a.channel, a.values.len()) == (b.entry, b.element, &b.channel, b.values.len())
@@ -149,12 +149,12 @@ fn is_like(one: &TwinSetting<f64>, other: &TwinSetting<f64>) -> bool {
 }
 
 /// Settings that are alike, as one of lanes.
-fn side_by_side<const L: usize>(settings: [&TwinSetting<f64>; L]) -> TwinSetting<Lanes<L>> {
+fn side_by_side<const L: usize>(settings: [&RomSetting<f64>; L]) -> RomSetting<Lanes<L>> {
     let first = settings[0];
-    let lanes = |number: &dyn Fn(&TwinSetting<f64>) -> f64| Lanes(settings.map(number));
+    let lanes = |number: &dyn Fn(&RomSetting<f64>) -> f64| Lanes(settings.map(number));
     let parameters = first.parameters.iter().enumerate();
     let effects = first.effects.iter().enumerate();
-    TwinSetting {
+    RomSetting {
         parameters: parameters.map(|(i, (which, _))| (which.clone(), lanes(&|s| s.parameters[i].1))).collect(),
         effects: effects
             .map(|(i, effect)| Effect {
@@ -185,7 +185,7 @@ enum Phase {
 
 /// Settings on their way through a run.
 struct Bundle<'a, const L: usize> {
-    run: &'a TwinRun,
+    run: &'a RomRun,
     plant: Plant<Lanes<L>>,
     course: Course<Lanes<L>>,
     /// For what laws do where outputs are read.
@@ -200,15 +200,15 @@ struct Bundle<'a, const L: usize> {
 
 impl<const L: usize> Bundle<'_, L> {
     /// Goes through the run; what sensors without error would show of each setting, none where it diverges.
-    fn follow(mut self, twin: &Twin) -> [Outputs; L] {
-        let rows = vec![Vec::with_capacity(self.run.times_s.len()); twin.outputs.len()];
+    fn follow(mut self, rom: &Rom) -> [Outputs; L] {
+        let rows = vec![Vec::with_capacity(self.run.times_s.len()); rom.outputs.len()];
         let mut series: [Vec<Vec<f64>>; L] = std::array::from_fn(|_| rows.clone());
         for k in 0..self.run.times_s.len() {
             if k > 0 {
-                self.advance(twin, k);
+                self.advance(rom, k);
             }
-            for output in 0..twin.outputs.len() {
-                let read = self.read(twin, output);
+            for output in 0..rom.outputs.len() {
+                let read = self.read(rom, output);
                 series.iter_mut().zip(read).for_each(|(series, read)| series[output].push(read));
             }
         }
@@ -217,8 +217,8 @@ impl<const L: usize> Bundle<'_, L> {
     }
 
     /// Over the interval that ends at sample `k`.
-    fn advance(&mut self, twin: &Twin, k: usize) {
-        let steps = twin.steps_in(self.run, k);
+    fn advance(&mut self, rom: &Rom, k: usize) {
+        let steps = rom.steps_in(self.run, k);
         if self.phase == Phase::Together {
             self.before.clone_from(&self.course.state);
             self.course.advance(&mut self.plant, self.run, k, steps);
@@ -260,8 +260,8 @@ impl<const L: usize> Bundle<'_, L> {
     }
 
     /// What an output shows of each setting.
-    fn read(&mut self, twin: &Twin, output: usize) -> [f64; L] {
-        let output = &twin.outputs[output];
+    fn read(&mut self, rom: &Rom, output: usize) -> [f64; L] {
+        let output = &rom.outputs[output];
         if self.phase == Phase::Together {
             let Lanes(read) = output.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room);
             if !take_disagreement() {

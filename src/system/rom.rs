@@ -1,4 +1,4 @@
-//! The fast model of a scene: the same elements on a mechanism reduced to its few coordinates.
+//! The reduced-order model of a scene: the same elements on a mechanism reduced to its few coordinates.
 //!
 //! Hinges in series with equal lever, spring and damper become one coordinate, their sum; inertia is that of the start
 //! pose, and so are weights where no cable runs over via points (`posed.rs`). Everything else - line, muscles, cables, effects, the integrator - is the code of the full scene, so the two
@@ -14,8 +14,8 @@ mod many;
 mod output;
 mod parameter;
 mod plan;
+mod slack;
 mod steady;
-mod unheld;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -37,20 +37,20 @@ use course::Course;
 pub use inject::{Change, Signals};
 pub use linear::{Block, Linear};
 pub(super) use output::sensor;
-use output::{Sensors, TwinOutput};
-pub use parameter::{MuscleNumber, TwinParameter};
+use output::{RomOutput, Sensors};
+pub use parameter::{MuscleNumber, RomParameter};
 pub use plan::StepPlan;
 
-/// What drives a [`Twin`]: times (s, increasing) and each input of the scene there, SI, straight between samples.
+/// What drives a [`Rom`]: times (s, increasing) and each input of the scene there, SI, straight between samples.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TwinRun {
+pub struct RomRun {
     pub times_s: Vec<f64>,
     pub inputs: Vec<Vec<f64>>,
     /// Steps between samples; without a plan the model's own rule decides.
     pub plan: Option<StepPlan>,
 }
 
-impl TwinRun {
+impl RomRun {
     /// The scene's own programmes at the times of a schedule.
     pub fn of_programs(scene: &Scene, schedule: &Schedule) -> Self {
         let times_s = schedule.times();
@@ -61,32 +61,32 @@ impl TwinRun {
 
 /// Parameters that differ from the scene's, and the effects.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TwinSetting<D> {
-    pub parameters: Vec<(TwinParameter, D)>,
+pub struct RomSetting<D> {
+    pub parameters: Vec<(RomParameter, D)>,
     pub effects: Vec<Effect<D>>,
 }
 
-impl<D> Default for TwinSetting<D> {
+impl<D> Default for RomSetting<D> {
     fn default() -> Self {
         Self { parameters: Vec::new(), effects: Vec::new() }
     }
 }
 
-/// The fast model of one scene (with one set of known conditions).
+/// The reduced-order model of one scene (with one set of known conditions).
 ///
 /// ```
 /// use num_dual::Dual64;
 /// use smam::scene::Scene;
-/// use smam::system::{Schedule, Twin, TwinRun, TwinSetting};
+/// use smam::system::{Schedule, Rom, RomRun, RomSetting};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let scene = Scene::load("muscle_bench", &[])?;
-/// let twin = Twin::new(&scene)?;
-/// let run = TwinRun::of_programs(&scene, &Schedule::even(1.0, 0.01));
-/// let c1 = twin.parameter("tube_c1_pa").ok_or("the bench has a tube")?;
-/// let setting = TwinSetting { parameters: vec![(c1, Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
-/// let series = twin.simulate(&run, &setting).ok_or("it diverges")?;
-/// let elongation = twin.columns().position(|c| c == "elongation_mm").ok_or("an output")?;
+/// let rom = Rom::new(&scene)?;
+/// let run = RomRun::of_programs(&scene, &Schedule::even(1.0, 0.01));
+/// let c1 = rom.parameter("tube_c1_pa").ok_or("the bench has a tube")?;
+/// let setting = RomSetting { parameters: vec![(c1, Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
+/// let series = rom.simulate(&run, &setting).ok_or("it diverges")?;
+/// let elongation = rom.columns().position(|c| c == "elongation_mm").ok_or("an output")?;
 /// let end = series[elongation].last().ok_or("there are samples")?;
 /// // 2.6 mm, and 2.9 um less for each kPa of the silicone's C1.
 /// assert!((end.re - 2.58).abs() < 0.05 && (end.eps + 2.9e-6).abs() < 0.3e-6);
@@ -94,11 +94,11 @@ impl<D> Default for TwinSetting<D> {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Twin {
+pub struct Rom {
     plant: Plant<f64>,
     state: PlantState<f64>,
     site: Site,
-    outputs: Vec<TwinOutput>,
+    outputs: Vec<RomOutput>,
     /// Of each joint coordinate: the scene's [[mechanism.joint]] table that sets its spring.
     spring_table: Vec<Option<usize>>,
     muscles: Vec<MuscleSpec>,
@@ -111,7 +111,7 @@ pub struct Twin {
 }
 
 /// Greatest step, s, and the angle by which the fastest cable may swing in one step, rad: beyond them the error passes
-/// a thousandth of the range (`cargo bench --bench twin`).
+/// a thousandth of the range (`cargo bench --bench rom`).
 const GREATEST_STEP_S: f64 = 2.0e-3;
 const STEP_ANGLE: f64 = 2.7;
 
@@ -137,8 +137,8 @@ fn fastest_rad_s(plant: &Plant<f64>) -> f64 {
     scaled.symmetric_eigenvalues().max().max(f64::MIN_POSITIVE).sqrt()
 }
 
-impl Twin {
-    /// The fast model of a scene.
+impl Rom {
+    /// The reduced-order model of a scene.
     ///
     /// # Errors
     /// Scenes that have none: free bodies (their contacts need the engine), displacement models.
@@ -182,13 +182,13 @@ impl Twin {
         self.outputs.iter().map(|o| o.column.as_str())
     }
 
-    /// The parameter behind a scene key; `None` when the fast model cannot vary it.
-    pub fn parameter(&self, key: &str) -> Option<TwinParameter> {
+    /// The parameter behind a scene key; `None` when the reduced-order model cannot vary it.
+    pub fn parameter(&self, key: &str) -> Option<RomParameter> {
         parameter::resolve(self, &crate::scene::calibration_key(key))
     }
 
     /// Simulates; returns each output at the run's times, in the unit of its column. `None` when it diverges.
-    pub fn simulate<D: Scalar>(&self, run: &TwinRun, setting: &TwinSetting<D>) -> Option<Vec<Vec<D>>> {
+    pub fn simulate<D: Scalar>(&self, run: &RomRun, setting: &RomSetting<D>) -> Option<Vec<Vec<D>>> {
         if let Some(element) = &self.standalone {
             return Some(output::standalone_series(element, &self.outputs, run, setting));
         }
@@ -205,7 +205,7 @@ impl Twin {
 
     /// Series of the first variable of each law over a run, SI; empty where the rig cannot have the law. `None` when the model
     /// diverges.
-    pub fn visited(&self, run: &TwinRun, setting: &TwinSetting<f64>, laws: &[Law]) -> Option<Vec<Vec<f64>>> {
+    pub fn visited(&self, run: &RomRun, setting: &RomSetting<f64>, laws: &[Law]) -> Option<Vec<Vec<f64>>> {
         let (plant, _) = self.prepare(setting);
         let mut visit = Visit::new(&plant, &self.site, laws);
         self.watch(run, setting, |_, plant, state, inputs| visit.see(plant, state, inputs))?;
@@ -215,8 +215,8 @@ impl Twin {
     /// Simulates and shows plant, state and inputs at every sample. `None` when it diverges.
     fn watch<D: Scalar>(
         &self,
-        run: &TwinRun,
-        setting: &TwinSetting<D>,
+        run: &RomRun,
+        setting: &RomSetting<D>,
         mut show: impl FnMut(usize, &Plant<D>, &PlantState<D>, &[InputSpan]),
     ) -> Option<()> {
         let (mut plant, state) = self.prepare(setting);
@@ -241,7 +241,7 @@ impl Twin {
     }
 
     /// The plant with its parameters and effects, at its start.
-    fn prepare<D: Scalar>(&self, setting: &TwinSetting<D>) -> (Plant<D>, PlantState<D>) {
+    fn prepare<D: Scalar>(&self, setting: &RomSetting<D>) -> (Plant<D>, PlantState<D>) {
         let mut plant: Plant<D> = self.plant.lift();
         let mut state: PlantState<D> = self.state.lift();
         for (parameter, value) in &setting.parameters {

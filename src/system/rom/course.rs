@@ -1,6 +1,6 @@
-//! A run of the fast model under way.
+//! A run of the reduced-order model under way.
 
-use super::TwinRun;
+use super::RomRun;
 use crate::scalar::Scalar;
 use crate::system::PlantState;
 use crate::system::Stepper;
@@ -18,7 +18,7 @@ pub(super) struct Course<D> {
 
 impl<D: Scalar> Course<D> {
     /// At a run's first sample.
-    pub fn new(plant: &mut Plant<D>, mut state: PlantState<D>, run: &TwinRun) -> Self {
+    pub fn new(plant: &mut Plant<D>, mut state: PlantState<D>, run: &RomRun) -> Self {
         state.time_s = run.times_s.first().copied().unwrap_or(0.0);
         let spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         PlantLaws::begin(plant, &mut state, &spans);
@@ -27,7 +27,7 @@ impl<D: Scalar> Course<D> {
     }
 
     /// Over the interval that ends at the run's sample `k`, in so many steps.
-    pub fn advance(&mut self, plant: &mut Plant<D>, run: &TwinRun, k: usize, steps: u16) {
+    pub fn advance(&mut self, plant: &mut Plant<D>, run: &RomRun, k: usize, steps: u16) {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
         let h = (to - from) / f64::from(steps);
         for (span, values) in self.spans.iter_mut().zip(&run.inputs) {

@@ -1,7 +1,7 @@
 //! When a joint is held by next to nothing: it has no spring, and the cables on it do not pull against each other.
 
-use super::output::TwinOutput;
-use super::{Twin, TwinRun, TwinSetting};
+use super::output::RomOutput;
+use super::{Rom, RomRun, RomSetting};
 use crate::system::PlantState;
 use crate::system::plant::{InputSpan, Plant};
 
@@ -9,12 +9,12 @@ use crate::system::plant::{InputSpan, Plant};
 /// the joint hangs after whichever cable happens to touch it.
 const FIRM: f64 = 0.01;
 
-impl Twin {
+impl Rom {
     /// By output, the samples of a run at which what it shows depends on a joint that next to nothing holds.
     ///
     /// Such a joint lies where its last swing left it, or follows one cable through the other's slack: the smallest difference decides
-    /// which, and no model can foretell it. `None` when the simulation diverges.
-    pub fn unheld(&self, run: &TwinRun, setting: &TwinSetting<f64>) -> Option<Vec<Vec<bool>>> {
+    /// which, and no model can predict it. `None` when the simulation diverges.
+    pub fn slack_joints(&self, run: &RomRun, setting: &RomSetting<f64>) -> Option<Vec<Vec<bool>>> {
         if self.standalone.is_some() {
             return Some(vec![vec![false; run.times_s.len()]; self.outputs.len()]);
         }
@@ -26,7 +26,7 @@ impl Twin {
             holds.push((0..plant.dim()).map(|i| hold(plant, &tensions_n, i)).collect());
         })?;
         let is_loose = |hold_n: f64| hold_n <= FIRM * greatest_n;
-        let at = |output: &TwinOutput, holds: &Vec<f64>| output.joints().iter().any(|(i, _)| is_loose(holds[*i]));
+        let at = |output: &RomOutput, holds: &Vec<f64>| output.joints().iter().any(|(i, _)| is_loose(holds[*i]));
         Some(self.outputs.iter().map(|output| holds.iter().map(|holds| at(output, holds)).collect()).collect())
     }
 }

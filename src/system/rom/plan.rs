@@ -1,13 +1,13 @@
-//! How many steps the fast model takes between two samples: as many as what is looked at needs.
+//! How many steps the reduced-order model takes between two samples: as many as what is looked at needs.
 
 use std::sync::Arc;
 
 use crate::system::plant::Plant;
 
 use super::course::Course;
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting};
 
-/// Steps in each interval of a [`TwinRun`]; the first entry is that of the first interval.
+/// Steps in each interval of a [`RomRun`]; the first entry is that of the first interval.
 pub type StepPlan = Arc<[u16]>;
 
 /// Longest step, s: at rest longer ones flutter about zero speed, and what is held by friction creeps.
@@ -24,13 +24,13 @@ const CORNER_SHARE: f64 = 0.25;
 /// Most steps in one interval.
 const MOST: u16 = 256;
 
-impl Twin {
+impl Rom {
     /// Plans the steps of a run so that twice as many would change no output by more than its tolerance (in its
     /// column's unit, by output; outputs with none are not looked at) over any one interval.
     ///
     /// The plan is made at one setting and then kept for others nearby: a response that is planned anew at every
     /// setting would not be smooth. `None` when the simulation diverges.
-    pub fn plan(&self, run: &TwinRun, setting: &TwinSetting<f64>, tolerance: &[Option<f64>]) -> Option<StepPlan> {
+    pub fn plan(&self, run: &RomRun, setting: &RomSetting<f64>, tolerance: &[Option<f64>]) -> Option<StepPlan> {
         if self.standalone.is_some() {
             return Some(Arc::from(vec![1; run.times_s.len().saturating_sub(1)]));
         }
@@ -72,12 +72,12 @@ impl Twin {
     }
 
     /// Steps of the interval that ends at sample `k`.
-    pub(super) fn steps_in(&self, run: &TwinRun, k: usize) -> u16 {
+    pub(super) fn steps_in(&self, run: &RomRun, k: usize) -> u16 {
         run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1])
     }
 
     /// Those of an interval without a plan.
-    fn steps_by_rule(&self, run: &TwinRun, k: usize) -> u16 {
+    fn steps_by_rule(&self, run: &RomRun, k: usize) -> u16 {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
         let shorter = if from - run.times_s[0] < super::RINGING_S { super::RINGING_STEPS } else { 1.0 };
         let steps = ((to - from) * shorter / self.step_s - 1e-6).ceil();
@@ -86,7 +86,7 @@ impl Twin {
 }
 
 /// Fewest steps of the interval that ends at sample `k`; keeps the time of the last corner.
-fn fewest_steps(run: &TwinRun, k: usize, longest_s: f64, greatest: &[f64], corner_s: &mut f64) -> u16 {
+fn fewest_steps(run: &RomRun, k: usize, longest_s: f64, greatest: &[f64], corner_s: &mut f64) -> u16 {
     let length_s = |k: usize| run.times_s[k] - run.times_s[k - 1];
     let slope = |x: &[f64], k: usize| (x[k] - x[k - 1]) / length_s(k);
     let turns =

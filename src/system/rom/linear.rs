@@ -1,4 +1,4 @@
-//! The fast model along a run, as what is small sees it.
+//! The reduced-order model along a run, as what is small sees it.
 //!
 //! From sample to sample it is linear there:
 //!
@@ -15,16 +15,16 @@ use crate::effects::Effect;
 use crate::laws::Port;
 
 use super::directions::{Columns, Directions, TOGETHER};
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting};
 
 /// Intervals that are gone through at a time.
 const BLOCK: usize = 256;
 
 /// The linear model of a run under way, with ports at which something acts.
 pub struct Linear<'a> {
-    twin: &'a Twin,
-    /// Places of the state's numbers that may change.
-    pub numbers: Vec<usize>,
+    rom: &'a Rom,
+    /// Places of the states that may change.
+    pub states: Vec<usize>,
     of_state: Vec<Directions<'a>>,
     of_ports: Vec<Directions<'a>>,
     start: Vec<Columns>,
@@ -49,12 +49,12 @@ impl Block {
     }
 }
 
-impl Twin {
+impl Rom {
     /// The linear model along a run, for ports at which laws act whose only number is what acts. None of a model that is not integrated.
     pub fn linear<'a>(
         &'a self,
-        run: &'a TwinRun,
-        setting: &TwinSetting<f64>,
+        run: &'a RomRun,
+        setting: &RomSetting<f64>,
         ports: &[&Effect<f64>],
     ) -> Option<Linear<'a>> {
         if self.standalone.is_some() {
@@ -62,24 +62,24 @@ impl Twin {
         }
         let of_kind = |kind: Port| ports.iter().copied().find(|at| port(at) == Some(kind));
         let memory: Vec<&Effect<f64>> = REMEMBERED.into_iter().filter_map(of_kind).collect();
-        let numbers = self.numbers(setting, &memory);
-        let of_state = Directions::of_state(self, run, setting, &memory, &numbers);
-        let mut of_ports = Directions::of_ports(self, run, setting, (&memory, ports), &numbers);
+        let states = self.states_at(setting, &memory);
+        let of_state = Directions::of_state(self, run, setting, &memory, &states);
+        let mut of_ports = Directions::of_ports(self, run, setting, (&memory, ports), &states);
         let start = of_ports.iter_mut().map(Directions::start).collect();
-        Some(Linear { twin: self, numbers, of_state, of_ports, start, next: 1, samples: run.times_s.len() })
+        Some(Linear { rom: self, states, of_state, of_ports, start, next: 1, samples: run.times_s.len() })
     }
 
-    /// Places of the numbers that make up the state.
-    fn numbers(&self, setting: &TwinSetting<f64>, memory: &[&Effect<f64>]) -> Vec<usize> {
+    /// Places of all states.
+    fn states_at(&self, setting: &RomSetting<f64>, memory: &[&Effect<f64>]) -> Vec<usize> {
         let mut setting = setting.clone();
         setting.effects.extend(memory.iter().copied().cloned());
         let (plant, state) = self.prepare(&setting);
-        state.numbers_in_use(&plant)
+        state.states_in_use(&plant)
     }
 }
 
 impl Linear<'_> {
-    /// What acts at one of its ports at the first sample, before any interval, comes to this: of the state's numbers, then of the outputs.
+    /// What acts at one of its ports at the first sample, before any interval, comes to this: of the states, then of the outputs.
     pub fn start(&self, port: usize) -> &[f64] {
         column(&self.start, 0, port)
     }
@@ -106,12 +106,12 @@ impl Linear<'_> {
 
     fn matrix(&self, state: &[Columns], interval: usize) -> DMatrix<f64> {
         let all = state.iter().flat_map(|c| c.of(interval)).copied();
-        let numbers = self.numbers.len();
-        DMatrix::from_iterator(numbers + self.twin.outputs.len(), numbers, all)
+        let states = self.states.len();
+        DMatrix::from_iterator(states + self.rom.outputs.len(), states, all)
     }
 }
 
-/// Ports whose laws give the state numbers of their own: what moved a piston, what a cable travelled besides.
+/// Ports whose laws give it states of their own: what moved a piston, what a cable travelled besides.
 const REMEMBERED: [Port; 2] = [Port::Plunger, Port::Lever];
 
 fn port(at: &Effect<f64>) -> Option<Port> {

@@ -1,4 +1,4 @@
-//! The fast model between two samples, as a matrix: what small changes of its state, and of what acts at its ports, come to.
+//! The reduced-order model between two samples, as a matrix: what small changes of its state, and of what acts at its ports, come to.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::system::laws::Acts;
 use crate::system::plant::Plant;
 
 use super::course::Course;
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting};
 
 /// Directions that one run follows, and the number that carries the derivatives along them.
 pub(super) const TOGETHER: usize = 8;
@@ -25,18 +25,18 @@ enum Along {
 
 /// A run that carries derivatives along a few directions, begun anew with every interval.
 pub(super) struct Directions<'a> {
-    twin: &'a Twin,
-    run: &'a TwinRun,
+    rom: &'a Rom,
+    run: &'a RomRun,
     along: Along,
-    /// Places of the state's numbers that are looked at.
-    numbers: Vec<usize>,
+    /// Places of the states that are looked at.
+    states: Vec<usize>,
     plant: Plant<D>,
     course: Course<D>,
     room: Option<Acts<D>>,
     pub is_sound: bool,
 }
 
-/// Derivatives over some intervals: of each interval and direction the numbers of the state at its end, then the outputs there.
+/// Derivatives over some intervals: of each interval and direction the states at its end, then the outputs there.
 pub(super) struct Columns {
     values: Vec<f64>,
     directions: usize,
@@ -59,53 +59,53 @@ impl Columns {
 impl<'a> Directions<'a> {
     /// Runs along every one of the state's `numbers`, several at a time. `memory`: laws that give the state some of them.
     pub fn of_state(
-        twin: &'a Twin,
-        run: &'a TwinRun,
-        setting: &TwinSetting<f64>,
+        rom: &'a Rom,
+        run: &'a RomRun,
+        setting: &RomSetting<f64>,
         memory: &[&Effect<f64>],
-        numbers: &[usize],
+        states: &[usize],
     ) -> Vec<Self> {
         let along = |some: &[usize]| Along::State(some.to_vec());
-        let new = |some: &[usize]| Self::new(twin, run, setting, (memory, &[]), numbers, along(some));
-        numbers.chunks(TOGETHER).map(new).collect()
+        let new = |some: &[usize]| Self::new(rom, run, setting, (memory, &[]), states, along(some));
+        states.chunks(TOGETHER).map(new).collect()
     }
 
     /// Runs along what acts at ports, several at a time: laws whose only number is what acts.
     pub fn of_ports(
-        twin: &'a Twin,
-        run: &'a TwinRun,
-        setting: &TwinSetting<f64>,
+        rom: &'a Rom,
+        run: &'a RomRun,
+        setting: &RomSetting<f64>,
         (memory, ports): (&[&Effect<f64>], &[&Effect<f64>]),
-        numbers: &[usize],
+        states: &[usize],
     ) -> Vec<Self> {
         let along = |some: &[&Effect<f64>]| Along::Ports(some.len());
-        let new = |some: &[&Effect<f64>]| Self::new(twin, run, setting, (memory, some), numbers, along(some));
+        let new = |some: &[&Effect<f64>]| Self::new(rom, run, setting, (memory, some), states, along(some));
         ports.chunks(TOGETHER).map(new).collect()
     }
 
     fn new(
-        twin: &'a Twin,
-        run: &'a TwinRun,
-        setting: &TwinSetting<f64>,
+        rom: &'a Rom,
+        run: &'a RomRun,
+        setting: &RomSetting<f64>,
         (memory, ports): (&[&Effect<f64>], &[&Effect<f64>]),
-        numbers: &[usize],
+        states: &[usize],
         along: Along,
     ) -> Self {
         let acting = |(i, port): (usize, &&Effect<f64>)| port.lift(|_| D::along(0.0, i));
         let at_rest = memory.iter().map(|law| law.lift(|_| D::from(0.0)));
         let known = setting.effects.iter().map(|effect| effect.lift(D::from)).chain(at_rest);
-        let setting = TwinSetting {
+        let setting = RomSetting {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::from(*x))).collect(),
             effects: known.chain(ports.iter().enumerate().map(acting)).collect(),
         };
-        let (mut plant, state) = twin.prepare(&setting);
+        let (mut plant, state) = rom.prepare(&setting);
         let course = Course::new(&mut plant, state, run);
-        Self { twin, run, along, numbers: numbers.to_vec(), plant, course, room: None, is_sound: true }
+        Self { rom, run, along, states: states.to_vec(), plant, course, room: None, is_sound: true }
     }
 
     fn count(&self) -> usize {
         match &self.along {
-            Along::State(numbers) => numbers.len(),
+            Along::State(states) => states.len(),
             Along::Ports(count) => *count,
         }
     }
@@ -116,7 +116,7 @@ impl<'a> Directions<'a> {
         blended_at_rest(|| {
             for k in samples {
                 self.begin();
-                let steps = self.twin.steps_in(self.run, k);
+                let steps = self.rom.steps_in(self.run, k);
                 self.course.advance(&mut self.plant, self.run, k, steps);
                 self.is_sound &= self.course.is_sound(&self.plant);
                 self.read(&mut values);
@@ -133,14 +133,14 @@ impl<'a> Directions<'a> {
     }
 
     fn length(&self) -> usize {
-        self.numbers.len() + self.twin.outputs.len()
+        self.states.len() + self.rom.outputs.len()
     }
 
     /// Adds the derivatives of state and outputs as they are.
     fn read(&mut self, values: &mut Vec<f64>) {
         let state: Vec<D> = self.course.state.numbers().copied().collect();
-        let shown = self.numbers.iter().map(|&i| state[i]);
-        let outputs = self.twin.outputs.iter();
+        let shown = self.states.iter().map(|&i| state[i]);
+        let outputs = self.rom.outputs.iter();
         let read = outputs.map(|o| o.read(&self.plant, &self.course.state, &self.course.spans, &mut self.room));
         let here: Vec<D> = shown.chain(read).collect();
         (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| x.slopes[d])));

@@ -10,7 +10,7 @@ const ENOUGH: usize = 400;
 ///
 /// Of each stretch of samples the first stays, those where the input is least and greatest (no turn is cut, and a state that follows the
 /// path exactly comes to the same), and the first that shows the output.
-pub(super) fn thinned(runs: &[LoopRun]) -> Option<Vec<LoopRun>> {
+pub(super) fn decimated(runs: &[LoopRun]) -> Option<Vec<LoopRun>> {
     let counted = counted_samples(runs);
     // A stretch without a turn keeps two of its samples.
     let stretch = 2 * counted / ENOUGH;
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn turns_stay_and_about_enough_samples() {
         let whole = run(3000);
-        let [thin] = &thinned(std::slice::from_ref(&whole)).expect("many samples")[..] else { panic!("one run") };
+        let [thin] = &decimated(std::slice::from_ref(&whole)).expect("many samples")[..] else { panic!("one run") };
         assert!((350..560).contains(&thin.time_s.len()), "{}", thin.time_s.len());
         assert!(thin.time_s.is_sorted_by(|a, b| a < b) && thin.time_s[0] == 0.0);
         let turns = (1..2999).filter(|&i| {
@@ -71,12 +71,12 @@ mod tests {
     fn an_output_in_every_fourth_row_is_still_seen() {
         let mut slow = run(10_000);
         slow.output_mm.iter_mut().enumerate().filter(|(i, _)| i % 4 != 1).for_each(|(_, y)| *y = f64::NAN);
-        let thin = thinned(&[slow]).expect("many samples");
+        let thin = decimated(&[slow]).expect("many samples");
         assert!(counted_samples(&thin) > ENOUGH / 3, "{}", counted_samples(&thin));
     }
 
     #[test]
     fn few_samples_stay() {
-        assert_eq!(thinned(&[run(700)]), None);
+        assert_eq!(decimated(&[run(700)]), None);
     }
 }

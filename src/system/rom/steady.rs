@@ -1,19 +1,19 @@
-//! What something small and steady at ports changes of the fast model's outputs, by derivatives along its run.
+//! What something small and steady at ports changes of the reduced-order model's outputs, by derivatives along its run.
 
 use crate::effects::Effect;
 use crate::scalar::{Scalar, blended_at_rest};
 
 use super::directions::{D, TOGETHER};
 use super::inject::Change;
-use super::{Twin, TwinRun, TwinSetting};
+use super::{Rom, RomRun, RomSetting};
 
-impl Twin {
+impl Rom {
     /// What each of a few steady signals changes, per unit; none where the model diverges. At each port stands a law whose only number is
     /// what acts there. Only the first eight ports are asked.
-    pub fn steadily(&self, run: &TwinRun, setting: &TwinSetting<f64>, ports: &[&Effect<f64>]) -> Option<Vec<Change>> {
+    pub fn steadily(&self, run: &RomRun, setting: &RomSetting<f64>, ports: &[&Effect<f64>]) -> Option<Vec<Change>> {
         let ports = &ports[..ports.len().min(TOGETHER)];
         let acting = ports.iter().enumerate().map(|(i, port)| port.lift(|_| D::along(0.0, i)));
-        let setting = TwinSetting {
+        let setting = RomSetting {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::constant(*x))).collect(),
             effects: setting.effects.iter().map(|effect| effect.lift(D::constant)).chain(acting).collect(),
         };

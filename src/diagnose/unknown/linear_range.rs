@@ -15,7 +15,7 @@ use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Place, places};
 use crate::effects::Effect;
 use crate::laws::Port;
-use crate::system::{Change, TwinSetting};
+use crate::system::{Change, RomSetting};
 
 /// Ports at which something steady is asked for.
 const ASKED: [Port; 3] = [Port::Pull, Port::Outflow, Port::Torque];
@@ -26,7 +26,7 @@ const NOTHING_IN_COMMON: f64 = 1.0;
 
 /// Whether derivatives say something at each row of a problem, in the order of [`Problem::rows`]. Ports are asked one after the other, the
 /// best followed first, as long as half of the rows are left: what one of them says everywhere of a joint that is free says little of the others.
-pub(super) fn settled(problem: &Problem, fit: &Fit) -> Vec<bool> {
+pub(super) fn linear_rows(problem: &Problem, fit: &Fit) -> Vec<bool> {
     let all = places(problem.case);
     let asked: Vec<&Place> =
         all.iter().filter(|place| ASKED.contains(&place.port) && !place.is_of_several(&all)).collect();
@@ -34,32 +34,32 @@ pub(super) fn settled(problem: &Problem, fit: &Fit) -> Vec<bool> {
     let of_runs: Vec<Vec<Vec<bool>>> = problem.runs.par_iter().map(one).collect();
     let of_port = |p: usize| -> Vec<bool> { of_runs.iter().flat_map(|ports| ports[p].iter().copied()).collect() };
     let mut of_ports: Vec<Vec<bool>> = (0..asked.len()).map(of_port).collect();
-    of_ports.sort_by_key(|settled| std::cmp::Reverse(count(settled)));
-    let mut settled = vec![true; problem.samples()];
+    of_ports.sort_by_key(|linear| std::cmp::Reverse(count(linear)));
+    let mut linear = vec![true; problem.samples()];
     for port in of_ports {
-        let both: Vec<bool> = settled.iter().zip(&port).map(|(a, b)| *a && *b).collect();
+        let both: Vec<bool> = linear.iter().zip(&port).map(|(a, b)| *a && *b).collect();
         if 2 * count(&both) >= both.len() {
-            settled = both;
+            linear = both;
         }
     }
-    settled
+    linear
 }
 
-fn count(settled: &[bool]) -> usize {
-    settled.iter().filter(|settled| **settled).count()
+fn count(linear: &[bool]) -> usize {
+    linear.iter().filter(|linear| **linear).count()
 }
 
 /// For each port the rows of one run; where something cannot be followed at all, nothing is held against it.
 fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, asked: &[&Place]) -> Vec<Vec<bool>> {
     let setting = fit.model.setting(problem.case, run, &fit.x);
     let at: Vec<Effect<f64>> = asked.iter().map(|place| place.injected.with(&[0.0])).collect();
-    let small = run.twin.steadily(&run.drive, &setting, &at.iter().collect::<Vec<_>>()).unwrap_or_default();
+    let small = run.rom.steadily(&run.drive, &setting, &at.iter().collect::<Vec<_>>()).unwrap_or_default();
     let with = |place: &&Place, sign: f64| {
         let acting = place.injected.with(&[sign * STEP * place.typical]);
-        TwinSetting { effects: setting.effects.iter().cloned().chain([acting]).collect(), ..setting.clone() }
+        RomSetting { effects: setting.effects.iter().cloned().chain([acting]).collect(), ..setting.clone() }
     };
     let settings: Vec<_> = asked.iter().flat_map(|place| [with(place, -1.0), with(place, 1.0)]).collect();
-    let played = run.twin.simulate_many(&run.drive, &settings);
+    let played = run.rom.simulate_many(&run.drive, &settings);
     let rows: usize = run.measured.iter().flatten().filter(|m| m.is_finite()).count();
     let of_port = |(p, place): (usize, &&Place)| -> Vec<bool> {
         let (Some(small), Some(large)) = (small.get(p), difference(&played[2 * p..][..2])) else {
@@ -68,8 +68,8 @@ fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, asked: &[&Place]) -> Vec<
         let small = in_noise(problem, run, small, place.typical);
         let large = in_noise(problem, run, &large, 0.5 / STEP);
         let typical = (large.iter().map(|x| x * x).sum::<f64>() / rows.max(1) as f64).sqrt();
-        let is_settled = |(s, l): (&f64, &f64)| (s - l).abs() <= NOTHING_IN_COMMON * (l.abs() + typical);
-        small.iter().zip(&large).map(is_settled).collect()
+        let is_linear = |(s, l): (&f64, &f64)| (s - l).abs() <= NOTHING_IN_COMMON * (l.abs() + typical);
+        small.iter().zip(&large).map(is_linear).collect()
     };
     asked.iter().enumerate().map(of_port).collect()
 }
@@ -82,14 +82,14 @@ fn difference(two: &[Option<Change>]) -> Option<Change> {
 }
 
 /// The rows of a column at which signals say something; nothing in the others.
-pub(super) fn where_settled(mut column: DVector<f64>, settled: &[bool]) -> DVector<f64> {
-    column.iter_mut().zip(settled).filter(|(_, settled)| !**settled).for_each(|(x, _)| *x = 0.0);
+pub(super) fn where_linear(mut column: DVector<f64>, linear: &[bool]) -> DVector<f64> {
+    column.iter_mut().zip(linear).filter(|(_, linear)| !**linear).for_each(|(x, _)| *x = 0.0);
     column
 }
 
 /// Columns at right angles that span what these can imitate where signals say something.
-pub(super) fn basis(free: impl Iterator<Item = DVector<f64>>, settled: &[bool], rows: usize) -> DMatrix<f64> {
-    let there = free.map(|column| where_settled(column, settled));
+pub(super) fn basis(free: impl Iterator<Item = DVector<f64>>, linear: &[bool], rows: usize) -> DMatrix<f64> {
+    let there = free.map(|column| where_linear(column, linear));
     let free: Vec<DVector<f64>> = there.filter(|column| column.norm_squared() > 0.0).collect();
     if free.is_empty() { DMatrix::zeros(rows, 0) } else { DMatrix::from_columns(&free).qr().q() }
 }
@@ -110,7 +110,7 @@ mod tests {
     use crate::diagnose::fit::Model;
     use crate::scene::Override;
 
-    /// At how many of all rows derivatives say something of a scene with some numbers changed.
+    /// At how many of all rows derivatives say something of a scene with some parameters changed.
     fn of(scene: &str, set: &[&str], inputs: &[&str], outputs: &[&str]) -> (usize, usize) {
         let set: Vec<Override> = set.iter().map(|text| Override::parse(text).expect("one")).collect();
         let case = made::recorded_for(scene, [&set, &set], inputs, outputs);
@@ -118,15 +118,15 @@ mod tests {
         let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
         let (model, x) = (Model::baseline(), problem.start(&Model::baseline(), None));
         let covariance = nalgebra::DMatrix::zeros(x.len(), x.len());
-        let settled = settled(&problem, &Fit { model, x, cost: 0.0, covariance, on_bound: Vec::new() });
-        (count(&settled), settled.len())
+        let linear = linear_rows(&problem, &Fit { model, x, cost: 0.0, covariance, on_bound: Vec::new() });
+        (count(&linear), linear.len())
     }
 
     /// A bench has no place where it would be free. A pulley whose cables both hang is: where it comes to rest there is that run's own.
     #[test]
     fn what_is_free_is_not_looked_at() {
-        let (settled, all) = of("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "pressure_kpa"]);
-        assert!(settled == all && all > 1000, "{settled} of {all}");
+        let (linear, all) = of("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "pressure_kpa"]);
+        assert!(linear == all && all > 1000, "{linear} of {all}");
         let inputs = ["plunger_1_mm", "plunger_2_mm"];
         let pushed = |first: &str, second: &str| {
             let set = [("1", first), ("2", second)].map(|(i, v)| format!("input.plunger_{i}_mm.program.value_m={v}"));

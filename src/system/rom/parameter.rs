@@ -1,4 +1,4 @@
-//! Calibrated parameters of the fast model, by scene key.
+//! Calibrated parameters of the reduced-order model, by scene key.
 
 use std::borrow::Cow;
 
@@ -9,11 +9,11 @@ use crate::system::plant::{Drive, MusclePlant, Plant};
 use crate::system::standalone::Standalone;
 use crate::system::{Elastic, StandaloneNumber};
 
-use super::Twin;
+use super::Rom;
 
-/// A number of the scene that the fast model can vary, with derivatives.
+/// A number of the scene that the reduced-order model can vary, with derivatives.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TwinParameter {
+pub enum RomParameter {
     /// A number of muscles, and of which.
     Muscle(MuscleNumber, Vec<usize>),
     CableStiffness(usize),
@@ -65,49 +65,49 @@ fn muscle_number(muscles: &[MuscleSpec], key: &str) -> Option<(MuscleNumber, Vec
 }
 
 /// The parameter of a full scene key.
-pub(super) fn resolve(twin: &Twin, key: &str) -> Option<TwinParameter> {
-    use TwinParameter as P;
-    if let Some((number, muscles)) = muscle_number(&twin.muscles, key) {
+pub(super) fn resolve(rom: &Rom, key: &str) -> Option<RomParameter> {
+    use RomParameter as P;
+    if let Some((number, muscles)) = muscle_number(&rom.muscles, key) {
         return Some(P::Muscle(number, muscles));
     }
     if let Some(number) = Standalone::number(key) {
         return Some(P::Standalone(number));
     }
-    resolve_named(twin, key)
+    resolve_named(rom, key)
 }
 
 /// Keys with a name or a number in them: cables, joint springs.
-fn resolve_named(twin: &Twin, key: &str) -> Option<TwinParameter> {
+fn resolve_named(rom: &Rom, key: &str) -> Option<RomParameter> {
     let words: Vec<&str> = key.split('.').collect();
     match words.as_slice() {
         ["cable", name, "stiffness_n_m"] => {
-            let by_name = twin.cable_names.iter().position(|n| n == name);
-            let by_number = name.parse().ok().filter(|i| *i < twin.cable_names.len());
-            Some(TwinParameter::CableStiffness(by_name.or(by_number)?))
+            let by_name = rom.cable_names.iter().position(|n| n == name);
+            let by_number = name.parse().ok().filter(|i| *i < rom.cable_names.len());
+            Some(RomParameter::CableStiffness(by_name.or(by_number)?))
         }
         ["law", name, "parameter", parameter, "value"] => {
-            let laws = twin.plant.laws.as_ref().map_or(&[][..], |laws| laws.laws());
+            let laws = rom.plant.laws.as_ref().map_or(&[][..], |laws| laws.laws());
             if let Some(law) = laws.iter().position(|law| law.name == *name) {
-                return Some(TwinParameter::Law(law, laws[law].parameter(parameter)?));
+                return Some(RomParameter::Law(law, laws[law].parameter(parameter)?));
             }
-            let shown = twin.outputs.iter().enumerate().find_map(|(o, output)| {
+            let shown = rom.outputs.iter().enumerate().find_map(|(o, output)| {
                 let law = output.laws.iter().position(|law| law.name == *name)?;
                 Some((o, law, &output.laws[law]))
             });
             let (output, at, law) = shown?;
-            Some(TwinParameter::SensorLaw(output, at, law.parameter(parameter)?))
+            Some(RomParameter::SensorLaw(output, at, law.parameter(parameter)?))
         }
         ["mechanism", "joint", number, "stiffness_n_m_rad" | "stiffness_n_m"] => {
             let number: usize = number.parse().ok()?;
-            let springs = twin.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
-            let springs: Vec<_> = springs.map(|(i, _)| (i, 1.0 / twin.site.hinges[i] as f64)).collect();
-            (!springs.is_empty()).then_some(TwinParameter::JointStiffness(springs))
+            let springs = rom.spring_table.iter().enumerate().filter(|(_, t)| **t == Some(number));
+            let springs: Vec<_> = springs.map(|(i, _)| (i, 1.0 / rom.site.hinges[i] as f64)).collect();
+            (!springs.is_empty()).then_some(RomParameter::JointStiffness(springs))
         }
         _ => None,
     }
 }
 
-impl TwinParameter {
+impl RomParameter {
     /// Puts a value into a plant.
     pub(super) fn put<D: Scalar>(&self, value: D, plant: &mut Plant<D>) {
         match self {

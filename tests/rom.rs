@@ -1,23 +1,23 @@
-//! Contract of the fast model: it answers like the full scene, with and without effects, and its derivatives are exact.
+//! Contract of the reduced-order model: it answers like the full scene, with and without effects, and its derivatives are exact.
 
 use nalgebra::Const;
 use num_dual::DualSVec64;
 use smam::effects::{Effect, EffectTable, ElementKind, catalogue};
 use smam::recording::Recording;
 use smam::scene::{Override, Scene, SceneFile};
-use smam::system::{Schedule, Simulation, Twin, TwinRun, TwinSetting, record};
+use smam::system::{Rom, RomRun, RomSetting, Schedule, Simulation, record};
 
-/// The full scene over its stock programme, and the fast model driven by the same inputs.
+/// The full scene over its stock programme, and the reduced-order model driven by the same inputs.
 fn both(scene: &Scene, duration_s: f64) -> (Recording, Vec<Vec<f64>>, Vec<String>) {
     let schedule = Schedule::even(duration_s, 0.01);
     let mut simulation = Simulation::new(scene.clone()).unwrap_or_else(|e| panic!("{e}"));
     let full = record(&mut simulation, &schedule).unwrap_or_else(|e| panic!("{e}"));
     let inputs = scene.file.input.iter().map(|i| full.si(&i.channel).expect("an input")).collect();
-    let run = TwinRun { times_s: schedule.times(), inputs, plan: None };
-    let twin = Twin::new(scene).unwrap_or_else(|e| panic!("{e}"));
+    let run = RomRun { times_s: schedule.times(), inputs, plan: None };
+    let rom = Rom::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
-    let fast = twin.simulate(&run, &TwinSetting { parameters: Vec::new(), effects }).expect("finite");
-    let columns = twin.columns().map(str::to_owned).collect();
+    let fast = rom.simulate(&run, &RomSetting { parameters: Vec::new(), effects }).expect("finite");
+    let columns = rom.columns().map(str::to_owned).collect();
     (full, fast, columns)
 }
 
@@ -31,7 +31,7 @@ fn difference(full: &[f64], fast: &[f64]) -> f64 {
 const STOCK: [&str; 3] = ["muscle_bench", "antagonistic_pulley", "bending_catheter"];
 
 #[test]
-fn val_twin_meets_the_full_scene() {
+fn val_rom_meets_the_full_scene() {
     for name in STOCK {
         let scene = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
         let (full, fast, columns) = both(&scene, 12.0);
@@ -62,7 +62,7 @@ fn with_each_effect(name: &str) -> Vec<(String, Scene)> {
 }
 
 #[test]
-fn val_twin_meets_the_full_scene_with_every_effect() {
+fn val_rom_meets_the_full_scene_with_every_effect() {
     for name in STOCK {
         let plain = both(&Scene::load(name, &[]).expect("stock"), 8.0).1;
         for (title, scene) in with_each_effect(name) {
@@ -90,7 +90,7 @@ fn an_effect_of_zero_size_is_absent_to_the_bit() {
             let scene = Scene::from_file(scene.file, &scene.path).unwrap_or_else(|e| panic!("{e}"));
             let (full_zero, fast_zero, _) = both(&scene, 3.0);
             assert!(full == full_zero, "{title}: the full scene changes");
-            assert!(fast == fast_zero, "{title}: the fast model changes");
+            assert!(fast == fast_zero, "{title}: the reduced-order model changes");
         }
     }
 }
@@ -100,20 +100,20 @@ fn an_effect_of_zero_size_is_absent_to_the_bit() {
 fn sensitivities_are_those_of_finite_differences() {
     for name in ["muscle_bench"] {
         let scene = Scene::load(name, &[]).expect("stock");
-        let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-        let run = TwinRun::of_programs(&scene, &Schedule::even(12.0, 0.01));
+        let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+        let run = RomRun::of_programs(&scene, &Schedule::even(12.0, 0.01));
         for spec in &scene.file.calibrate {
-            let parameter = twin.parameter(&spec.key).expect("calibrated");
+            let parameter = rom.parameter(&spec.key).expect("calibrated");
             let middle = (spec.min + spec.max) / 2.0;
             let at = |x: f64| {
                 let parameters = vec![(parameter.clone(), x)];
-                twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite")
+                rom.simulate(&run, &RomSetting { parameters, effects: Vec::new() }).expect("finite")
             };
             let h = 1e-4 * middle;
             let (above, below) = (at(middle + h), at(middle - h));
             let parameters = vec![(parameter.clone(), DualSVec64::<1>::from_re(middle).derivative(0))];
-            let dual = twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite");
-            for (c, column) in twin.columns().enumerate() {
+            let dual = rom.simulate(&run, &RomSetting { parameters, effects: Vec::new() }).expect("finite");
+            for (c, column) in rom.columns().enumerate() {
                 let exact: Vec<f64> = dual[c].iter().map(|d| d.eps.unwrap_generic(Const::<1>, Const::<1>)[0]).collect();
                 let differences = (0..exact.len()).map(|i| (above[c][i] - below[c][i]) / (2.0 * h) - exact[i]);
                 let rms =
@@ -127,10 +127,10 @@ fn sensitivities_are_those_of_finite_differences() {
 }
 
 /// Five settings about the effects of a scene: as they are, two parameters a little off, and each effect's numbers larger.
-fn settings_about(scene: &Scene, twin: &Twin) -> Vec<TwinSetting<f64>> {
+fn settings_about(scene: &Scene, rom: &Rom) -> Vec<RomSetting<f64>> {
     let effects: Vec<Effect<f64>> = scene.file.effect.iter().map(|t| t.effect().expect("checked")).collect();
     let parameters = |share: f64| {
-        let scaled = |key: &str, number: f64| Some((twin.parameter(key)?, number * share));
+        let scaled = |key: &str, number: f64| Some((rom.parameter(key)?, number * share));
         [scaled("tube_c1_pa", 0.255e6), scaled("friction_m0_n", 0.05)].into_iter().flatten().collect()
     };
     let enlarged = |share: f64| {
@@ -139,7 +139,7 @@ fn settings_about(scene: &Scene, twin: &Twin) -> Vec<TwinSetting<f64>> {
         effects
     };
     [(1.0, 1.0), (1.001, 1.0), (0.93, 1.0), (1.0, 1.02), (1.0, 1.5)]
-        .map(|(share, size)| TwinSetting { parameters: parameters(share), effects: enlarged(size) })
+        .map(|(share, size)| RomSetting { parameters: parameters(share), effects: enlarged(size) })
         .to_vec()
 }
 
@@ -147,14 +147,14 @@ fn settings_about(scene: &Scene, twin: &Twin) -> Vec<TwinSetting<f64>> {
 fn settings_side_by_side_answer_as_each_by_itself_to_the_bit() {
     for name in STOCK {
         let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let run = TwinRun::of_programs(&stock, &Schedule::even(8.0, 0.01));
+        let run = RomRun::of_programs(&stock, &Schedule::even(8.0, 0.01));
         let plain = std::iter::once((format!("{name} as it is"), stock.clone()));
         for (title, scene) in plain.chain(with_each_effect(name)) {
-            let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-            let settings = settings_about(&scene, &twin);
-            let together = twin.simulate_many(&run, &settings);
+            let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+            let settings = settings_about(&scene, &rom);
+            let together = rom.simulate_many(&run, &settings);
             for (i, (setting, many)) in settings.iter().zip(&together).enumerate() {
-                let one = twin.simulate(&run, setting);
+                let one = rom.simulate(&run, setting);
                 assert!(one.is_some(), "{title}, setting {i}: diverges");
                 assert!(one == *many, "{title}, setting {i}: differs");
             }
@@ -165,49 +165,49 @@ fn settings_side_by_side_answer_as_each_by_itself_to_the_bit() {
 #[test]
 fn one_setting_that_diverges_takes_no_other_with_it() {
     let scene = Scene::load("muscle_bench", &[]).unwrap_or_else(|e| panic!("{e}"));
-    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
-    let c1 = twin.parameter("tube_c1_pa").expect("a tube");
+    let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let run = RomRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
+    let c1 = rom.parameter("tube_c1_pa").expect("a tube");
     let settings: Vec<_> = [0.25e6, f64::NAN, 0.26e6]
-        .map(|pa| TwinSetting { parameters: vec![(c1.clone(), pa)], effects: Vec::new() })
+        .map(|pa| RomSetting { parameters: vec![(c1.clone(), pa)], effects: Vec::new() })
         .to_vec();
-    let together = twin.simulate_many(&run, &settings);
+    let together = rom.simulate_many(&run, &settings);
     assert!(together[1].is_none());
     for i in [0, 2] {
-        assert!(together[i].is_some() && together[i] == twin.simulate(&run, &settings[i]), "setting {i}");
+        assert!(together[i].is_some() && together[i] == rom.simulate(&run, &settings[i]), "setting {i}");
     }
 }
 
 /// Where the cables hold a joint, a third of a millinewton hardly moves it; it is let go where so little decides on which of the
 /// cables it hangs.
 #[test]
-fn a_joint_is_unheld_where_the_smallest_force_moves_it() {
+fn a_joint_is_slack_where_the_smallest_force_moves_it() {
     let scene = Scene::load("antagonistic_pulley", &[]).expect("stock");
-    let twin = Twin::new(&scene).expect("it has a fast model");
+    let rom = Rom::new(&scene).expect("it has a reduced-order model");
     let times_s = Schedule::even(20.0, 0.01).times();
     let plunger = |sign: f64| times_s.iter().map(|t| sign * 1.1e-3 * (0.2 * std::f64::consts::PI * t).sin()).collect();
-    let run = TwinRun { inputs: vec![plunger(-1.0), plunger(1.0)], times_s: times_s.clone(), plan: None };
+    let run = RomRun { inputs: vec![plunger(-1.0), plunger(1.0)], times_s: times_s.clone(), plan: None };
     let table = EffectTable {
         name: "gravity_load".to_owned(),
         element: "mechanism".to_owned(),
         channel: None,
         parameters: [("weight_n".to_owned(), 3e-4)].into(),
     };
-    let bare = TwinSetting::default();
-    let loaded = TwinSetting { parameters: Vec::new(), effects: vec![table.effect().expect("right")] };
-    let column = |name: &str| twin.columns().position(|c| c == name).expect("an output");
+    let bare = RomSetting::default();
+    let loaded = RomSetting { parameters: Vec::new(), effects: vec![table.effect().expect("right")] };
+    let column = |name: &str| rom.columns().position(|c| c == name).expect("an output");
     let (angle, tensions) = (column("angle_deg"), [column("tension_1_n"), column("tension_2_n")]);
-    let [is, was] = [&loaded, &bare].map(|setting| twin.simulate(&run, setting).expect("finite"));
-    let unheld = twin.unheld(&run, &bare).expect("finite");
-    let (free, held): (Vec<usize>, Vec<usize>) = (0..times_s.len()).partition(|&k| unheld[angle][k]);
+    let [is, was] = [&loaded, &bare].map(|setting| rom.simulate(&run, setting).expect("finite"));
+    let slack = rom.slack_joints(&run, &bare).expect("finite");
+    let (free, held): (Vec<usize>, Vec<usize>) = (0..times_s.len()).partition(|&k| slack[angle][k]);
     let moved_deg =
         |samples: &[usize]| samples.iter().map(|&k| (is[angle][k] - was[angle][k]).abs()).fold(0.0, f64::max);
     let with_a_taut_cable = free.iter().filter(|&&k| tensions.iter().any(|&c| was[c][k] > 0.0)).count();
-    println!("{} of {} samples are unheld, {with_a_taut_cable} with a taut cable", free.len(), times_s.len());
+    println!("{} of {} samples are slack, {with_a_taut_cable} with a taut cable", free.len(), times_s.len());
     println!("the weight moves the joint by {:.4} deg where held, {:.4} elsewhere", moved_deg(&held), moved_deg(&free));
     assert!(moved_deg(&held) < 0.03 && moved_deg(&free) > 0.2);
     assert!(with_a_taut_cable > 0 && free.len() < times_s.len() / 4);
-    assert!(tensions.iter().all(|&c| unheld[c].iter().all(|u| !u)), "a cable's tension is no joint's");
+    assert!(tensions.iter().all(|&c| slack[c].iter().all(|u| !u)), "a cable's tension is no joint's");
 }
 
 /// A rig whose second muscle is of another make: other rubber, length, coil, friction, damping and mass of its end.
@@ -245,18 +245,18 @@ fn muscles_that_all_differ_alike_are_the_bytes_of_another_make() {
 #[test]
 fn a_number_of_one_muscle_is_varied_alone() {
     let scene = unequal();
-    let twin = Twin::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    let run = TwinRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
-    let simulate = |twin: &Twin, key: &str, value: f64| {
-        let parameters = vec![(twin.parameter(key).expect("a number"), value)];
-        twin.simulate(&run, &TwinSetting { parameters, effects: Vec::new() }).expect("finite")
+    let rom = Rom::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let run = RomRun::of_programs(&scene, &Schedule::even(2.0, 0.01));
+    let simulate = |rom: &Rom, key: &str, value: f64| {
+        let parameters = vec![(rom.parameter(key).expect("a number"), value)];
+        rom.simulate(&run, &RomSetting { parameters, effects: Vec::new() }).expect("finite")
     };
     let with = |key: &str, value: f64| {
         let file = Scene::from_file(scene.file.clone(), &scene.path).expect("loads").file;
         let mut table = toml::Table::try_from(&file).expect("a table");
         Override::number(key, value).apply(&mut table).expect("a key");
         let changed = Scene::from_file(table.try_into::<SceneFile>().expect("a scene"), &scene.path).expect("loads");
-        Twin::new(&changed).expect("builds").simulate(&run, &TwinSetting::<f64>::default()).expect("finite")
+        Rom::new(&changed).expect("builds").simulate(&run, &RomSetting::<f64>::default()).expect("finite")
     };
     // One muscle's own, whether it stands in the scene already or not; what all share reaches those without their own alone.
     for (key, value) in [
@@ -265,6 +265,6 @@ fn a_number_of_one_muscle_is_varied_alone() {
         ("muscles.tube.material.c1_pa", 2.0e5),
         ("muscle.muscle_2.differs.damping_n_s_m", 0.5),
     ] {
-        assert_eq!(simulate(&twin, key, value), with(key, value), "{key}");
+        assert_eq!(simulate(&rom, key, value), with(key, value), "{key}");
     }
 }

@@ -1,4 +1,4 @@
-//! Output channels of the fast model.
+//! Output channels of the reduced-order model.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use crate::system::posed::Posture;
 use crate::system::standalone::Standalone;
 
 use super::lump::Lumped;
-use super::{TwinParameter, TwinRun, TwinSetting};
+use super::{RomParameter, RomRun, RomSetting};
 
 /// What a channel reads.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ enum Reader {
 
 /// A channel with the SI units in one of its unit.
 #[derive(Clone, Debug)]
-pub(super) struct TwinOutput {
+pub(super) struct RomOutput {
     pub column: String,
     reader: Reader,
     factor: f64,
@@ -52,7 +52,7 @@ pub(super) struct TwinOutput {
     pub laws: Vec<Law>,
 }
 
-impl TwinOutput {
+impl RomOutput {
     /// The value in the channel's unit; `room` is for what laws do, and may be kept for the next.
     pub fn read<D: Scalar>(
         &self,
@@ -97,7 +97,7 @@ impl TwinOutput {
 }
 
 /// Finds what an output of the scene reads.
-pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Result<TwinOutput, SystemError> {
+pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Result<RomOutput, SystemError> {
     let of = spec.of.first().map_or("", String::as_str);
     let muscle = scene.file.muscle.iter().position(|m| m.name == of);
     let reader = match spec.quantity {
@@ -119,11 +119,11 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
     let reader = reader.ok_or_else(|| SystemError::Name {
         file: scene.path.clone(),
         table: format!("[[output]] \"{}\"", spec.channel),
-        message: format!("the fast model has no {:?} of {of:?}", spec.quantity),
+        message: format!("the reduced-order model has no {:?} of {of:?}", spec.quantity),
         remedy: "leave this channel out of the recordings".to_owned(),
     })?;
     let laws = sensor_laws(&scene.laws, &spec.channel).cloned().collect();
-    Ok(TwinOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor, laws })
+    Ok(RomOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor, laws })
 }
 
 /// A link's origin, if a link is what is named.
@@ -146,8 +146,8 @@ fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
 }
 
 /// Whether all channels with laws on them show numbers.
-pub(super) fn are_shown<D: Scalar>(outputs: &[TwinOutput], setting: &TwinSetting<D>, series: &[Vec<D>]) -> bool {
-    let has_law = |output: &TwinOutput| {
+pub(super) fn are_shown<D: Scalar>(outputs: &[RomOutput], setting: &RomSetting<D>, series: &[Vec<D>]) -> bool {
+    let has_law = |output: &RomOutput| {
         let mut own = setting.effects.iter().filter(|e| e.channel.as_ref() == Some(&output.column));
         !output.laws.is_empty() || own.any(|e| e.entry.unlisted().is_some())
     };
@@ -162,7 +162,7 @@ pub(super) struct Sensors<D> {
 }
 
 impl<D: Scalar> Sensors<D> {
-    pub fn new(outputs: &[TwinOutput], setting: &TwinSetting<D>) -> Self {
+    pub fn new(outputs: &[RomOutput], setting: &RomSetting<D>) -> Self {
         let effects = setting.effects.iter().filter_map(|e| {
             let channel = e.channel.clone().filter(|c| outputs.iter().any(|o| o.column == *c))?;
             sensor(e).map(|s| (channel, SensorHistory::new(s)))
@@ -171,8 +171,8 @@ impl<D: Scalar> Sensors<D> {
             output.laws.iter().enumerate().map(move |(l, law)| {
                 let mut values: Vec<D> = law.values().into_iter().map(D::constant).collect();
                 for (parameter, value) in &setting.parameters {
-                    if let TwinParameter::SensorLaw(_, _, p) = parameter
-                        && *parameter == TwinParameter::SensorLaw(o, l, *p)
+                    if let RomParameter::SensorLaw(_, _, p) = parameter
+                        && *parameter == RomParameter::SensorLaw(o, l, *p)
                     {
                         values[*p] = *value;
                     }
@@ -189,7 +189,7 @@ impl<D: Scalar> Sensors<D> {
     }
 
     /// The value as the channel's sensors show it.
-    pub fn show(&mut self, output: &TwinOutput, time_s: f64, value: D) -> D {
+    pub fn show(&mut self, output: &RomOutput, time_s: f64, value: D) -> D {
         let own = self.effects.iter_mut().filter(|(c, _)| *c == output.column);
         let shown = own.fold(value, |value, (_, sensor)| sensor.show(time_s, value));
         let laws = self.laws.iter_mut().filter(|(c, _)| *c == output.column);
@@ -212,12 +212,12 @@ pub(in crate::system) fn sensor<D: Scalar>(effect: &Effect<D>) -> Option<Sensor<
 /// What an element that stands alone shows over a run.
 pub(super) fn standalone_series<D: Scalar>(
     element: &Standalone,
-    outputs: &[TwinOutput],
-    run: &TwinRun,
-    setting: &TwinSetting<D>,
+    outputs: &[RomOutput],
+    run: &RomRun,
+    setting: &RomSetting<D>,
 ) -> Vec<Vec<D>> {
     let numbers = setting.parameters.iter().filter_map(|(parameter, value)| match parameter {
-        TwinParameter::Standalone(which) => Some((*which, *value)),
+        RomParameter::Standalone(which) => Some((*which, *value)),
         _ => None,
     });
     let mut answering = element.begin(numbers, &setting.effects);
