@@ -21,15 +21,18 @@
 //! # }
 //! ```
 
+#[doc(hidden)]
 pub mod bag;
 #[cfg(feature = "validation")]
 pub mod bench;
+#[doc(hidden)]
 pub mod columns;
 #[cfg(feature = "validation")]
 pub mod conceal;
 pub mod diagnose;
 pub mod effects;
 pub mod feedforward;
+#[doc(hidden)]
 pub mod files;
 pub mod hydraulics;
 pub mod hysteresis;
@@ -37,15 +40,18 @@ pub mod identify;
 pub mod laws;
 pub mod mechanism;
 pub mod muscle;
+#[doc(hidden)]
 pub mod nearest;
 #[cfg(feature = "validation")]
 pub mod proof;
 pub mod recording;
+#[doc(hidden)]
 pub mod report;
 #[cfg(feature = "validation")]
 pub mod reproduce;
 pub mod scalar;
 pub mod scene;
+#[doc(hidden)]
 pub mod stock;
 pub mod sweep;
 pub mod system;

@@ -32,6 +32,7 @@ mod jet;
 mod lanes;
 
 pub use jet::Jet;
+#[doc(hidden)]
 pub use lanes::Lanes;
 pub(crate) use lanes::take_disagreement;
 

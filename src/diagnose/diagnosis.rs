@@ -177,12 +177,12 @@ pub struct Freehand {
 
 impl NamedEffect {
     /// The law's expression, and behind it, from its semicolon on, how what it remembers goes; nothing where it remembers nothing.
-    pub fn law_and_memory(&self) -> (&str, &str) {
+    pub(crate) fn law_and_memory(&self) -> (&str, &str) {
         self.law.split_at(self.law.find(';').unwrap_or(self.law.len()))
     }
 
     /// The key of the number that is its size; two laws may share a name.
-    pub fn size_key(&self) -> &'static str {
+    pub(crate) fn size_key(&self) -> &'static str {
         size_keys(&self.name).find(|key| self.parameters.contains_key(*key)).unwrap_or_else(|| size_key(&self.name))
     }
 }
@@ -267,6 +267,7 @@ pub const SETTLES_SIGMA: f64 = 5.0;
 
 impl NextExperiment {
     /// None, and why.
+    #[doc(hidden)]
     pub fn none(why: &str) -> Self {
         Self { why: why.to_owned(), ..Self::default() }
     }
@@ -287,7 +288,7 @@ impl NextExperiment {
     }
 
     /// What the sensor promises, in words; none where none is asked for.
-    pub fn sensor_promise(&self) -> Option<String> {
+    pub(crate) fn sensor_promise(&self) -> Option<String> {
         let (column, sigma) = (self.sensor.as_ref()?, self.sensor_sigma?);
         let programme = self.programme.as_ref().filter(|_| self.needs_sensor());
         let would = match programme {

@@ -41,14 +41,22 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
-pub use answer::{Outcome, side_by_side, write_answer, write_answer_with};
-pub use case::{Case, CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet, Step};
+#[doc(hidden)]
+pub use answer::side_by_side;
+pub use answer::{Outcome, write_answer, write_answer_with};
+pub use case::{Case, Step};
+#[doc(hidden)]
+pub use case::{CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet};
+#[doc(hidden)]
+pub use diagnosis::size_key;
 pub use diagnosis::{
     Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Freehand, Location, NamedEffect,
-    NextExperiment, Proof, Verdict, size_key,
+    NextExperiment, Proof, Verdict,
 };
 pub use error::DiagnoseError;
+#[doc(hidden)]
 pub use experiment::programme;
+#[doc(hidden)]
 pub use fit::{Fit, Model, Placed};
 
 use answer::{caveats, figures, location, specimens, summary};

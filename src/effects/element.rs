@@ -35,7 +35,7 @@ impl ElementKind {
     }
 
     /// Whether a rig with two muscles has one for each.
-    pub fn is_numbered(self) -> bool {
+    pub(crate) fn is_numbered(self) -> bool {
         matches!(self, Self::Syringe | Self::Line | Self::Muscle | Self::Cable)
     }
 }

@@ -182,6 +182,7 @@ impl Entry {
     }
 
     /// Its law, if it is none of the catalogue but was written down: in a scene, or by a diagnosis.
+    #[doc(hidden)]
     pub fn unlisted(&self) -> Option<&WrittenLaw> {
         self.law.as_ref().filter(|_| !self.is_listed)
     }

@@ -50,6 +50,7 @@ pub struct Effect<D> {
 
 impl Effect<f64> {
     /// The same with numbers of another kind.
+    #[doc(hidden)]
     pub fn lift<T>(&self, number: impl Fn(f64) -> T) -> Effect<T> {
         Effect {
             entry: self.entry,

@@ -75,12 +75,12 @@ impl<D: Scalar> Chain<D> {
     }
 
     /// Puts another compliance before the line; the first node keeps its share of the line's own.
-    pub fn set_upstream(&mut self, upstream_m3_pa: D) {
+    pub(crate) fn set_upstream(&mut self, upstream_m3_pa: D) {
         self.compliance_m3_pa[0] = upstream_m3_pa + self.end_share_m3_pa;
     }
 
     /// Puts another compliance behind the line; the last node keeps its share of the line's own.
-    pub fn set_downstream(&mut self, downstream_m3_pa: D) {
+    pub(crate) fn set_downstream(&mut self, downstream_m3_pa: D) {
         let last = self.segments();
         self.compliance_m3_pa[last] = downstream_m3_pa + self.end_share_m3_pa;
     }
@@ -180,7 +180,7 @@ impl<D: Scalar> Chain<D> {
     }
 
     /// Power lost to viscosity, `sum (R + q |Q|) Q²`, W.
-    pub fn dissipation_w(&self, row: &[D]) -> D {
+    pub(crate) fn dissipation_w(&self, row: &[D]) -> D {
         let resistance = |q: D| self.resistance_pa_s_m3 + self.quadratic_pa_s2_m6 * q.abs();
         ChainRow::of(row, self.segments()).flow_m3_s.iter().map(|&q| resistance(q) * q * q).sum()
     }

@@ -23,7 +23,7 @@ pub struct ChainRowMut<'a, D> {
 
 impl<'a, D> ChainRow<'a, D> {
     /// How many numbers a line of so many segments has.
-    pub const fn len_of(segments: usize) -> usize {
+    pub(crate) const fn len_of(segments: usize) -> usize {
         3 * segments + 2
     }
 

@@ -44,7 +44,7 @@ impl<D: Scalar> GasLeak<D> {
     }
 
     /// `dp/dt` at an absolute pressure, Pa/s.
-    pub fn pressure_rate_pa_s(&self, pressure_pa: D, ambient_pa: f64) -> D {
+    pub(crate) fn pressure_rate_pa_s(&self, pressure_pa: D, ambient_pa: f64) -> D {
         let (p, pa) = (pressure_pa, ambient_pa);
         let laminar = (p * p - pa * pa) / (2.0 * pa);
         -(self.rate_1_s * (p - pa) + self.laminar_1_s * laminar + self.orifice_1_s * orifice_flow(p, pa))

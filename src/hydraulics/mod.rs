@@ -12,9 +12,15 @@ mod line;
 #[cfg(test)]
 mod transmission_line_tests;
 
+#[doc(hidden)]
 pub use chain::{Chain, Port};
-pub use chain_row::{ChainRow, ChainRowMut};
+#[doc(hidden)]
+pub use chain_row::ChainRow;
+#[doc(hidden)]
+pub use chain_row::ChainRowMut;
+#[doc(hidden)]
 pub use chain_solver::ChainSolver;
 pub use fluid::Fluid;
+#[doc(hidden)]
 pub use gas_leak::GasLeak;
 pub use line::{Line, Syringe};

@@ -31,7 +31,8 @@ pub struct AsymmetricBoucWen<D> {
 
 impl<D: Scalar> AsymmetricBoucWen<D> {
     /// Parameters in the order of [`AsymmetricBoucWen::to_array`].
-    pub const PARAMETERS: [&'static str; 10] = ["alpha_x", "alpha_z", "a", "n", "b1", "b2", "b3", "b4", "b5", "b6"];
+    pub(crate) const PARAMETERS: [&'static str; 10] =
+        ["alpha_x", "alpha_z", "a", "n", "b1", "b2", "b3", "b4", "b5", "b6"];
 
     pub fn from_array([alpha_x, alpha_z, a, n, b1, b2, b3, b4, b5, b6]: [D; 10]) -> Self {
         Self { alpha_x, alpha_z, a, n, shape: [b1, b2, b3, b4, b5, b6] }

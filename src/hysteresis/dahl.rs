@@ -52,7 +52,7 @@ const MODEL: &str = "growing Dahl";
 
 impl<D: Scalar> DahlGrowing<D> {
     /// Parameters in the order of [`DahlGrowing::to_array`].
-    pub const PARAMETERS: [&'static str; 9] =
+    pub(crate) const PARAMETERS: [&'static str; 9] =
         ["offset", "gain", "curvature", "cubic", "stiffness", "growth", "nu", "rho", "bend"];
 
     pub fn from_array([offset, gain, curvature, cubic, stiffness, growth, nu, rho, bend]: [D; 9]) -> Self {

@@ -33,7 +33,7 @@ impl<D> From<DisplacementModel<D>> for HysteresisModel<D> {
 
 impl<D: Scalar> HysteresisModel<D> {
     /// The model if it is of the Bouc-Wen kind, with the one state `z`.
-    pub fn bouc_wen(&self) -> Option<DisplacementModel<D>> {
+    pub(crate) fn bouc_wen(&self) -> Option<DisplacementModel<D>> {
         match self {
             Self::Symmetric(model) => Some(DisplacementModel::Symmetric(*model)),
             Self::Asymmetric(model) => Some(DisplacementModel::Asymmetric(*model)),
@@ -116,7 +116,7 @@ impl<D: Scalar> HysteresisModel<D> {
     /// Names of the free parameters, in the order of [`HysteresisModel::parameters`].
     ///
     /// Half widths and reaches are places on a grid and belong to the form; weights and stiffnesses are parameters.
-    pub fn parameter_names(&self) -> Vec<String> {
+    pub(crate) fn parameter_names(&self) -> Vec<String> {
         let with = |names: &[&str], element: &str, count: usize| {
             let fixed = names.iter().map(|&name| name.to_owned());
             fixed.chain((1..=count).map(|i| format!("{element}_{i}"))).collect()

@@ -24,15 +24,22 @@ mod passivity_tests;
 #[cfg(test)]
 mod path_tests;
 
+#[doc(hidden)]
 pub use asymmetric::AsymmetricBoucWen;
+#[doc(hidden)]
 pub use dahl::DahlGrowing;
 pub use error::HysteresisError;
 pub use family::HysteresisModel;
+#[doc(hidden)]
 pub use lanes::{LANES, mean_squares};
 pub use model::DisplacementModel;
+#[doc(hidden)]
 pub use paper::{Gate, PaperModel};
+#[doc(hidden)]
 pub use play::{Play, PlayElement, PrandtlIshlinskii};
+#[doc(hidden)]
 pub use slip::{MaxwellSlip, SlipElement};
+#[doc(hidden)]
 pub use symmetric::SymmetricBoucWen;
 
 /// What a parameter is that a scene does not name.

@@ -80,7 +80,7 @@ impl<D: Scalar> DisplacementModel<D> {
     }
 
     /// Names of the free parameters, in the order of [`DisplacementModel::parameters`].
-    pub fn parameter_names(&self) -> &'static [&'static str] {
+    pub(crate) fn parameter_names(&self) -> &'static [&'static str] {
         match self {
             Self::Symmetric(_) => &SymmetricBoucWen::<f64>::PARAMETERS,
             Self::Asymmetric(_) => &AsymmetricBoucWen::<f64>::PARAMETERS,

@@ -79,7 +79,7 @@ impl PaperModel<f64> {
 
 impl<D: Scalar> PaperModel<D> {
     /// Parameters in the order of [`PaperModel::to_array`].
-    pub const PARAMETERS: [&'static str; 7] = ["alpha_x1", "alpha_x2", "alpha_z", "a", "n", "nu", "rho"];
+    pub(crate) const PARAMETERS: [&'static str; 7] = ["alpha_x1", "alpha_x2", "alpha_z", "a", "n", "nu", "rho"];
 
     /// The model with `p = 2` and the tanh gate.
     pub fn from_array([alpha_x1, alpha_x2, alpha_z, a, n, nu, rho]: [D; 7]) -> Self {

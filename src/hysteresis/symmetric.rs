@@ -25,7 +25,7 @@ pub struct SymmetricBoucWen<D> {
 
 impl<D: Scalar> SymmetricBoucWen<D> {
     /// Parameters in the order of [`SymmetricBoucWen::to_array`].
-    pub const PARAMETERS: [&'static str; 6] = ["gamma_x", "gamma_z", "k", "lambda", "delta", "n"];
+    pub(crate) const PARAMETERS: [&'static str; 6] = ["gamma_x", "gamma_z", "k", "lambda", "delta", "n"];
 
     pub fn from_array([gamma_x, gamma_z, k, lambda, delta, n]: [D; 6]) -> Self {
         Self { gamma_x, gamma_z, k, lambda, delta, n }

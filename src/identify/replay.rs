@@ -24,6 +24,7 @@ pub enum IdentifyError {
 impl IdentifyError {
     /// Whether a run began and could not go on: see [`SystemError::is_breakdown`].
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_breakdown(&self) -> bool {
         matches!(self, Self::System(error) if error.is_breakdown())
     }

@@ -46,6 +46,7 @@ impl PortSpec {
     /// # Ok(())
     /// # }
     /// ```
+    #[doc(hidden)]
     pub fn example_table(&self) -> LawTable {
         let (acts, expression) = self.example;
         let port = self.name().replace("CHANNEL", "angle_deg");

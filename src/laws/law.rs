@@ -184,7 +184,7 @@ impl Law {
     }
 
     /// Whether it acts on something of the plant, and not on what a channel shows.
-    pub fn is_physical(&self) -> bool {
+    pub(crate) fn is_physical(&self) -> bool {
         self.address.port.spec().carrier != Carrier::Sensor
     }
 

@@ -29,12 +29,25 @@ mod table;
 mod tree;
 mod units;
 
-pub use address::{Address, nearest_port, numbered};
+#[doc(hidden)]
+pub use address::Address;
+#[doc(hidden)]
+pub use address::{nearest_port, numbered};
+#[doc(hidden)]
 pub use dimension::Dimension;
-pub use law::{Law, Memory, Parameter, Programs, SLOPES, State, Symbol};
-pub use port::{Carrier, PORTS, Port, PortSpec};
+pub use law::{Law, Parameter};
+#[doc(hidden)]
+pub use law::{Memory, State};
+#[doc(hidden)]
+pub use law::{Programs, SLOPES, Symbol};
+#[doc(hidden)]
+pub use port::Carrier;
+pub use port::{PORTS, Port, PortSpec};
+#[doc(hidden)]
 pub use program::Program;
-pub use quantity::{QUANTITIES, Quantity, QuantitySpec, Variable};
+#[doc(hidden)]
+pub use quantity::Variable;
+pub use quantity::{QUANTITIES, Quantity, QuantitySpec};
 pub use read::{LawError, Surroundings};
 pub use table::{LawTable, ParameterTable, StateTable};
 

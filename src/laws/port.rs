@@ -269,12 +269,13 @@ pub const PORTS: [PortSpec; 24] = [
 
 impl Port {
     /// How it is described.
+    #[doc(hidden)]
     pub fn spec(self) -> &'static PortSpec {
         &PORTS[self as usize]
     }
 
     /// Whether what acts there shows by a rate only: a flow, a drop of pressure, a damping.
-    pub fn is_of_rate(self) -> bool {
+    pub(crate) fn is_of_rate(self) -> bool {
         matches!(
             self,
             Self::SyringeFlow
@@ -295,6 +296,7 @@ impl PortSpec {
     }
 
     /// What a law here can depend on without a number in the name.
+    #[doc(hidden)]
     pub fn variables(&self) -> &'static [Quantity] {
         match self.port {
             Port::Plunger => PLUNGER,
@@ -308,7 +310,7 @@ impl PortSpec {
     }
 
     /// Units of what may be added.
-    pub fn added_units(&self) -> impl Iterator<Item = Dimension> {
+    pub(crate) fn added_units(&self) -> impl Iterator<Item = Dimension> {
         self.adds.iter().filter_map(|unit| Dimension::parse(unit).ok())
     }
 }

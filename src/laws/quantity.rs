@@ -84,16 +84,18 @@ pub const QUANTITIES: [QuantitySpec; 15] = [
 
 impl Quantity {
     /// How it is written.
+    #[doc(hidden)]
     pub fn spec(self) -> &'static QuantitySpec {
         &QUANTITIES[self as usize]
     }
 
     /// Whether it is time, or goes by it.
-    pub fn is_rate(self) -> bool {
+    pub(crate) fn is_rate(self) -> bool {
         matches!(self, Self::Speed | Self::Flow | Self::PlungerSpeed | Self::AngularSpeed | Self::Time)
     }
 
     /// Its unit; that of a reading is its channel's.
+    #[doc(hidden)]
     pub fn dimension(self) -> Dimension {
         Dimension::of_name(&self.spec().name()).unwrap_or(Dimension::NONE)
     }

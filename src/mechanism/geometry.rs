@@ -16,7 +16,7 @@ impl Pose {
     pub const IDENTITY: Pose = Pose { translation_m: [0.0; 3], rotation_xyzw: [0.0, 0.0, 0.0, 1.0] };
 
     /// A point of the world in this frame, m.
-    pub fn to_local(&self, point_m: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn to_local(self, point_m: [f64; 3]) -> [f64; 3] {
         let [x, y, z, w] = self.rotation_xyzw;
         let rotation = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
         let offset = nalgebra::Vector3::from(point_m) - nalgebra::Vector3::from(self.translation_m);

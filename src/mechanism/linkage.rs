@@ -97,7 +97,7 @@ impl<D: Scalar> Placement<'_, D> {
     }
 
     /// A link's origin as another link sees it, m.
-    pub fn origin_in(&self, link: usize, frame: usize) -> [D; 3] {
+    pub(crate) fn origin_in(&self, link: usize, frame: usize) -> [D; 3] {
         let origin = self.point(&LinkPoint { link, point_m: [0.0; 3] });
         let (body, in_body) = &self.linkage.links[frame];
         self.bodies[*body].after(in_body).seen(&origin)

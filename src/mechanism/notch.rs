@@ -83,7 +83,7 @@ impl NotchGeometry {
     }
 
     /// ȳ, distance of the neutral axis from the tube's axis, away from the cut, m.
-    pub fn neutral_axis_m(&self) -> f64 {
+    pub(crate) fn neutral_axis_m(&self) -> f64 {
         let section = self.section();
         section.first_moment / section.area
     }
@@ -95,7 +95,7 @@ impl NotchGeometry {
     }
 
     /// Second moment about the line of symmetry, m⁴ (sideways bending; also used for the strip's inertia).
-    pub fn sideways_second_moment_m4(&self) -> f64 {
+    pub(crate) fn sideways_second_moment_m4(&self) -> f64 {
         self.section().along_x
     }
 

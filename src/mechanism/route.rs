@@ -75,7 +75,7 @@ impl Mechanism {
 
     /// The points to draw the cable through, in the world, m. A lever route without `draw` passes each joint at its
     /// lever.
-    pub fn cable_points(&self, route: &Route) -> Vec<[f64; 3]> {
+    pub(crate) fn cable_points(&self, route: &Route) -> Vec<[f64; 3]> {
         let (Route::Levers { draw: points, .. } | Route::Via(points)) = route;
         points.iter().map(|p| self.world_point(p).to_array()).collect()
     }

@@ -82,12 +82,12 @@ impl<D: Scalar> Friction<D> {
     }
 
     /// Force level `m0 + m1 max(p, 0)`, N.
-    pub fn level_n(&self, pressure_pa: D) -> D {
+    pub(crate) fn level_n(&self, pressure_pa: D) -> D {
         pressure_pa.select_above(D::constant(0.0), self.m0_n + self.m1_n_pa * pressure_pa, self.m0_n)
     }
 
     /// `dF/dp`, N/Pa (0 below gauge zero).
-    pub fn force_per_pressure(&self, z: D, pressure_pa: D) -> D {
+    pub(crate) fn force_per_pressure(&self, z: D, pressure_pa: D) -> D {
         let zero = D::constant(0.0);
         pressure_pa.select_above(zero, self.m1_n_pa * z, zero)
     }
@@ -104,7 +104,7 @@ impl<D: Scalar> Friction<D> {
     }
 
     /// Slopes of [`Friction::rate`] for an implicit integrator; at rest the mean of the two sides.
-    pub fn rate_jacobian(&self, z: D, velocity_m_s: D) -> RateJacobian<D> {
+    pub(crate) fn rate_jacobian(&self, z: D, velocity_m_s: D) -> RateJacobian<D> {
         let restoring = -(self.nu * self.n * power(z.abs(), self.n - 1.0));
         RateJacobian {
             drate_dz: velocity_m_s.abs() * restoring / self.presliding_length_m,
@@ -130,13 +130,13 @@ impl<D: Scalar> Friction<D> {
     }
 
     /// Heat `F v - dS/dt` at constant pressure, W: `(m0 + m1 p) |v| (nu |z|^(n+1) - rho z)/A`.
-    pub fn dissipation_w(&self, z: D, velocity_m_s: D, pressure_pa: D) -> D {
+    pub(crate) fn dissipation_w(&self, z: D, velocity_m_s: D, pressure_pa: D) -> D {
         -(self.level_n(pressure_pa) * velocity_m_s.abs() * z * self.pull_back(z)) / self.a
     }
 
     /// What a changing pressure adds to the stored energy, W (either sign): the energy balance's
     /// 'pressure-friction exchange'.
-    pub fn pressure_exchange_w(&self, z: D, pressure_pa: D, pressure_rate_pa_s: D) -> D {
+    pub(crate) fn pressure_exchange_w(&self, z: D, pressure_pa: D, pressure_rate_pa_s: D) -> D {
         self.force_per_pressure(z, pressure_pa) * z * self.presliding_length_m / (self.a * 2.0) * pressure_rate_pa_s
     }
 

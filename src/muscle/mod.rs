@@ -40,9 +40,18 @@ mod unilateral_tests;
 #[cfg(test)]
 mod wall_tests;
 
-pub use coil::{Coil, SAFE_STRETCH, Stop, StopPush, YIELD_STRETCH, spring_rate};
+#[doc(hidden)]
+pub use coil::Stop;
+#[doc(hidden)]
+pub use coil::StopPush;
+pub use coil::{Coil, SAFE_STRETCH, YIELD_STRETCH, spring_rate};
 pub use error::MuscleError;
-pub use friction::{Friction, RateJacobian};
+pub use friction::Friction;
+#[doc(hidden)]
+pub use friction::RateJacobian;
 pub use material::{Material, OgdenTerm};
+#[doc(hidden)]
 pub use rubber_term::RubberTerm;
-pub use wall::{ElongationRange, Wall, WallCondition, WallGeometry, WallState};
+#[doc(hidden)]
+pub use wall::{ElongationRange, WallState};
+pub use wall::{Wall, WallCondition, WallGeometry};

@@ -106,7 +106,7 @@ impl WallGeometry {
     }
 
     /// Volume of the silicone, m^3; constant.
-    pub fn silicone_volume_m3(&self) -> f64 {
+    pub(crate) fn silicone_volume_m3(&self) -> f64 {
         self.coil_area_m2() * self.rest_length_m * (1.0 - self.bore_share())
     }
 

@@ -152,6 +152,7 @@ impl Recording {
     ///
     /// # Errors
     /// No such column, no known unit, not a single sample.
+    #[doc(hidden)]
     pub fn piecewise_si(&self, column: &str) -> Result<PiecewiseLinear, RecordingError> {
         let line = PiecewiseLinear::new(&self.time_s, &self.si(column)?)
             .ok_or_else(|| RecordingError::AllMissing { column: column.to_owned() })?;

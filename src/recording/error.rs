@@ -169,6 +169,7 @@ pub enum RecordingError {
 impl RecordingError {
     /// The same error with its file in front.
     #[must_use]
+    #[doc(hidden)]
     pub fn in_file(self, file: impl Into<String>) -> Self {
         Self::In { file: file.into(), source: Box::new(self) }
     }

@@ -48,7 +48,7 @@ pub struct ChannelSpec {
 
 impl ChannelSpec {
     /// The name of its column in a table.
-    pub fn name_in_table(&self) -> &str {
+    pub(crate) fn name_in_table(&self) -> &str {
         self.table.name.as_deref().unwrap_or(&self.column)
     }
 }
@@ -133,6 +133,7 @@ impl RecordingSet {
     ///
     /// # Errors
     /// As [`RecordingSet::load`].
+    #[doc(hidden)]
     pub fn parse(text: &str, file: &Path) -> Result<Self, RecordingError> {
         let table: Table = toml::from_str(text).map_err(|error| RecordingError::Toml {
             file: file.to_owned(),

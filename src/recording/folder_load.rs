@@ -29,6 +29,7 @@ impl RecordingSet {
     ///
     /// # Errors
     /// As [`Self::load_run`].
+    #[doc(hidden)]
     pub fn load_parts(&self, run: &Run) -> Result<Vec<LoadedRun>, RecordingError> {
         let file = self.dir.join(&run.file);
         let declared = self.channels_of(run);

@@ -48,28 +48,58 @@ mod table;
 mod unit;
 mod writer;
 
-pub use bag_read::read_bag_from;
-pub use bag_source::BagSource;
-pub use blocks::Blocks;
-pub use by_size::{BySize, motion_ratio, unit_by_size};
-pub use channels::{Channel, Recording, TIME_COLUMN};
+pub use channels::{Channel, Recording};
 pub use compare::{ChannelFit, compare};
-pub use csv_read::{read_csv, read_csv_from};
-pub use csv_write::{CsvWriter, RowWriter};
+pub use csv_read::read_csv;
 pub use error::RecordingError;
-pub use folder::{ChannelSpec, LoadedRun, RecordingSet, Role, Run, RunUse, SET_FILE_NAME};
-pub use formats::{FileFormat, read_recording};
-pub use guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, guess_sheet, to_toml};
-pub use lost::LONGEST_LOST_S;
+pub use folder::{LoadedRun, RecordingSet, Role, Run, RunUse};
+pub use formats::read_recording;
 pub use noise::noise_sd;
 pub use piecewise::PiecewiseLinear;
+pub use survey::{Missing, Survey, survey};
+
+pub use crate::bag::Clock;
+#[doc(hidden)]
+pub use bag_read::read_bag_from;
+#[doc(hidden)]
+pub use bag_source::BagSource;
+#[doc(hidden)]
+pub use blocks::Blocks;
+#[doc(hidden)]
+pub use by_size::{BySize, motion_ratio, unit_by_size};
+#[doc(hidden)]
+pub use channels::TIME_COLUMN;
+#[doc(hidden)]
+pub use csv_read::read_csv_from;
+#[doc(hidden)]
+pub use csv_write::{CsvWriter, RowWriter};
+#[doc(hidden)]
+pub use folder::{ChannelSpec, SET_FILE_NAME};
+#[doc(hidden)]
+pub use formats::FileFormat;
+#[doc(hidden)]
+pub use guess::{Guess, GuessedColumn, Sureness, guess, to_toml};
+#[doc(hidden)]
+pub use guess::{OpenScene, Said, Wanted, guess_sheet};
+#[doc(hidden)]
+pub use lost::LONGEST_LOST_S;
+#[doc(hidden)]
 pub use schema::recordings_schema;
+#[doc(hidden)]
 pub use strays::strays;
-pub use survey::{Gap, Missing, Strays, Survey, gap_limit_s, median, median_interval_s, survey};
+#[doc(hidden)]
+pub use survey::Gap;
+#[doc(hidden)]
+pub use survey::{Strays, gap_limit_s, median, median_interval_s};
+#[doc(hidden)]
 pub use table::{
     Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label,
 };
-pub use unit::{ColumnName, KNOWN_UNITS, Unit, axis_label, parse_column};
+#[doc(hidden)]
+pub use unit::Unit;
+#[doc(hidden)]
+pub use unit::{ColumnName, parse_column};
+#[doc(hidden)]
+pub use unit::{KNOWN_UNITS, axis_label};
+#[doc(hidden)]
 pub use writer::RecordingWriter;
-
-pub use crate::bag::Clock;

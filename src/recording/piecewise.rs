@@ -79,11 +79,6 @@ impl PiecewiseLinear {
         rise / (self.times_s[after] - self.times_s[after - 1])
     }
 
-    /// The change of the value from one time to another, s.
-    pub fn increment(&self, from_s: f64, to_s: f64) -> f64 {
-        self.value(to_s) - self.value(from_s)
-    }
-
     fn first_after(&self, time_s: f64) -> usize {
         self.times_s.partition_point(|t| *t <= time_s)
     }
@@ -104,7 +99,6 @@ mod tests {
         assert_eq!(u.value(9.0), 0.0);
         assert_eq!((u.slope(-1.0), u.slope(0.0)), (0.0, 2.0));
         assert_eq!((u.slope(1.0), u.slope(4.0)), (-1.0, 0.0));
-        assert_eq!(u.increment(0.5, 9.0), -2.0);
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct Survey {
 
 impl Survey {
     /// Whether more than 1 % of the intervals are uneven.
-    pub fn is_uneven(&self) -> bool {
+    pub(crate) fn is_uneven(&self) -> bool {
         self.uneven_share > UNEVEN_SHARE
     }
 

@@ -67,7 +67,7 @@ pub enum PressureScale {
 
 impl ChamberSpec {
     /// Absolute pressure of the zero of `reads`, Pa.
-    pub fn zero_pa(&self) -> f64 {
+    pub(crate) fn zero_pa(&self) -> f64 {
         match self.reads {
             PressureScale::Gauge => self.ambient_pressure_pa,
             PressureScale::Absolute => 0.0,

@@ -34,6 +34,7 @@ mod overrides;
 mod program;
 mod schema;
 
+#[doc(hidden)]
 pub use check_laws::{Candidate, on_channel};
 pub(crate) use differs::{muscles_set_by, set_the_same};
 pub use error::SceneError;

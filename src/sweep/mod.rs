@@ -29,18 +29,41 @@ mod spec;
 mod table;
 mod vocabulary;
 
-pub use best::{best, excess, trouble, write_best};
+pub use best::best;
+#[doc(hidden)]
+pub use best::write_best;
+#[doc(hidden)]
+pub use best::{excess, trouble};
+#[doc(hidden)]
 pub use bootstrap::Estimate;
+#[doc(hidden)]
 pub use design::Design;
 pub use error::SweepError;
+#[doc(hidden)]
 pub use journal::{Journal, JournalLine};
-pub use morris::{MorrisEffects, Trajectories};
+#[doc(hidden)]
+pub use morris::MorrisEffects;
+#[doc(hidden)]
+pub use morris::Trajectories;
+#[doc(hidden)]
 pub use nsga2::Evolution;
-pub use pareto::{Score, front};
+#[doc(hidden)]
+pub use pareto::Score;
+#[doc(hidden)]
+pub use pareto::front;
 pub use plan::{Plan, Shard};
 pub use point::{Row, evaluate};
-pub use run::{Watch, check_shard, run};
+#[doc(hidden)]
+pub use run::check_shard;
+pub use run::{Watch, run};
 pub use sensitivity::{Influence, Sensitivity, sensitivity};
-pub use sobol_indices::{SobolIndices, sobol_indices};
-pub use spec::{Goal, LimitSpec, Mark, MeasureSpec, ObjectiveSpec, SamplingSpec, SweepFile, VarySpec, concern_column};
+#[doc(hidden)]
+pub use sobol_indices::SobolIndices;
+#[doc(hidden)]
+pub use sobol_indices::sobol_indices;
+#[doc(hidden)]
+pub use spec::Mark;
+#[doc(hidden)]
+pub use spec::concern_column;
+pub use spec::{Goal, LimitSpec, MeasureSpec, ObjectiveSpec, SamplingSpec, SweepFile, VarySpec};
 pub use table::Table;

@@ -108,12 +108,14 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Evolution::new`].
+    #[doc(hidden)]
     pub fn evolution(&self) -> Result<Option<Evolution>, SweepError> {
         let is_one = matches!(self.file.sampling, SamplingSpec::Nsga2 { .. });
         if is_one { Evolution::new(self.file.sampling, &self.file.vary).map(Some) } else { Ok(None) }
     }
 
     /// A measure of a row by name; NaN where it failed.
+    #[doc(hidden)]
     pub fn measured(&self, row: &Row, measure: &str) -> f64 {
         let at = self.measures.iter().position(|m| m.name == measure);
         let measures = row.outcome.as_deref().unwrap_or(&[]);

@@ -20,6 +20,7 @@ pub struct Row {
 
 impl Row {
     /// Numbers of the columns after the index: keys, measures, times in trouble; no number where there are none.
+    #[doc(hidden)]
     pub fn numbers(&self, measures: usize) -> impl Iterator<Item = f64> {
         let own = self.outcome.as_deref().unwrap_or(&[]);
         let ran = self.outcome.is_ok();

@@ -13,12 +13,14 @@ impl VarySpec {
     }
 
     /// The keys that get the value.
+    #[doc(hidden)]
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.key.split('+').map(str::trim)
     }
 
     /// # Errors
     /// Numbers that contradict each other or lack for the sampling.
+    #[doc(hidden)]
     pub fn check(&self, sampling: SamplingSpec) -> Result<(), SweepError> {
         let refuse = |message: &str, remedy: &str| {
             let (key, message, remedy) = (self.key.clone(), message.to_owned(), remedy.to_owned());
@@ -55,6 +57,7 @@ impl VarySpec {
     }
 
     /// The value at a place.
+    #[doc(hidden)]
     pub fn value(&self, place: Place) -> f64 {
         match place {
             Place::Nth(n) if !self.values.is_empty() => self.values[n as usize],

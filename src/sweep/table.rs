@@ -21,6 +21,7 @@ pub struct Table {
 }
 
 impl Table {
+    #[doc(hidden)]
     pub fn new(plan: &Plan, rows: BTreeMap<u64, Row>) -> Self {
         Self { columns: plan.columns(), rows: rows.into_values().collect(), points: plan.count() }
     }
@@ -29,6 +30,7 @@ impl Table {
     ///
     /// # Errors
     /// Folders without a journal, or with that of another sweep.
+    #[doc(hidden)]
     pub fn of_folders(plan: &Plan, folders: &[&Path]) -> Result<Self, SweepError> {
         let mut rows = BTreeMap::new();
         for folder in folders {
@@ -46,6 +48,7 @@ impl Table {
     }
 
     /// Whether a point has a row.
+    #[doc(hidden)]
     pub fn has(&self, index: u64) -> bool {
         self.rows.binary_search_by_key(&index, |r| r.index).is_ok()
     }
@@ -62,7 +65,7 @@ impl Table {
     }
 
     /// The numbers of a column at every point of the sweep; NaN where it failed or is not done.
-    pub fn by_index(&self, name: &str) -> Vec<f64> {
+    pub(crate) fn by_index(&self, name: &str) -> Vec<f64> {
         let mut all = vec![f64::NAN; self.points as usize];
         for (row, value) in self.rows.iter().zip(self.column(name).unwrap_or_default()) {
             if let Some(slot) = all.get_mut(row.index as usize) {

@@ -73,6 +73,7 @@ struct LawLine {
 
 impl EnergyBalance {
     /// Opens the balance at a state; `inputs` as they will be over the first step.
+    #[doc(hidden)]
     pub fn open(plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) -> Self {
         let stored = stored(plant, state, inputs, 0.0);
         let held = effect_stores(plant, state, inputs, 0.0);
@@ -94,6 +95,7 @@ impl EnergyBalance {
     }
 
     /// To be called before each fine step.
+    #[doc(hidden)]
     pub fn before(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan]) {
         self.before = powers(plant, state, inputs, 0.0);
         self.effects_before = effect_flows(plant, state, inputs, 0.0);
@@ -104,6 +106,7 @@ impl EnergyBalance {
     }
 
     /// To be called after it.
+    #[doc(hidden)]
     pub fn after(&mut self, plant: &Plant<f64>, state: &PlantState<f64>, inputs: &[InputSpan], h: f64) {
         let (b, a) = (self.before, powers(plant, state, inputs, h));
         let s = &mut self.sums;
@@ -152,7 +155,7 @@ impl EnergyBalance {
     }
 
     /// Enters a change of the stored energy that the rigid-body engine made (contacts, a moved pose).
-    pub fn engine_changed(
+    pub(crate) fn engine_changed(
         &mut self,
         plant: &Plant<f64>,
         state: &PlantState<f64>,

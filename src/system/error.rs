@@ -35,6 +35,7 @@ pub enum SystemError {
 impl SystemError {
     /// Whether the run began and could not go on: it diverged, or a law left the range in which it has a value.
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_breakdown(&self) -> bool {
         matches!(self, Self::Diverged { .. } | Self::Law { .. })
     }

@@ -29,6 +29,7 @@ impl Concern {
     pub const ALL: [Self; 5] = [Self::Slack, Self::Cavitation, Self::Yield, Self::Penetration, Self::JointLimit];
 
     /// Its name in files.
+    #[doc(hidden)]
     pub fn word(self) -> &'static str {
         match self {
             Self::Slack => "slack",

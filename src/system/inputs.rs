@@ -37,7 +37,7 @@ impl InputSource {
     }
 
     /// Where a recorded channel begins, s.
-    pub fn begins_s(&self) -> Option<f64> {
+    pub(crate) fn begins_s(&self) -> Option<f64> {
         match self {
             Self::Program(_) => None,
             Self::Recorded(samples) => samples.times_s().first().copied(),

@@ -153,7 +153,7 @@ impl Simulation {
 
     /// Starts the clock elsewhere than at zero: a recording's first instant, or that of an input of which the first samples were lost
     /// and put back ([`crate::recording::Recording::piecewise_si`]).
-    pub fn start_at(&mut self, time_s: f64) {
+    pub(crate) fn start_at(&mut self, time_s: f64) {
         let begin_s = self.inputs.iter().filter_map(InputSource::begins_s).fold(time_s, f64::min);
         self.time_s = if time_s - begin_s <= LONGEST_LOST_S { begin_s } else { time_s };
         self.built.state.time_s = self.time_s;

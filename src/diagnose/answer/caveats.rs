@@ -17,10 +17,7 @@ pub(in crate::diagnose) fn caveats(
 ) -> Vec<String> {
     let clauses = [
         counted("what these recordings cannot distinguish from a law elsewhere (see forms)", &with_stand_ins(effects)),
-        counted(
-            "channels with almost no noise, for which 1e-5 of their range is assumed",
-            &without_noise(case, noise),
-        ),
+        counted("channels with almost no noise, for which 1e-5 of their range is assumed", &without_noise(case, noise)),
         counted("parameters at the end of their range, where intervals say nothing", &on_bounds(case, fit)),
         counted("parameters that differ from run to run", contradicted),
         counted("runs without the samples in which slack cables leave the joint free", &slack_in(case)),

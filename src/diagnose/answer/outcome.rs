@@ -40,7 +40,7 @@ impl Outcome {
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
-    pub fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, crate::scene::SceneError>> {
+    pub(crate) fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, crate::scene::SceneError>> {
         let fit = self.complete.as_ref()?;
         Some(fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
     }

@@ -23,6 +23,7 @@ impl Case {
     }
 
     /// Leaves a step out. Pressures stay where nothing else was recorded.
+    #[doc(hidden)]
     pub fn leave_out(&mut self, step: Step) {
         self.without = Some(step);
         match step {

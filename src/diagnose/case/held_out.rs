@@ -28,6 +28,7 @@ impl Case {
     }
 
     /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
+    #[doc(hidden)]
     pub fn seal_from(&mut self, cut: usize) {
         self.runs = self.runs[..1].iter().flat_map(|run| run.cut_at(cut)).collect();
     }

@@ -33,6 +33,7 @@ impl Case {
     ///
     /// # Errors
     /// As [`Self::load`].
+    #[doc(hidden)]
     pub fn of_sets(
         sets: &[RecordingSet],
         folders: &[&Path],

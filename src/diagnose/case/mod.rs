@@ -140,7 +140,7 @@ pub struct Case {
 impl Case {
     /// Plans the reduced-order model's steps at a setting for each run, so that what they leave out vanishes in the noise.
     /// `None` when the reduced-order model diverges.
-    pub fn plan_steps(&mut self, settings: &[RomSetting<f64>], noise: &[Noise]) -> Option<()> {
+    pub(crate) fn plan_steps(&mut self, settings: &[RomSetting<f64>], noise: &[Noise]) -> Option<()> {
         let count = self.scene.file.output.len();
         let mut tolerance = vec![None; count];
         for (channel, noise) in self.channels.iter().zip(noise) {
@@ -154,7 +154,7 @@ impl Case {
     }
 
     /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the reduced-order model diverges.
-    pub fn leave_out_slack(&mut self, settings: &[RomSetting<f64>]) -> Option<()> {
+    pub(crate) fn leave_out_slack(&mut self, settings: &[RomSetting<f64>]) -> Option<()> {
         let slack: Vec<_> = self
             .runs
             .par_iter()
@@ -171,11 +171,12 @@ impl Case {
     }
 
     /// Whether joints were held by next to nothing somewhere.
-    pub fn goes_slack(&self) -> bool {
+    pub(crate) fn goes_slack(&self) -> bool {
         self.runs.iter().any(|r| r.slack.iter().any(|samples| !samples.is_empty()))
     }
 
     /// What was done with the recordings, for whoever reads the answer.
+    #[doc(hidden)]
     pub fn notes(&self) -> Vec<String> {
         let counted = |r: &CaseRun| -> Vec<String> {
             let left_out = self.channels.iter().zip(&r.slack).filter(|(_, samples)| !samples.is_empty());
@@ -185,7 +186,7 @@ impl Case {
     }
 
     /// Runs to fit and select with, or those held back.
-    pub fn subset(&self, runs: RunSet) -> Vec<Cow<'_, CaseRun>> {
+    pub(crate) fn subset(&self, runs: RunSet) -> Vec<Cow<'_, CaseRun>> {
         let wanted = |r: &&CaseRun| match runs {
             RunSet::Open => !r.is_held_out,
             RunSet::HeldOut => r.is_held_out,

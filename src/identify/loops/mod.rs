@@ -38,12 +38,21 @@ mod warnings;
 #[cfg(test)]
 mod recovery_tests;
 
+#[doc(hidden)]
 pub use cma::CmaOptions;
-pub use data::{LoopRun, LoopScale};
+pub use data::LoopRun;
+#[doc(hidden)]
+pub use data::LoopScale;
 pub use form::{Form, ParameterSpec};
-pub use intervals::{Certainty, certainty};
+pub use intervals::Certainty;
+#[doc(hidden)]
+pub use intervals::certainty;
+#[doc(hidden)]
 pub use problem::Problem;
-pub use search::{Found, Method, SearchOptions, search};
+#[doc(hidden)]
+pub use search::{Found, search};
+pub use search::{Method, SearchOptions};
+#[doc(hidden)]
 pub use swarm::SwarmOptions;
 
 use crate::hysteresis::HysteresisModel;
