@@ -491,6 +491,24 @@ fn shells_get_their_completions() {
 }
 
 #[test]
+fn every_command_has_a_manual_page() {
+    let here = folder();
+    assert!(smam(&["man", "--out", "man/man1"], here.path()).status.success());
+    let pages = here.path().join("man/man1");
+    for (file, word) in [("smam.1", "smam\\-diagnose(1)"), ("smam-diagnose.1", "holdout"), ("smam-man.1", "man1")] {
+        let page = std::fs::read_to_string(pages.join(file)).expect("a page");
+        assert!(page.contains(".TH") && page.contains(word), "{file}: {page}");
+    }
+    std::fs::write(here.path().join("file"), "").expect("written");
+    let refused = smam(&["man", "--out", "file"], here.path());
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        refused.status.code() == Some(1) && words.contains("error: file: ") && words.contains("remedy: "),
+        "{words}"
+    );
+}
+
+#[test]
 fn angles_are_printed_at_the_end_with_their_extremes() {
     let here = folder();
     let output = smam(&["run", "antagonistic_pulley", "--duration", "5", "--angles", "--output", "a.csv"], here.path());

@@ -24,6 +24,7 @@ mod interrupt;
 mod junit;
 mod laws;
 mod left_out;
+mod man;
 mod model;
 mod observers;
 mod results;
@@ -93,6 +94,8 @@ enum Command {
     Model(model::ModelArguments),
     /// Print a script that completes commands and options in a shell
     Completions(CompletionsArguments),
+    /// Write manual pages: one for the program, one for each command
+    Man(man::ManArguments),
     #[cfg(feature = "validation")]
     #[command(flatten)]
     Validation(validation::ValidationCommand),
@@ -154,6 +157,7 @@ fn run_command() -> Result<ExitCode, CliError> {
         Some(Command::Feedforward(arguments)) => feedforward::feedforward(&arguments),
         Some(Command::Model(arguments)) => model::model(&arguments),
         Some(Command::Completions(arguments)) => completions(&arguments),
+        Some(Command::Man(arguments)) => man::man(Arguments::command(), &arguments),
         #[cfg(feature = "validation")]
         Some(Command::Validation(command)) => validation::run(&command),
     }

@@ -25,7 +25,7 @@ impl<D: Scalar> Mullins<D> {
 
     /// Of the energy that the wall took up to its greatest stretch, what it has not given back on the way to `W`, J:
     /// `d W_m ln cosh((W_max - W)/W_m)`.
-    pub fn withheld_j(&self, energy_j: D, greatest_j: D) -> D {
+    pub(crate) fn withheld_j(&self, energy_j: D, greatest_j: D) -> D {
         let below = greatest_j - energy_j;
         let zero = D::constant(0.0);
         let below = below.select_above(zero, below, zero);

@@ -35,11 +35,6 @@ impl<D: Scalar> TendonFriction<D> {
     pub fn rate_1_s(&self, sliding: D, speed_m_s: D) -> D {
         (speed_m_s - speed_m_s.abs() * sliding) / self.presliding_m
     }
-
-    /// Whether nothing is lost at any wrap.
-    pub fn is_zero(&self) -> bool {
-        self.friction_coefficient.is_at(0.0)
-    }
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ impl<D: Scalar> MaxwellBranch<D> {
     }
 
     /// Heat in the dashpot, W.
-    pub fn dissipation_w(&self, elongation_m: D, dashpot_m: D) -> D {
+    pub(crate) fn dissipation_w(&self, elongation_m: D, dashpot_m: D) -> D {
         self.pull_n(elongation_m, dashpot_m) * self.rate_m_s(elongation_m, dashpot_m)
     }
 

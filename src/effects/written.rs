@@ -53,7 +53,7 @@ impl WrittenLaw {
     }
 
     /// As a table of a scene, with the values of an effect.
-    pub fn table_with(&self, of_effect: &[f64]) -> LawTable {
+    pub(crate) fn table_with(&self, of_effect: &[f64]) -> LawTable {
         let mut table = LawTable { candidate: false, ..self.table.clone() };
         for (parameter, value) in self.law.parameters.iter().zip(self.values(of_effect)) {
             if let Some(own) = table.parameter.get_mut(&parameter.name) {

@@ -46,12 +46,12 @@ impl<D: Scalar> ChainSolver<D> {
     }
 
     /// Flow that the first and the last node lose per pressure, m³/(s Pa): a leak; none unless it is set.
-    pub fn set_conductance(&mut self, first_and_last_m3_s_pa: [D; 2]) {
+    pub(crate) fn set_conductance(&mut self, first_and_last_m3_s_pa: [D; 2]) {
         self.conductance_m3_s_pa = first_and_last_m3_s_pa;
     }
 
     /// Factorises for the step parameter `g`; returns `sigma_N`, the response of the last node to the outflow.
-    pub fn factorise(&mut self, chain: &Chain<D>, row: &[D], boils: &[bool], port: &Port<D>, g: f64) -> D {
+    pub(crate) fn factorise(&mut self, chain: &Chain<D>, row: &[D], boils: &[bool], port: &Port<D>, g: f64) -> D {
         self.g = g;
         let n = chain.segments();
         let at = ChainRow::of(row, n);

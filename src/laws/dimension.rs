@@ -131,7 +131,7 @@ const ENDINGS: [(&str, &str); 41] = [
 
 impl Dimension {
     /// A plain number.
-    pub const NONE: Self = Self { kg: 0.0, m: 0.0, s: 0.0 };
+    pub(crate) const NONE: Self = Self { kg: 0.0, m: 0.0, s: 0.0 };
 
     /// The dimension raised to a power.
     pub fn power(self, n: f64) -> Self {
@@ -153,7 +153,7 @@ impl Dimension {
 
     /// The ending of a name that is a unit with a prefix, or another that SI does not have, and the name as it should be; none where it has
     /// none.
-    pub fn with_prefix(name: &str) -> Option<(&'static str, String)> {
+    pub(crate) fn with_prefix(name: &str) -> Option<(&'static str, String)> {
         let ending = |(wrong, right): &(&'static str, &str)| {
             let rest = name.strip_suffix(wrong)?.strip_suffix('_').filter(|rest| !rest.is_empty())?;
             Some((*wrong, format!("{rest}_{right}")))

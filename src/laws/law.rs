@@ -107,7 +107,7 @@ pub(super) struct StateTrees {
 
 impl Programs {
     /// Those of its states.
-    pub fn of_states(&self) -> [&Program; 5] {
+    pub(crate) fn of_states(&self) -> [&Program; 5] {
         [&self.rates, &self.rate_slopes, &self.starts, &self.follows, &self.widths]
     }
 

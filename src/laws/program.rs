@@ -88,7 +88,7 @@ impl Program {
 
     /// Evaluates the other outputs from the registers as [`Program::run_first`] left them.
     #[inline]
-    pub fn run_rest<D: Scalar>(&self, registers: &mut [D]) {
+    pub(crate) fn run_rest<D: Scalar>(&self, registers: &mut [D]) {
         self.run_from(self.first, self.instructions.len(), registers);
     }
 
@@ -108,7 +108,7 @@ impl Program {
 
     /// Whether a result is 0 whatever the symbols are.
     #[inline]
-    pub fn is_nothing(&self, index: usize) -> bool {
+    pub(crate) fn is_nothing(&self, index: usize) -> bool {
         let at = usize::from(self.outputs[index]).checked_sub(self.symbols.len()).map(|i| &self.instructions[i]);
         at.is_some_and(|i| i.code == Code::Constant && i.number == 0.0)
     }

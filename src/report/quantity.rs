@@ -96,7 +96,7 @@ impl Scale {
     }
 
     /// A value and its interval, to the second digit of the interval's half-width: `10.08 mN`, `10.05 to 10.11 mN`.
-    pub fn with_interval(&self, value_si: f64, low_si: f64, high_si: f64) -> [String; 2] {
+    pub(crate) fn with_interval(&self, value_si: f64, low_si: f64, high_si: f64) -> [String; 2] {
         let [value, low, high] = [value_si, low_si, high_si].map(|v| v / self.factor);
         let write = |v: f64| to_place(v, 0.5 * (high - low));
         [with(&write(value), &self.symbol), with(&format!("{} to {}", write(low), write(high)), &self.symbol)]

@@ -66,7 +66,7 @@ impl<D: Scalar> Elastic<D> {
     ///
     /// A wall that its coil holds from one side only has two there: pressed against the coil that of a held one, else that of a free
     /// one. Taken is the latter, which a stretch meets.
-    pub fn stiffness_at_rest_n_m(&self) -> D {
+    pub(crate) fn stiffness_at_rest_n_m(&self) -> D {
         self.at(D::constant(JUST_STRETCHED_M), D::constant(0.0)).stiffness_n_m
     }
 
@@ -84,7 +84,7 @@ impl<D: Scalar> Elastic<D> {
     }
 
     /// Elastic energy of the wall alone, J; zero for a muscle without one.
-    pub fn wall_energy_j(&self, e: D) -> D {
+    pub(crate) fn wall_energy_j(&self, e: D) -> D {
         match self {
             Self::Tube { wall, .. } => wall.energy_j(e),
             Self::Linear { .. } => D::constant(0.0),
@@ -92,7 +92,7 @@ impl<D: Scalar> Elastic<D> {
     }
 
     /// Pressure that holds the muscle at elongation `e` against an outside pull `load`, Pa, with the wall on its coil.
-    pub fn holding_pressure_pa(&self, e: D, load_n: D) -> D {
+    pub(crate) fn holding_pressure_pa(&self, e: D, load_n: D) -> D {
         let zero = D::constant(0.0);
         match self {
             Self::Tube { wall, coil, area_growth_1_m, .. } => {

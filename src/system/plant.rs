@@ -322,7 +322,7 @@ impl<D: Scalar> CablePlant<D> {
 
 impl<D: Scalar> Plant<D> {
     /// Number of coordinates.
-    pub fn dim(&self) -> usize {
+    pub(crate) fn dim(&self) -> usize {
         self.coordinates.damping.len()
     }
 
@@ -340,7 +340,7 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Forces of one muscle at a state, `elapsed_s` into the span of the inputs.
-    pub fn muscle_forces(
+    pub(crate) fn muscle_forces(
         &self,
         muscle: usize,
         state: &PlantState<D>,

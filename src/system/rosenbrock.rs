@@ -76,7 +76,7 @@ impl<D: Scalar> Stepper<D> {
     }
 
     /// Forgets the tangents: inertia, levers or weights of the plant have changed.
-    pub fn plant_changed(&mut self) {
+    pub(crate) fn plant_changed(&mut self) {
         self.age = KEEP;
     }
 

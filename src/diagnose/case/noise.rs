@@ -71,7 +71,7 @@ impl Noise {
     }
 
     /// Whether weights from one are good enough for the other.
-    pub fn is_near(&self, other: &Self) -> bool {
+    pub(crate) fn is_near(&self, other: &Self) -> bool {
         (self.scale() / other.scale() - 1.0).abs() < 0.1
     }
 

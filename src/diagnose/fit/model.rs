@@ -28,7 +28,7 @@ impl Placed {
     }
 
     /// Whether another answer would be given in the same words.
-    pub fn says_the_same(&self, other: &Self) -> bool {
+    pub(crate) fn says_the_same(&self, other: &Self) -> bool {
         self.spec().name == other.spec().name && self.element == other.element && self.channel == other.channel
     }
 
@@ -98,7 +98,7 @@ impl Model {
     }
 
     /// The same with one of the effects behind the others.
-    pub fn with_last(&self, index: usize) -> Self {
+    pub(crate) fn with_last(&self, index: usize) -> Self {
         let mut model = self.without(index);
         model.effects.push(self.effects[index].clone());
         model.values.push(self.values[index].clone());
@@ -107,7 +107,7 @@ impl Model {
     }
 
     /// Number of fitted parameters of the effects.
-    pub fn effect_parameters(&self) -> usize {
+    pub(crate) fn effect_parameters(&self) -> usize {
         self.fitted.iter().map(Vec::len).sum()
     }
 
@@ -117,7 +117,7 @@ impl Model {
     }
 
     /// The effects with the fitted parameters at `x`, which follows the calibration in the vector of a fit.
-    pub fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
+    pub(crate) fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
         let mut effects: Vec<Effect<f64>> = self.effects.iter().zip(&self.values).map(|(p, v)| p.with(v)).collect();
         for ((effect, index), value) in self.places().into_iter().zip(x) {
             effects[effect].values[index] = *value;

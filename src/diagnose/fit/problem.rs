@@ -26,7 +26,7 @@ pub struct Fit {
 
 impl Fit {
     /// The same with one of the effects behind the others.
-    pub fn with_last(&self, effect: usize) -> Self {
+    pub(crate) fn with_last(&self, effect: usize) -> Self {
         let calibration = self.x.len() - self.model.effect_parameters();
         let places = self.model.places();
         let (own, others): (Vec<usize>, Vec<usize>) =

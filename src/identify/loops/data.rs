@@ -85,7 +85,7 @@ impl LoopScale {
     }
 
     /// Whether the input stays on the side where it is positive, but for a hundredth of its range (noise around zero).
-    pub fn is_one_sided(&self) -> bool {
+    pub(crate) fn is_one_sided(&self) -> bool {
         self.input_mm[0] > -0.01 * self.stroke_mm()
     }
 }

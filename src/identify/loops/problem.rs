@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_dual::{Derivative, DualSVec64};
 
-use crate::hysteresis::{DisplacementModel, HysteresisModel, mean_squares};
+use crate::hysteresis::{HysteresisModel, mean_squares};
 
 use super::data::{LoopRun, LoopScale};
 use super::form::{Form, ParameterSpec};
@@ -150,7 +150,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The set with its gains replaced by the best ones for its state (linear least squares), within their bounds.
-    pub fn with_best_gains(&self, free: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn with_best_gains(&self, free: &[f64]) -> Option<Vec<f64>> {
         let gains: Vec<usize> = (0..free.len()).filter(|&j| self.specs[self.free[j]].is_gain).collect();
         let columns: Vec<DVector<f64>> = self.gain_columns(free, &gains)?.into_iter().map(DVector::from_vec).collect();
         let matrix = DMatrix::from_columns(&columns);
@@ -167,11 +167,6 @@ impl<'a> Problem<'a> {
             set[j] = value.clamp(spec.min, spec.max);
         }
         Some(set)
-    }
-
-    /// The Bouc-Wen form, if it is one; for benches.
-    pub fn bouc_wen(&self) -> Option<DisplacementModel<f64>> {
-        self.blank.bouc_wen()
     }
 }
 

@@ -113,12 +113,12 @@ impl FileOptions {
     }
 
     /// The name of the time column.
-    pub fn time_name(&self) -> &str {
+    pub(crate) fn time_name(&self) -> &str {
         self.time_column.as_deref().unwrap_or(TIME_COLUMN)
     }
 
     /// Whether rows are only counted (`time = "index"`).
-    pub fn counts_rows(&self) -> bool {
+    pub(crate) fn counts_rows(&self) -> bool {
         matches!(self.time, TimeSource::Index(_))
     }
 

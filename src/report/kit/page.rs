@@ -156,7 +156,7 @@ impl HtmlPage {
     }
 
     /// Adds a map of numbers with a caption.
-    pub fn heat_map(&mut self, map: &HeatMap, caption: &str) -> &mut Self {
+    pub(crate) fn heat_map(&mut self, map: &HeatMap, caption: &str) -> &mut Self {
         self.drawn_by_style("map", &map.html(), caption)
     }
 

@@ -104,7 +104,7 @@ impl From<&Panel> for Plot {
 
 impl Plot {
     /// The same with an area behind its lines.
-    pub fn with_area(self, area: Area) -> Self {
+    pub(crate) fn with_area(self, area: Area) -> Self {
         Self { area: Some(area), ..self }
     }
 

@@ -9,7 +9,7 @@ use super::{Instance, PlantLaws};
 
 impl PlantLaws<f64> {
     /// Every law on every element, as it stays during a run.
-    pub fn graphs(&self) -> Vec<LawGraph> {
+    pub(crate) fn graphs(&self) -> Vec<LawGraph> {
         let graph = |(i, instance): (usize, &Instance)| {
             let law = &self.laws[instance.law];
             let same = |others: &[Instance]| others.iter().filter(|other| other.law == instance.law).count();

@@ -41,7 +41,7 @@ impl Rom {
     }
 
     /// Whether something acts on what the model shows.
-    pub fn has_sensors(&self, setting: &RomSetting<f64>) -> bool {
+    pub(crate) fn has_sensors(&self, setting: &RomSetting<f64>) -> bool {
         super::many::without_sensors(setting) != *setting || self.outputs.iter().any(|o| !o.laws.is_empty())
     }
 

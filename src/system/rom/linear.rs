@@ -85,7 +85,7 @@ impl Linear<'_> {
     }
 
     /// The next intervals; none at the end of the run.
-    pub fn next_block(&mut self) -> Option<Block> {
+    pub(crate) fn next_block(&mut self) -> Option<Block> {
         let first = self.next;
         self.next = self.samples.min(first + BLOCK);
         let samples = first..self.next;

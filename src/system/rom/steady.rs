@@ -10,7 +10,12 @@ use super::{Rom, RomRun, RomSetting};
 impl Rom {
     /// What each of a few steady signals changes, per unit; none where the model diverges. At each port stands a law whose only number is
     /// what acts there. Only the first eight ports are asked.
-    pub fn steadily(&self, run: &RomRun, setting: &RomSetting<f64>, ports: &[&Effect<f64>]) -> Option<Vec<Change>> {
+    pub(crate) fn steadily(
+        &self,
+        run: &RomRun,
+        setting: &RomSetting<f64>,
+        ports: &[&Effect<f64>],
+    ) -> Option<Vec<Change>> {
         let ports = &ports[..ports.len().min(TOGETHER)];
         let acting = ports.iter().enumerate().map(|(i, port)| port.lift(|_| D::along(0.0, i)));
         let setting = RomSetting {
