@@ -3,6 +3,9 @@
 //! The chain is `plunger -> syringe -> line -> muscle -> cable -> mechanism`. Everything left of the
 //! mechanism is written here; the mechanism is a rapier multibody. See `ARCHITECTURE.md` for the map.
 //!
+//! These pages show what others build on: [`scene`]s, their simulation ([`system`]) and [`laws`], [`recording`]s, fits
+//! ([`identify`]), [`diagnose`] and [`sweep`]. What is public and not shown belongs to the program `smam`, and may change with any release.
+//!
 //! A stock scene with one key changed, and its first second:
 //!
 //! ```

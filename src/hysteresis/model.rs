@@ -80,7 +80,8 @@ impl<D: Scalar> DisplacementModel<D> {
     }
 
     /// Names of the free parameters, in the order of [`DisplacementModel::parameters`].
-    pub(crate) fn parameter_names(&self) -> &'static [&'static str] {
+    #[doc(hidden)]
+    pub fn parameter_names(&self) -> &'static [&'static str] {
         match self {
             Self::Symmetric(_) => &SymmetricBoucWen::<f64>::PARAMETERS,
             Self::Asymmetric(_) => &AsymmetricBoucWen::<f64>::PARAMETERS,
