@@ -41,23 +41,23 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
-#[doc(hidden)]
-pub use answer::side_by_side;
 pub use answer::{Outcome, write_answer, write_answer_with};
 pub use case::{Case, Step};
-#[doc(hidden)]
-pub use case::{CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet};
-#[doc(hidden)]
-pub use diagnosis::size_key;
 pub use diagnosis::{
     Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Freehand, Location, NamedEffect,
     NextExperiment, Proof, Verdict,
 };
 pub use error::DiagnoseError;
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use experiment::programme;
-#[doc(hidden)]
-pub use fit::{Fit, Model, Placed};
+pub use {
+    answer::side_by_side,
+    case::{CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet},
+    diagnosis::size_key,
+    experiment::programme,
+    fit::{Fit, Model, Placed},
+};
 
 use answer::{caveats, figures, location, specimens, summary};
 use experiment::Experiment;

@@ -46,36 +46,26 @@ mod tendon;
 mod viscoelasticity;
 mod written;
 
-#[doc(hidden)]
-pub use backlash::Backlash;
-#[doc(hidden)]
-pub use contact::Wall;
-#[doc(hidden)]
-pub use element::{Element, ElementKind};
 pub use entry::{Entry, ParameterSpec, Range};
-#[doc(hidden)]
-pub use entry::{Levels, Need, Part, Trying};
-#[doc(hidden)]
-pub use line::TrappedAir;
-#[doc(hidden)]
-pub use mullins::Mullins;
-#[doc(hidden)]
-pub use native::Native;
-#[doc(hidden)]
-pub use plastic::PlasticSet;
-#[doc(hidden)]
-pub use preload::CoilPreload;
-#[doc(hidden)]
-pub use registry::EntryId;
 pub use registry::{catalogue, find, names};
-#[doc(hidden)]
-pub use sensor::{Sensor, SensorHistory};
-#[doc(hidden)]
-pub use spectrum::logarithmic_creep;
 pub use table::{Effect, EffectError, EffectTable};
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use tendon::TendonFriction;
-#[doc(hidden)]
-pub use viscoelasticity::MaxwellBranch;
-#[doc(hidden)]
-pub use written::{Fitted, WrittenLaw};
+pub use {
+    backlash::Backlash,
+    contact::Wall,
+    element::{Element, ElementKind},
+    entry::{Levels, Need, Part, Trying},
+    line::TrappedAir,
+    mullins::Mullins,
+    native::Native,
+    plastic::PlasticSet,
+    preload::CoilPreload,
+    registry::EntryId,
+    sensor::{Sensor, SensorHistory},
+    spectrum::logarithmic_creep,
+    tendon::TendonFriction,
+    viscoelasticity::MaxwellBranch,
+    written::{Fitted, WrittenLaw},
+};

@@ -12,15 +12,14 @@ mod line;
 #[cfg(test)]
 mod transmission_line_tests;
 
-#[doc(hidden)]
-pub use chain::{Chain, Port};
-#[doc(hidden)]
-pub use chain_row::ChainRow;
-#[doc(hidden)]
-pub use chain_row::ChainRowMut;
-#[doc(hidden)]
-pub use chain_solver::ChainSolver;
 pub use fluid::Fluid;
-#[doc(hidden)]
-pub use gas_leak::GasLeak;
 pub use line::{Line, Syringe};
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use {
+    chain::{Chain, Port},
+    chain_row::{ChainRow, ChainRowMut},
+    chain_solver::ChainSolver,
+    gas_leak::GasLeak,
+};

@@ -24,23 +24,21 @@ mod passivity_tests;
 #[cfg(test)]
 mod path_tests;
 
-#[doc(hidden)]
-pub use asymmetric::AsymmetricBoucWen;
-#[doc(hidden)]
-pub use dahl::DahlGrowing;
 pub use error::HysteresisError;
 pub use family::HysteresisModel;
-#[doc(hidden)]
-pub use lanes::{LANES, mean_squares};
 pub use model::DisplacementModel;
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use paper::{Gate, PaperModel};
-#[doc(hidden)]
-pub use play::{Play, PlayElement, PrandtlIshlinskii};
-#[doc(hidden)]
-pub use slip::{MaxwellSlip, SlipElement};
-#[doc(hidden)]
-pub use symmetric::SymmetricBoucWen;
+pub use {
+    asymmetric::AsymmetricBoucWen,
+    dahl::DahlGrowing,
+    lanes::{LANES, mean_squares},
+    paper::{Gate, PaperModel},
+    play::{Play, PlayElement, PrandtlIshlinskii},
+    slip::{MaxwellSlip, SlipElement},
+    symmetric::SymmetricBoucWen,
+};
 
 /// What a parameter is that a scene does not name.
 fn zero<D: crate::scalar::Scalar>() -> D {

@@ -38,7 +38,7 @@ const FINE: Grain = Grain {
 pub struct FittedParameter {
     pub key: String,
     pub value: f64,
-    /// 95 % interval from the slopes at the end, as far as residuals are independent; none where the runs do not show the number.
+    /// 95 % interval from the Jacobian at the end, as far as residuals are independent; none where the runs do not show the number.
     pub ci95: Option<[f64; 2]>,
     /// The fit ended on a bound of its range.
     pub on_bound: bool,
@@ -154,15 +154,15 @@ fn intervals(
 ) -> Vec<Option<[f64; 2]>> {
     let covariance = || {
         let here = residuals(x)?;
-        let mut slopes = DMatrix::zeros(here.len(), x.len());
+        let mut jacobian = DMatrix::zeros(here.len(), x.len());
         for (i, b) in bounds.iter().enumerate() {
             let [mut low, mut high] = [x.to_vec(), x.to_vec()];
             low[i] = (x[i] - WIDE * (b.max - b.min)).max(b.min);
             high[i] = (x[i] + WIDE * (b.max - b.min)).min(b.max);
-            slopes.set_column(i, &((residuals(&high)? - residuals(&low)?) * ((b.max - b.min) / (high[i] - low[i]))));
+            jacobian.set_column(i, &((residuals(&high)? - residuals(&low)?) * ((b.max - b.min) / (high[i] - low[i]))));
         }
         let unit = (here.norm_squared() / here.len().max(1) as f64).max(1.0);
-        Some(slopes.tr_mul(&slopes).try_inverse()? * unit)
+        Some(jacobian.tr_mul(&jacobian).try_inverse()? * unit)
     };
     let Some(covariance) = covariance() else { return vec![None; x.len()] };
     let half = |i: usize| 1.96 * covariance[(i, i)].max(0.0).sqrt() * (bounds[i].max - bounds[i].min);

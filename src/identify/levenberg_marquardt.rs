@@ -44,7 +44,7 @@ pub struct LmResult {
 /// Residuals at a point, `None` where the model cannot be evaluated.
 pub type Residuals<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync + 'a;
 /// Jacobian of the residuals at a point.
-pub type Slopes<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
+pub type Jacobian<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
 
 /// Minimises `sum r_i(x)²` within bounds (Levenberg-Marquardt with projection, forward differences).
 ///
@@ -68,19 +68,19 @@ pub type Slopes<'a> = dyn Fn(&[f64]) -> Option<DMatrix<f64>> + Sync + 'a;
 /// # }
 /// ```
 pub fn minimise(residuals: &Residuals<'_>, start: &[f64], bounds: &[Bounds], options: LmOptions) -> Option<LmResult> {
-    descend(Search { residuals, slopes: None, bounds, evaluations: 0 }, start, options)
+    descend(Search { residuals, jacobian: None, bounds, evaluations: 0 }, start, options)
 }
 
-/// As [`minimise`], with exact slopes: `slopes` returns the Jacobian of the residuals at a point, in the parameters' own
+/// As [`minimise`], with an exact Jacobian: `jacobian` returns the Jacobian of the residuals at a point, in the parameters' own
 /// units. Each of its columns counts as one evaluation.
-pub fn minimise_with_slopes(
+pub fn minimise_with_jacobian(
     residuals: &Residuals<'_>,
-    slopes: &Slopes<'_>,
+    jacobian: &Jacobian<'_>,
     start: &[f64],
     bounds: &[Bounds],
     options: LmOptions,
 ) -> Option<LmResult> {
-    descend(Search { residuals, slopes: Some(slopes), bounds, evaluations: 0 }, start, options)
+    descend(Search { residuals, jacobian: Some(jacobian), bounds, evaluations: 0 }, start, options)
 }
 
 fn descend(mut search: Search<'_>, start: &[f64], options: LmOptions) -> Option<LmResult> {
@@ -106,7 +106,7 @@ fn descend(mut search: Search<'_>, start: &[f64], options: LmOptions) -> Option<
 /// Parameters are searched as shares of their ranges, so that their units do not matter.
 struct Search<'a> {
     residuals: &'a Residuals<'a>,
-    slopes: Option<&'a Slopes<'a>>,
+    jacobian: Option<&'a Jacobian<'a>>,
     bounds: &'a [Bounds],
     evaluations: usize,
 }
@@ -132,8 +132,8 @@ impl Search<'_> {
 
     fn jacobian(&mut self, u: &DVector<f64>, r: &DVector<f64>, difference: f64) -> DMatrix<f64> {
         self.evaluations += u.len();
-        if let Some(slopes) = self.slopes {
-            let mut jacobian = slopes(&self.scaled_back(u)).unwrap_or_else(|| DMatrix::zeros(r.len(), u.len()));
+        if let Some(jacobian) = self.jacobian {
+            let mut jacobian = jacobian(&self.scaled_back(u)).unwrap_or_else(|| DMatrix::zeros(r.len(), u.len()));
             for (mut column, b) in jacobian.column_iter_mut().zip(self.bounds) {
                 column *= b.max - b.min;
             }
@@ -232,13 +232,13 @@ mod tests {
     }
 
     #[test]
-    fn exact_slopes_end_at_the_same_place() {
+    fn an_exact_jacobian_ends_at_the_same_place() {
         let at = |x: &[f64], i: usize| x[0] * (-x[1] * i as f64).exp();
         let residuals = |x: &[f64]| Some(DVector::from_fn(20, |i, _| at(x, i) - at(&[3.0, 0.4], i)));
         let slope = |x: &[f64], i: usize, j: usize| if j == 0 { at(x, i) / x[0] } else { -(i as f64) * at(x, i) };
-        let slopes = |x: &[f64]| Some(DMatrix::from_fn(20, 2, |i, j| slope(x, i, j)));
+        let jacobian = |x: &[f64]| Some(DMatrix::from_fn(20, 2, |i, j| slope(x, i, j)));
         let bounds = [Bounds { min: 0.0, max: 10.0 }, Bounds { min: 0.0, max: 2.0 }];
-        let result = minimise_with_slopes(&residuals, &slopes, &[1.0, 1.0], &bounds, LmOptions::default());
+        let result = minimise_with_jacobian(&residuals, &jacobian, &[1.0, 1.0], &bounds, LmOptions::default());
         let found = result.expect("start is valid").parameters;
         assert!((found[0] - 3.0).abs() < 1e-7 && (found[1] - 0.4).abs() < 1e-7, "{found:?}");
     }

@@ -9,12 +9,13 @@ mod own_start;
 mod replay;
 
 pub use fit::{FitReport, FittedParameter, fit_rig_parameters};
-#[doc(hidden)]
-pub use lead_in::LeadIn;
-#[doc(hidden)]
-pub use levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise, minimise_with_slopes};
-#[doc(hidden)]
-pub use own_start::own_start;
 pub use replay::{IdentifyError, RecordedRun, load_runs, replay};
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use replay::{check_channels, condition_overrides, lead_in};
+pub use {
+    lead_in::LeadIn,
+    levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise, minimise_with_jacobian},
+    own_start::own_start,
+    replay::{check_channels, condition_overrides, lead_in},
+};

@@ -29,27 +29,22 @@ mod table;
 mod tree;
 mod units;
 
-#[doc(hidden)]
-pub use address::Address;
-#[doc(hidden)]
-pub use address::{nearest_port, numbered};
-#[doc(hidden)]
-pub use dimension::Dimension;
 pub use law::{Law, Parameter};
-#[doc(hidden)]
-pub use law::{Memory, State};
-#[doc(hidden)]
-pub use law::{Programs, SLOPES, Symbol};
-#[doc(hidden)]
-pub use port::Carrier;
 pub use port::{PORTS, Port, PortSpec};
-#[doc(hidden)]
-pub use program::Program;
-#[doc(hidden)]
-pub use quantity::Variable;
 pub use quantity::{QUANTITIES, Quantity, QuantitySpec};
 pub use read::{LawError, Surroundings};
 pub use table::{LawTable, ParameterTable, StateTable};
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use {
+    address::{Address, nearest_port, numbered},
+    dimension::Dimension,
+    law::{Memory, Programs, SLOPES, State, Symbol},
+    port::Carrier,
+    program::Program,
+    quantity::Variable,
+};
 
 /// What a law does to its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize)]

@@ -37,27 +37,23 @@ mod urdf_text;
 mod world;
 mod xml_scan;
 
-#[doc(hidden)]
-pub use coordinate::{Coordinate, CoordinateKind, Stop};
 pub use error::MechanismError;
-#[doc(hidden)]
-pub use forceps::Forceps;
 pub use geometry::Pose;
-#[doc(hidden)]
-pub use geometry::{Contact, Shape, Visual};
-#[doc(hidden)]
-pub use linkage::{Linkage, Placement};
-#[doc(hidden)]
-pub use model::{Mechanism, Moved};
-#[doc(hidden)]
-pub use notch::NotchGeometry;
-#[doc(hidden)]
-pub use notched_tube::{NotchedTube, notched_tube_meshes, notched_tube_urdf};
-#[doc(hidden)]
-pub use route::{Arm, LinkPoint, Route};
-#[doc(hidden)]
-pub use snapshot::Snapshot;
 pub use spec::{
     BodyMotion, BodyShapeSpec, ContactSpec, FreeBodySpec, JointSpec, LeverSpec, LinkMassSpec, MechanismSpec, PointSpec,
     RouteSpec, StopSpec,
+};
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use {
+    coordinate::{Coordinate, CoordinateKind, Stop},
+    forceps::Forceps,
+    geometry::{Contact, Shape, Visual},
+    linkage::{Linkage, Placement},
+    model::{Mechanism, Moved},
+    notch::NotchGeometry,
+    notched_tube::{NotchedTube, notched_tube_meshes, notched_tube_urdf},
+    route::{Arm, LinkPoint, Route},
+    snapshot::Snapshot,
 };

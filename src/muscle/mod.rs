@@ -40,18 +40,17 @@ mod unilateral_tests;
 #[cfg(test)]
 mod wall_tests;
 
-#[doc(hidden)]
-pub use coil::Stop;
-#[doc(hidden)]
-pub use coil::StopPush;
 pub use coil::{Coil, SAFE_STRETCH, YIELD_STRETCH, spring_rate};
 pub use error::MuscleError;
 pub use friction::Friction;
-#[doc(hidden)]
-pub use friction::RateJacobian;
 pub use material::{Material, OgdenTerm};
-#[doc(hidden)]
-pub use rubber_term::RubberTerm;
-#[doc(hidden)]
-pub use wall::{ElongationRange, WallState};
 pub use wall::{Wall, WallCondition, WallGeometry};
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use {
+    coil::{Stop, StopPush},
+    friction::RateJacobian,
+    rubber_term::RubberTerm,
+    wall::{ElongationRange, WallState},
+};

@@ -59,47 +59,25 @@ pub use piecewise::PiecewiseLinear;
 pub use survey::{Missing, Survey, survey};
 
 pub use crate::bag::Clock;
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use bag_read::read_bag_from;
-#[doc(hidden)]
-pub use bag_source::BagSource;
-#[doc(hidden)]
-pub use blocks::Blocks;
-#[doc(hidden)]
-pub use by_size::{BySize, motion_ratio, unit_by_size};
-#[doc(hidden)]
-pub use channels::TIME_COLUMN;
-#[doc(hidden)]
-pub use csv_read::read_csv_from;
-#[doc(hidden)]
-pub use csv_write::{CsvWriter, RowWriter};
-#[doc(hidden)]
-pub use folder::{ChannelSpec, SET_FILE_NAME};
-#[doc(hidden)]
-pub use formats::FileFormat;
-#[doc(hidden)]
-pub use guess::{Guess, GuessedColumn, Sureness, guess, to_toml};
-#[doc(hidden)]
-pub use guess::{OpenScene, Said, Wanted, guess_sheet};
-#[doc(hidden)]
-pub use lost::LONGEST_LOST_S;
-#[doc(hidden)]
-pub use schema::recordings_schema;
-#[doc(hidden)]
-pub use strays::strays;
-#[doc(hidden)]
-pub use survey::Gap;
-#[doc(hidden)]
-pub use survey::{Strays, gap_limit_s, median, median_interval_s};
-#[doc(hidden)]
-pub use table::{
-    Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label,
+pub use {
+    bag_read::read_bag_from,
+    bag_source::BagSource,
+    blocks::Blocks,
+    by_size::{BySize, motion_ratio, unit_by_size},
+    channels::TIME_COLUMN,
+    csv_read::read_csv_from,
+    csv_write::{CsvWriter, RowWriter},
+    folder::{ChannelSpec, SET_FILE_NAME},
+    formats::FileFormat,
+    guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, guess_sheet, to_toml},
+    lost::LONGEST_LOST_S,
+    schema::recordings_schema,
+    strays::strays,
+    survey::{Gap, Strays, gap_limit_s, median, median_interval_s},
+    table::{Delimiter, FILE_UNITS, FileOptions, FileUnit, Header, Label, TableSource, TimeSource, file_unit, label},
+    unit::{ColumnName, KNOWN_UNITS, Unit, axis_label, parse_column},
+    writer::RecordingWriter,
 };
-#[doc(hidden)]
-pub use unit::Unit;
-#[doc(hidden)]
-pub use unit::{ColumnName, parse_column};
-#[doc(hidden)]
-pub use unit::{KNOWN_UNITS, axis_label};
-#[doc(hidden)]
-pub use writer::RecordingWriter;

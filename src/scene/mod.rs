@@ -34,8 +34,6 @@ mod overrides;
 mod program;
 mod schema;
 
-#[doc(hidden)]
-pub use check_laws::{Candidate, on_channel};
 pub(crate) use differs::{muscles_set_by, set_the_same};
 pub use error::SceneError;
 pub use file::*;
@@ -46,3 +44,7 @@ pub use load::{Scene, find_scene};
 pub use overrides::{Override, calibration_key};
 pub use program::Program;
 pub use schema::scene_schema;
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use check_laws::{Candidate, on_channel};

@@ -30,40 +30,25 @@ mod table;
 mod vocabulary;
 
 pub use best::best;
-#[doc(hidden)]
-pub use best::write_best;
-#[doc(hidden)]
-pub use best::{excess, trouble};
-#[doc(hidden)]
-pub use bootstrap::Estimate;
-#[doc(hidden)]
-pub use design::Design;
 pub use error::SweepError;
-#[doc(hidden)]
-pub use journal::{Journal, JournalLine};
-#[doc(hidden)]
-pub use morris::MorrisEffects;
-#[doc(hidden)]
-pub use morris::Trajectories;
-#[doc(hidden)]
-pub use nsga2::Evolution;
-#[doc(hidden)]
-pub use pareto::Score;
-#[doc(hidden)]
-pub use pareto::front;
 pub use plan::{Plan, Shard};
 pub use point::{Row, evaluate};
-#[doc(hidden)]
-pub use run::check_shard;
 pub use run::{Watch, run};
 pub use sensitivity::{Influence, Sensitivity, sensitivity};
-#[doc(hidden)]
-pub use sobol_indices::SobolIndices;
-#[doc(hidden)]
-pub use sobol_indices::sobol_indices;
-#[doc(hidden)]
-pub use spec::Mark;
-#[doc(hidden)]
-pub use spec::concern_column;
 pub use spec::{Goal, LimitSpec, MeasureSpec, ObjectiveSpec, SamplingSpec, SweepFile, VarySpec};
 pub use table::Table;
+
+// The program's own: not part of what the documentation offers.
+#[doc(hidden)]
+pub use {
+    best::{excess, trouble, write_best},
+    bootstrap::Estimate,
+    design::Design,
+    journal::{Journal, JournalLine},
+    morris::{MorrisEffects, Trajectories},
+    nsga2::Evolution,
+    pareto::{Score, front},
+    run::check_shard,
+    sobol_indices::{SobolIndices, sobol_indices},
+    spec::{Mark, concern_column},
+};

@@ -54,40 +54,32 @@ mod state;
 mod switching;
 mod tangents;
 
-#[doc(hidden)]
-pub use elastic::{Elastic, ElasticPoint};
 pub use energy::EnergyBalance;
 pub use error::SystemError;
-#[doc(hidden)]
-pub use events::ConcernsS;
 pub use events::{Concern, Warnings};
 pub use expect::{Verdict, judge};
-#[doc(hidden)]
-pub use extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras};
-#[doc(hidden)]
-pub use halving::{StepError, step_errors, with_half_steps};
-#[doc(hidden)]
-pub use influence::{Influence, Influenced, influence};
 pub use inputs::InputSource;
 pub use laws::LawFault;
-#[doc(hidden)]
-pub use laws::PlantLaws;
-#[doc(hidden)]
-pub use measured_pose::measured_poses;
-#[doc(hidden)]
-pub use plant::{
-    CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
-};
-#[doc(hidden)]
-pub use posed::Posed;
-#[doc(hidden)]
-pub use rom::{Block, Change, Linear, MuscleNumber, Rom, RomParameter, RomRun, RomSetting, Signals, StepPlan};
-#[doc(hidden)]
-pub use rosenbrock::Stepper;
 pub use run::{Driver, RunError, record, record_driven, record_watched, run};
 pub use schedule::Schedule;
 pub use simulation::Simulation;
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber};
-#[doc(hidden)]
-pub use state::PlantState;
+pub use {
+    elastic::{Elastic, ElasticPoint},
+    events::ConcernsS,
+    extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras},
+    halving::{StepError, step_errors, with_half_steps},
+    influence::{Influence, Influenced, influence},
+    laws::PlantLaws,
+    measured_pose::measured_poses,
+    plant::{
+        CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
+    },
+    posed::Posed,
+    rom::{Block, Change, Linear, MuscleNumber, Rom, RomParameter, RomRun, RomSetting, Signals, StepPlan},
+    rosenbrock::Stepper,
+    standalone::{AxisNumber, ChamberNumber, StandaloneNumber, StripNumber},
+    state::PlantState,
+};

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// What the slopes at the optimum say.
+/// What the Jacobian at the optimum says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certainty {
     /// Half the 95 % interval of each free parameter; infinite where the data say nothing.
@@ -17,7 +17,7 @@ pub struct Certainty {
     pub memory: usize,
 }
 
-/// Certainty at residuals `r` with slopes `jacobian`.
+/// Certainty at residuals `r` with a `jacobian`.
 ///
 /// White residuals: `s² (JᵀJ)⁻¹`, `s² = rᵀr/(N - p)`. Coloured ones: `(JᵀJ)⁻¹ Jᵀ Γ J (JᵀJ)⁻¹ N/(N - p)`, `Γ` the Toeplitz matrix of
 /// the residuals' own autocovariance, tapered (Bartlett) to zero at twice the lag where it first vanishes in its own scatter.

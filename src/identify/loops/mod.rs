@@ -1,7 +1,7 @@
 //! Identification of the displacement-form hysteresis models from recorded loops: plunger in, elongation out.
 //!
 //! F is the mean squared error in mm², as in Thai et al. 2021. What is wrong by construction is fixed and said (a
-//! scale that the data cannot hold); what the data leave open is found from the slopes and said too.
+//! scale that the data cannot hold); what the data leave open is found from the Jacobian and said too.
 //!
 //! ```
 //! use std::f64::consts::TAU;
@@ -38,22 +38,21 @@ mod warnings;
 #[cfg(test)]
 mod recovery_tests;
 
-#[doc(hidden)]
-pub use cma::CmaOptions;
 pub use data::LoopRun;
-#[doc(hidden)]
-pub use data::LoopScale;
 pub use form::{Form, ParameterSpec};
 pub use intervals::Certainty;
-#[doc(hidden)]
-pub use intervals::certainty;
-#[doc(hidden)]
-pub use problem::Problem;
-#[doc(hidden)]
-pub use search::{Found, search};
 pub use search::{Method, SearchOptions};
+
+// The program's own: not part of what the documentation offers.
 #[doc(hidden)]
-pub use swarm::SwarmOptions;
+pub use {
+    cma::CmaOptions,
+    data::LoopScale,
+    intervals::certainty,
+    problem::Problem,
+    search::{Found, search},
+    swarm::SwarmOptions,
+};
 
 use crate::hysteresis::HysteresisModel;
 use crate::recording::{RecordingError, noise_sd};
@@ -131,9 +130,9 @@ pub fn identify(runs: &[LoopRun], form: Form, options: &SearchOptions) -> Result
     let no_start = || LoopError::NoStart { form: form.name() };
     let found = search(&problem, options).ok_or_else(no_start)?;
     let residuals = problem.residuals(&found.parameters).ok_or_else(no_start)?;
-    let slopes = problem.slopes(&found.parameters).ok_or_else(no_start)?;
+    let jacobian = problem.jacobian(&found.parameters).ok_or_else(no_start)?;
     let model = problem.model(&found.parameters).ok_or_else(no_start)?;
-    let certainty = certainty(&residuals, &slopes);
+    let certainty = certainty(&residuals, &jacobian);
     let mut half_widths = certainty.half_width.iter();
     let values = problem.all(&found.parameters);
     let parameters: Vec<Identified> = problem

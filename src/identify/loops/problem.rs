@@ -1,4 +1,4 @@
-//! The model's error as a function of its free parameters, with exact slopes.
+//! The model's error as a function of its free parameters, with an exact Jacobian.
 
 use nalgebra::{DMatrix, DVector};
 use num_dual::{Derivative, DualSVec64};
@@ -90,20 +90,20 @@ impl<'a> Problem<'a> {
         Some(DVector::from_vec(all)).filter(|r| r.iter().all(|x| x.is_finite()))
     }
 
-    /// Exact slopes of the residuals to the free parameters, a column each.
+    /// Jacobian of the residuals, exact, a column for each free parameter.
     ///
     /// Gains: what the output would be of each alone, at the same state. The others: dual numbers, a few at a time.
-    pub fn slopes(&self, free: &[f64]) -> Option<DMatrix<f64>> {
-        let mut slopes = DMatrix::zeros(self.counted, free.len());
+    pub fn jacobian(&self, free: &[f64]) -> Option<DMatrix<f64>> {
+        let mut jacobian = DMatrix::zeros(self.counted, free.len());
         let (gains, others): (Vec<usize>, Vec<usize>) =
             (0..free.len()).partition(|&j| self.specs[self.free[j]].is_gain);
         for (column, of_gain) in gains.iter().zip(self.gain_columns(free, &gains)?) {
-            slopes.column_mut(*column).copy_from_slice(&of_gain);
+            jacobian.column_mut(*column).copy_from_slice(&of_gain);
         }
         for some in others.chunks(CARRIED) {
-            self.carry(free, some, &mut slopes)?;
+            self.carry(free, some, &mut jacobian)?;
         }
-        Some(slopes).filter(|s| s.iter().all(|x| x.is_finite()))
+        Some(jacobian).filter(|s| s.iter().all(|x| x.is_finite()))
     }
 
     /// Outputs of the model with each gain alone at 1, along the states that `free` gives.
@@ -132,7 +132,7 @@ impl<'a> Problem<'a> {
         Some(columns)
     }
 
-    fn carry(&self, free: &[f64], some: &[usize], slopes: &mut DMatrix<f64>) -> Option<()> {
+    fn carry(&self, free: &[f64], some: &[usize], jacobian: &mut DMatrix<f64>) -> Option<()> {
         let mut dual: Vec<Carried> = self.all(free).into_iter().map(Carried::from).collect();
         for (direction, &j) in some.iter().enumerate() {
             dual[self.free[j]].eps = Derivative::derivative_generic(nalgebra::Const, nalgebra::U1, direction);
@@ -142,7 +142,7 @@ impl<'a> Problem<'a> {
         for run in self.runs {
             for (y, _) in counted(run, model.follow(&run.time_s, &run.input_mm)) {
                 let eps = y.eps.unwrap_generic(nalgebra::Const, nalgebra::U1);
-                some.iter().enumerate().for_each(|(direction, &j)| slopes[(row, j)] = eps[direction]);
+                some.iter().enumerate().for_each(|(direction, &j)| jacobian[(row, j)] = eps[direction]);
                 row += 1;
             }
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise_with_slopes};
+use super::super::levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise_with_jacobian};
 use super::cma::{CmaOptions, cma};
 use super::coarse::decimated;
 use super::form::ParameterSpec;
@@ -17,7 +17,7 @@ pub enum Method {
     Pso,
     /// Covariance matrix adaptation.
     Cma,
-    /// Levenberg-Marquardt with exact slopes from the middle of the bounds and from drawn places.
+    /// Levenberg-Marquardt with an exact Jacobian from the middle of the bounds and from drawn places.
     Lm,
     /// The same from the middle and from the best of a few places spread over the box, their gains solved for.
     #[default]
@@ -223,7 +223,7 @@ fn from_unit(problem: &Problem<'_>, place: &[f64]) -> Vec<f64> {
 
 fn descend(problem: &Problem<'_>, start: &[f64], until: LmOptions) -> Option<Found> {
     let bounds: Vec<Bounds> = problem.free().iter().map(|s| Bounds { min: s.min, max: s.max }).collect();
-    let (residuals, slopes) = (|x: &[f64]| problem.residuals(x), |x: &[f64]| problem.slopes(x));
-    let LmResult { parameters, cost, evaluations } = minimise_with_slopes(&residuals, &slopes, start, &bounds, until)?;
+    let (residuals, jacobian) = (|x: &[f64]| problem.residuals(x), |x: &[f64]| problem.jacobian(x));
+    let LmResult { parameters, cost, evaluations } = minimise_with_jacobian(&residuals, &jacobian, start, &bounds, until)?;
     Some(Found { parameters, mean_square_mm2: cost / problem.counted() as f64, evaluations })
 }
