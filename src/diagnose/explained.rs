@@ -1,5 +1,5 @@
-//! What explains the recordings: the calibration, effects of the catalogue, laws that nobody listed, and what they are worth on the
-//! held-out runs.
+//! Explains the recordings by the calibration, by effects of the catalogue and by unlisted laws, and evaluates the
+//! result on the held-out runs.
 
 use super::case::{Case, Noise, RunSet};
 use super::diagnosis::Proof;
@@ -12,24 +12,26 @@ use super::unknown::{misplaced, stand_ins};
 use super::validation::{confirm, harm, prove};
 use super::verdict::{Confirmed, Excess, Residuals, misfit};
 
-/// What stands after the search and its proofs.
+/// Result of the search and of the checks on held-out runs.
 pub(super) struct Explained {
     pub found: Found,
     pub confirmed: Confirmed,
     pub proof: Proof,
     pub noise: Vec<Noise>,
-    /// Residuals of the best, and what is more than noise in those of baseline and best.
+    /// Residuals of the best model, and the part above noise for baseline and best.
     pub after: Residuals,
     pub excess: Excess,
-    /// Of the recordings and the calibration.
+    /// Warnings about the recordings and the calibration.
     pub warnings: Vec<String>,
-    /// Warnings about what was found: gone with it where something else takes its place.
+    /// Warnings about the answer; they are dropped if another answer replaces it.
     pub of_found: Vec<String>,
 }
 
-/// Calibrates, and explains what that leaves: by an effect of the catalogue, by one law, by several effects, by several laws.
+/// Calibrates the scene, then explains the residual by one effect of the catalogue, by one law, by several effects, or
+/// by several laws.
 ///
-/// One law that explains it all spares the search for several effects, which takes most of the time where nothing listed is the truth.
+/// If one law explains everything, the search for several effects is skipped. It takes most of the time when nothing
+/// listed is the truth.
 pub(super) fn explain(
     case: &mut Case,
     warnings: Vec<String>,
@@ -50,7 +52,7 @@ pub(super) fn explain(
     Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
 }
 
-/// The search for several effects and several laws.
+/// Searches for several effects and several laws.
 struct Search<'a> {
     variants: &'a [Variant],
     seed: u64,
@@ -58,8 +60,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Several effects, several laws, laws beside effects. Where one law outdoes two effects, no more of these are sought; if then no law
-    /// stands in their place after all, they are.
+    /// Tries several effects, several laws, and laws beside effects. Stops adding effects once one law outdoes two of
+    /// them; resumes if no law remains in their place.
     fn several(
         &self,
         case: &mut Case,
@@ -93,7 +95,8 @@ impl Search<'_> {
         self.to_the_end(case, noise, found, again)
     }
 
-    /// What was found in the catalogue, weighed, held against the held-out runs and against laws; `tried`: what was tried with one before.
+    /// Reweights the catalogue's answer and compares it with the held-out runs and with laws. `tried`: earlier results
+    /// for one law.
     fn to_the_end(
         &self,
         case: &mut Case,
@@ -106,7 +109,7 @@ impl Search<'_> {
         Ok(self.by_laws(case, &mut listed, tried)?.unwrap_or(listed))
     }
 
-    /// What the catalogue explains, without what does not stand, held against the held-out runs.
+    /// The catalogue's answer without the effects that fail, compared with the held-out runs.
     fn held_against_others(
         &self,
         case: &mut Case,
@@ -130,7 +133,7 @@ impl Search<'_> {
         Ok(Explained { of_found: warnings, ..explained })
     }
 
-    /// Laws that nobody listed in the place of what was found, where they explain clearly more.
+    /// Replaces the answer by unlisted laws where they explain clearly more.
     fn by_laws(
         &self,
         case: &mut Case,
@@ -146,7 +149,7 @@ impl Search<'_> {
     }
 }
 
-/// What was found with laws at likelier places instead of effects that only stand in for them.
+/// Replaces effects that are surrogates for something at a more likely place by laws there.
 fn without_misplaced(
     case: &mut Case,
     mut explained: Explained,
@@ -162,7 +165,7 @@ fn without_misplaced(
     Ok(explained)
 }
 
-/// What was found with what each of several effects could be instead, and with a law elsewhere in the place of one where that is better.
+/// Adds the alternatives of each of several effects; replaces one of several laws where a law elsewhere is better.
 fn at_better_places(case: &mut Case, mut explained: Explained, seed: u64) -> Result<Explained, DiagnoseError> {
     for _ in 0..explained.found.best.model.effects.len() {
         let noise = explained.noise.clone();
@@ -173,7 +176,7 @@ fn at_better_places(case: &mut Case, mut explained: Explained, seed: u64) -> Res
     Ok(explained)
 }
 
-/// A law in the place of what was found, with the weights and steps that it asks for; none where it predicts the held-out runs worse.
+/// Replaces the answer by a law, with renewed weights and steps. `None` if the law predicts the held-out runs worse.
 fn taken(
     case: &mut Case,
     listed: &mut Explained,
@@ -196,7 +199,7 @@ fn taken(
     Ok(Some(lawful))
 }
 
-/// What was found with what it is worth on the held-out runs.
+/// The answer with its evaluation on the held-out runs.
 fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Explained, DiagnoseError> {
     let problem = |runs: RunSet| Problem { case, runs: case.subset(runs), noise: &noise };
     let (held_out, whole) = (problem(RunSet::HeldOut), problem(RunSet::All));
@@ -206,7 +209,7 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings, of_found })
 }
 
-/// Takes back what does harm, and holds the rest against the full scene.
+/// Withdraws what does harm, and compares the rest with the full scene.
 fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
     let Explained { found, mut proof, noise, mut of_found, .. } = explained;
     let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));

@@ -1,4 +1,4 @@
-//! A diagnosis with one of its steps left out: what that step is worth.
+//! Ablation: a diagnosis without one of its steps, to see what the step is worth.
 
 use super::Case;
 use crate::recording::parse_column;
@@ -6,13 +6,13 @@ use crate::recording::parse_column;
 /// A step that is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Step {
-    /// Recorded pressures are not looked at.
+    /// Ignore recorded pressures.
     Pressure,
-    /// The calibration stays as the scene has it: nothing is refitted before or beside the effects.
+    /// Keep the scene's calibration: nothing is refitted before or beside the effects.
     Refit,
-    /// An effect need not predict runs that it was not fitted to, held-out ones included.
+    /// Skip cross-validation and held-out runs.
     CrossValidation,
-    /// Something of the catalogue is always the answer: nothing is unknown.
+    /// Closed set: the answer is always of the catalogue.
     OpenSet,
 }
 

@@ -1,10 +1,10 @@
-//! What is held back of the recordings, so that an answer can be proved on it.
+//! Holds out part of the recordings, to test the answer on it.
 
 use super::{Case, CaseRun};
 
 impl Case {
-    /// Holds the last run back unless the recordings say which; of a single run its last third is cut off, and of every run where
-    /// nothing drives them: then none predicts another.
+    /// Holds out the last run unless the recordings say which; of a single run its last third, and of every run if
+    /// there is no input, because then no run predicts another.
     pub(super) fn seal(&mut self) {
         if self.runs.iter().any(|r| r.is_held_out) && self.runs.iter().any(|r| !r.is_held_out) {
             return;
@@ -27,7 +27,7 @@ impl Case {
         self.runs = open.into_iter().chain(held_out).collect();
     }
 
-    /// Cuts a single run in two: what lies before sample `cut` is open, the rest is held back.
+    /// Cuts a single run at sample `cut`: open before it, held out after.
     #[doc(hidden)]
     pub fn seal_from(&mut self, cut: usize) {
         self.runs = self.runs[..1].iter().flat_map(|run| run.cut_at(cut)).collect();
@@ -35,7 +35,7 @@ impl Case {
 }
 
 impl CaseRun {
-    /// What lies before sample `cut`, open, and the rest, held back; that is simulated from the start.
+    /// The open part before sample `cut`, and the held-out rest, which is simulated from the start.
     fn cut_at(&self, cut: usize) -> [Self; 2] {
         let cut = cut.min(self.times_s().len());
         let (mut open, mut held_out) = (self.clone(), self.clone());

@@ -1,4 +1,4 @@
-//! How recordings become a case: folders read, runs thinned, one run held back.
+//! Turns recordings into a case: reads folders, decimates runs, holds one out.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,8 @@ use crate::diagnose::error::DiagnoseError;
 
 /// Recordings are averaged down to this interval, s: what moves here is slower.
 const LEAST_INTERVAL_S: f64 = 0.01;
-/// So much of a recording that begins in motion is not compared, s: several times as long as a slender rod swings or a sensor lags.
+/// Initial part of a recording that begins in motion, excluded, s: several times the settling of a slender rod or a
+/// sensor lag.
 const BEGINNING_S: f64 = 0.2;
 
 impl Case {

@@ -56,7 +56,7 @@ pub struct CaseRun {
     /// Which sample, or set-up, it was recorded on, if that is stated.
     pub specimen: Option<String>,
     pub is_held_out: bool,
-    /// Of the held-out end of a run: what was measured before it. A free zero is decided there.
+    /// For the held-out end of a run: the open part, which decides free zeros.
     pub open_part: Option<Vec<Vec<f64>>>,
 }
 
@@ -113,10 +113,10 @@ pub struct CaseParameter {
     pub start: f64,
 }
 
-/// Share of the noise by which doubled steps may change a channel over one sampling interval.
+/// Doubling the steps may change a channel by this share of the noise over one sampling interval.
 const STEP_TOLERANCE: f64 = 1e-2;
 
-/// Everything a diagnosis looks at.
+/// All input of a diagnosis.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub scene: Scene,
@@ -138,8 +138,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// Plans the reduced-order model's steps at a setting for each run, so that what they leave out vanishes in the noise.
-    /// `None` when the reduced-order model diverges.
+    /// Plans the reduced-order model's steps at a setting for each run, with errors far below the noise. `None` if the
+    /// model diverges.
     pub(crate) fn plan_steps(&mut self, settings: &[RomSetting<f64>], noise: &[Noise]) -> Option<()> {
         let count = self.scene.file.output.len();
         let mut tolerance = vec![None; count];
@@ -153,7 +153,7 @@ impl Case {
         self.runs.par_iter_mut().zip(settings).map(plan).collect()
     }
 
-    /// Leaves out what a joint shows while next to nothing holds it, at a setting for each run. `None` when the reduced-order model diverges.
+    /// Excludes samples of slack joints, at a setting for each run. `None` if the reduced-order model diverges.
     pub(crate) fn leave_out_slack(&mut self, settings: &[RomSetting<f64>]) -> Option<()> {
         let slack: Vec<_> = self
             .runs
@@ -170,12 +170,12 @@ impl Case {
         Some(())
     }
 
-    /// Whether joints were held by next to nothing somewhere.
+    /// Whether joints were slack somewhere.
     pub(crate) fn goes_slack(&self) -> bool {
         self.runs.iter().any(|r| r.slack.iter().any(|samples| !samples.is_empty()))
     }
 
-    /// What was done with the recordings, for whoever reads the answer.
+    /// How the recordings were treated, for the reader of the answer.
     #[doc(hidden)]
     pub fn notes(&self) -> Vec<String> {
         let counted = |r: &CaseRun| -> Vec<String> {
@@ -185,7 +185,7 @@ impl Case {
         self.notes.iter().cloned().chain(self.runs.iter().flat_map(counted)).collect()
     }
 
-    /// Runs to fit and select with, or those held back.
+    /// The open runs, the held-out runs, or all.
     pub(crate) fn subset(&self, runs: RunSet) -> Vec<Cow<'_, CaseRun>> {
         let wanted = |r: &&CaseRun| match runs {
             RunSet::Open => !r.is_held_out,
@@ -211,10 +211,10 @@ pub enum RunSet {
     All,
 }
 
-/// Samples around a slack one that are left out with it: cables go taut for moments while it swings.
+/// Neighbouring samples excluded with a slack one: cables go taut for moments while the joint swings.
 const AROUND_SLACK: usize = 10;
 
-/// Blanks what is slack and its neighbours, and gives the values that were there. Nothing if it would be most of them.
+/// Excludes slack samples and their neighbours; returns their values. Nothing if most samples would be excluded.
 fn leave_out(measured: &mut [f64], slack: &[bool]) -> Vec<(usize, f64)> {
     let near = |i: usize| {
         let (from, to) = (i.saturating_sub(AROUND_SLACK), (i + AROUND_SLACK + 1).min(slack.len()));

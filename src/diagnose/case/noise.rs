@@ -1,8 +1,8 @@
-//! What of a residual is noise: its size, and how far it remembers itself.
+//! Estimates the noise in a residual: standard deviation and autocorrelation.
 //!
-//! A sensor's noise is taken as white noise with a part that forgets exponentially; of the residual only what is faster
-//! than half a second is asked, for what is slower may be misfit. What noise of that kind would show further away is
-//! taken off the residual's covariance there: the rest is misfit.
+//! Sensor noise is modelled as white noise plus an exponentially correlated part. Only residuals faster than half a
+//! second are used, because slower ones may be misfit. The autocovariance that this model predicts at larger lags is
+//! subtracted from the residual's; the rest is misfit.
 
 use std::borrow::Cow;
 
@@ -14,22 +14,22 @@ mod covariance;
 
 use covariance::{filtered, mean_product, two_parts, usual_product, without_slow_part};
 
-/// Time over which the running mean is taken that separates misfit from noise, s, and its bounds in samples.
+/// Window of the running mean that separates misfit from noise, s, and its bounds in samples.
 const WINDOW_S: f64 = 0.5;
 const WINDOW: (usize, usize) = (21, 51);
-/// A recording of fewer windows than this moves as fast as what is taken for noise: there, and where no size is stated, noise is what
-/// neighbouring samples show of it.
+/// A recording shorter than this many windows moves as fast as its noise. There, if no size is stated, noise is
+/// estimated from neighbouring samples.
 const LEAST_WINDOWS: f64 = 8.0;
-/// Longest time over which noise remembers itself, s, and its bounds in samples.
+/// Longest correlation time of noise, s, and its bounds in samples.
 const MEMORY_S: f64 = 0.1;
 const MEMORY: (f64, f64) = (2.0, 10.0);
 /// Samples of a piece over which a covariance is taken.
 const PIECE: usize = 200;
-/// Lags from which colour is read.
+/// Lags from which the autocorrelation is estimated.
 const READ: usize = 26;
-/// Lags over which a misfit still agrees with itself and most of the noise no longer does.
+/// Lags over which misfit is still correlated and most of the noise is not.
 const LAGS: std::ops::Range<usize> = 8..17;
-/// Share by which the slow part of the noise may be misjudged: it counts as an error of the misfit.
+/// Relative error of the noise's slow part: counts as an error of the misfit.
 const COLOUR_ERROR: f64 = 0.15;
 
 /// Noise of one channel: covariance `sd² ((1 - s) [lag = 0] + s rho^lag)`.
@@ -49,9 +49,9 @@ const COLOUR_ERROR: f64 = 0.15;
 pub struct Noise {
     /// Standard deviation of all of it, in the channel's unit.
     pub sd: f64,
-    /// Share `s` of the variance that remembers.
+    /// Share `s` of the variance that is correlated.
     pub slow_share: f64,
-    /// What is left of that from one sample to the next, `rho`.
+    /// Its correlation from one sample to the next, `rho`.
     pub kept: f64,
 }
 
@@ -60,7 +60,7 @@ impl Noise {
         Self { sd, slow_share: 0.0, kept: 0.0 }
     }
 
-    /// By how much it is stronger against slow signals than white noise of that deviation, >= 1.
+    /// Ratio to white noise of the same deviation for slow signals, >= 1.
     pub fn inflation(&self) -> f64 {
         1.0 + 2.0 * self.slow_share * self.kept / (1.0 - self.kept)
     }

@@ -1,4 +1,4 @@
-//! Step 8 for an ambiguous answer: what would settle it, programme and sensor together.
+//! Step 8 for an ambiguous answer: the input trajectory, and the sensor if needed, that would decide.
 
 use super::design::{
     Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
@@ -9,16 +9,17 @@ use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::verdict::Open;
 use crate::recording::RecordingError;
 
-/// Durations that are looked at, one after the other, until one is sure to settle what is open, s.
+/// Durations tried one after the other until one is certain to decide, s.
 const DURATIONS_S: [f64; 3] = [DURATION_S, 180.0, 300.0];
-/// Programmes of a minute that are looked at for longer as well.
+/// Number of one-minute trajectories that are also tried with longer durations.
 const PLAYED_LONGER: usize = 3;
-/// Separation to aim at, standard errors: laws are idealisations, and what just settles on paper often does not on a rig.
+/// Separation to aim at, standard errors: what just decides on paper often does not on a rig, because of model
+/// discrepancy.
 const SURE_SIGMA: f64 = 2.0 * SETTLES_SIGMA;
 
-/// The programme that would set apart the answer and all rivals that stand beside it: that whose least separation is
-/// greatest, counted with the recordings that there are. A minute long, or longer where that is surer; where none is sure
-/// to do, the programme and the sensor that together would.
+/// The input trajectory with the greatest least separation between the answer and all open alternatives, existing
+/// recordings included. One minute long, or longer if that is more certain; if none is certain to decide, the best pair
+/// of trajectory and sensor.
 ///
 /// # Errors
 /// Input columns without a known unit.
@@ -41,8 +42,8 @@ fn untold(alike: &[&Fit]) -> String {
     format!("nothing that can be played and recorded here tells it from {}", titles.join(", "))
 }
 
-/// Rivals that no programme of a minute sets apart by so much as this, in standard errors, every output of the scene recorded,
-/// say the same here: five minutes would make little more than twice of it.
+/// Alternatives that no one-minute trajectory separates by this many standard errors, with every output of the scene
+/// recorded, are equivalent here: five minutes would little more than double it.
 const ALIKE_SIGMA: f64 = 1.0;
 
 fn leave_out_alike<'a>(question: &mut Question<'a>, minute: &[Candidate]) -> Vec<&'a Fit> {
@@ -87,7 +88,8 @@ fn settle_what_can_be(
     })
 }
 
-/// The programmes of a minute that set apart most, and that which does so with one more sensor: others are not played longer.
+/// The one-minute trajectories with the best separation, and the best one with an additional sensor: only these are
+/// tried for longer.
 fn worth_longer(question: &Question, minute: &[Candidate]) -> Vec<&'static str> {
     let sigma = |c: &Candidate| question.least(&c.foreseen, More::Nothing).map_or(0.0, |(sigma, _)| sigma);
     let mut best: Vec<&Candidate> = minute.iter().collect();
@@ -96,7 +98,7 @@ fn worth_longer(question: &Question, minute: &[Candidate]) -> Vec<&'static str> 
     best.into_iter().take(PLAYED_LONGER).chain(sensed).map(|c| c.name).collect()
 }
 
-/// The first that is sure to settle; else the greatest that should; else the first.
+/// The first that is certain to decide; else the best that should; else the first.
 fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
     let all: Vec<f64> = separations.collect();
     let greatest = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
@@ -104,8 +106,8 @@ fn surest(separations: impl Iterator<Item = f64>) -> Option<usize> {
     Some(first_sure.unwrap_or(if all[greatest] > SETTLES_SIGMA { greatest } else { 0 }))
 }
 
-/// The duration, and the sensor with the programme that together set the best apart most, of programmes of a minute; longer,
-/// if that is surer. None where no sensor is worth it.
+/// The best pair of sensor and one-minute trajectory, and its duration: longer if more certain. `None` if no sensor is
+/// worth it.
 fn sensed(question: &Question, tried: &[Vec<Candidate>], firsts: &[(usize, Promise)]) -> Option<(usize, Sensed)> {
     let minute = best_sensor(question, &tried[0], firsts.first()?.1.sigma)?;
     let name = tried[0][minute.candidate].name;
@@ -142,7 +144,7 @@ mod tests {
         assert_eq!(chosen(&[]), None);
     }
 
-    /// A rival that is the answer in other words is named and left out; one that is not is told apart.
+    /// An alternative that is equivalent to the answer is named and skipped; another is separated.
     #[test]
     fn what_says_the_same_is_left_out() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);

@@ -1,4 +1,4 @@
-//! Step 8: the programme that would tell best what stays open, within the strokes and speeds that were recorded.
+//! Step 8: the input trajectory that discriminates best between open alternatives, within recorded strokes and speeds.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ use crate::system::RomRun;
 
 /// Length of a proposed run, s.
 pub(super) const DURATION_S: f64 = 60.0;
-/// Share of the stroke that is its end: where what acts near rest, or at the far end alone, shows itself.
+/// Share of the stroke that counts as its end: effects near rest, or at the far end only, show there.
 const END: f64 = 0.15;
 
 /// A proposal with the inputs to play.
@@ -21,7 +21,7 @@ pub struct Experiment {
     pub inputs: Option<Recording>,
 }
 
-/// One programme with what it would show.
+/// One trajectory with its predicted separation.
 pub(super) struct Candidate {
     pub name: &'static str,
     inputs: Recording,
@@ -35,7 +35,7 @@ impl Candidate {
     }
 }
 
-/// The programme that would set the nearest of the rivals apart best, where nothing is open.
+/// The trajectory that best separates the answer from its closest alternative, for answers that are not ambiguous.
 ///
 /// # Errors
 /// Input columns without a known unit.
@@ -62,14 +62,14 @@ pub fn confirm<'a>(
     Ok(proposal(best, false, (winner, promise), sensor))
 }
 
-/// How far the rival is that is set apart least, and which.
+/// Least separation, and the alternative that has it.
 #[derive(Clone, Copy)]
 pub(super) struct Promise<'a> {
     pub sigma: f64,
     rival: &'a Fit,
 }
 
-/// The programme that sets the best apart most.
+/// The trajectory with the greatest separation.
 pub(super) fn first<'a>(question: &Question<'a>, programmes: &[Candidate]) -> Option<(usize, Promise<'a>)> {
     let promised = |(at, c): (usize, &Candidate)| {
         let (sigma, rival) = question.least(&c.foreseen, More::Nothing)?;
@@ -80,7 +80,7 @@ pub(super) fn first<'a>(question: &Question<'a>, programmes: &[Candidate]) -> Op
     all.rev().max_by(|(_, a), (_, b)| a.sigma.total_cmp(&b.sigma))
 }
 
-/// Programmes that every proposal looks at; the others look closely at the ends of the stroke.
+/// Trajectories of every proposal; the others look closely at the ends of the stroke.
 const USUAL: usize = 6;
 
 pub(super) fn none_to_play() -> Experiment {
@@ -114,7 +114,8 @@ pub(super) fn proposal(
     Experiment { next, inputs: Some(winner.inputs) }
 }
 
-/// Programmes of a duration, those that are `wanted` by place and name, with what they would show; one that cannot be simulated is left out.
+/// Trajectories of a duration that are `wanted` by place and name, with their predicted separation; those that diverge
+/// are skipped.
 pub(super) fn candidates(
     whole: &Problem,
     best: &Fit,
@@ -137,7 +138,7 @@ pub(super) fn candidates(
     Ok(all.into_iter().flatten().collect())
 }
 
-/// Programmes of a duration, the usual ones first.
+/// Trajectories of a duration, the usual ones first.
 fn programmes(
     strokes: &[Stroke],
     fast_hz: f64,
@@ -185,7 +186,7 @@ fn fastest_hz(case: &Case, strokes: &[Stroke]) -> f64 {
     moved.map(of).fold(1.0, f64::min).max(0.05)
 }
 
-/// The run that the best model would give; its rig is that of the first recorded one. `None` when it diverges.
+/// The run predicted by the best model, with the rig of the first recorded one. `None` if it diverges.
 fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<Option<CaseRun>, RecordingError> {
     let mut series = Vec::new();
     for input in &case.scene.file.input {
@@ -201,19 +202,18 @@ fn play(case: &Case, noise: &[Noise], best: &Fit, inputs: &Recording) -> Result<
     Ok(alone.plan_steps(&settings, noise).and_then(|()| alone.runs.pop()))
 }
 
-/// An added sensor is worth a word when it multiplies the separation by this.
+/// An added sensor is worth naming if it multiplies the separation by this.
 const SENSOR_WORTH: f64 = 1.5;
 
-/// What one more sensor would bring.
+/// Benefit of one more sensor.
 pub(super) struct Sensed {
     pub column: String,
     pub sigma: f64,
-    /// Which of the programmes it would be recorded with.
+    /// Index of the trajectory to record with it.
     pub candidate: usize,
 }
 
-/// The sensor and the programme that together set the best apart most, if that is worth a sensor: by itself a programme
-/// does so by `alone_sigma`.
+/// The best pair of sensor and trajectory, if worth a sensor: the trajectory alone separates by `alone_sigma`.
 pub(super) fn best_sensor(question: &Question, programmes: &[Candidate], alone_sigma: f64) -> Option<Sensed> {
     let mut found: Option<Sensed> = None;
     for (candidate, programme) in programmes.iter().enumerate() {

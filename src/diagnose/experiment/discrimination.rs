@@ -1,4 +1,4 @@
-//! How far a run would set models apart, in standard errors, and what one more sensor would add.
+//! Model discrimination: how far a run would separate models, in standard errors, and what one more sensor would add.
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -6,18 +6,18 @@ use crate::diagnose::case::{Case, CaseChannel, CaseRun, Noise};
 use crate::diagnose::fit::{Fit, Problem, Sides, probes, respond, simulate};
 use crate::diagnose::verdict::Open;
 
-/// Noise that sensors have who knows nothing better, by unit of their column.
+/// Default noise of sensors, by unit of their column.
 const TYPICAL_NOISE: [(&str, f64); 4] = [("_mm", 0.02), ("_kpa", 5.0), ("_deg", 0.15), ("_n", 0.02)];
 
-/// What is asked of a run that is not recorded yet: how far would it set the best apart from its rivals?
+/// The question to a future run: how far would it separate the best model from its alternatives?
 pub(super) struct Question<'a> {
     best: &'a Fit,
     rivals: Vec<&'a Fit>,
-    /// Those of the rivals that count.
+    /// The alternatives that count.
     counted: Vec<usize>,
     /// Difference in chi² that counts as one.
     unit: f64,
-    /// What the recordings that there are say of that difference; none where the run alone shall count.
+    /// Information in the existing recordings; `None` if the run alone shall count.
     known: Option<Digest>,
     /// The case with every output of the scene recorded, those first that are.
     case: Case,
@@ -25,7 +25,7 @@ pub(super) struct Question<'a> {
     recorded: usize,
 }
 
-/// What a run would show, if any one of the rivals were true.
+/// Predicted measurements of a run for each alternative.
 pub(super) struct Foreseen {
     /// Of the channels that are recorded.
     recorded: Digest,
@@ -43,14 +43,14 @@ pub(super) enum More {
 }
 
 impl<'a> Question<'a> {
-    /// About one rival, whatever is recorded already.
+    /// The question about one alternative, existing recordings ignored.
     pub fn of_nearest(whole: &Problem, best: &'a Fit, rival: &'a Fit) -> Self {
         let (case, noise) = with_every_sensor(whole);
         let recorded = whole.case.channels.len();
         Self { best, rivals: vec![rival], counted: vec![0], unit: 1.0, known: None, case, noise, recorded }
     }
 
-    /// About all rivals that stand, with what the recordings say already. `None` where one cannot be simulated.
+    /// The question about all open alternatives, existing recordings included. `None` if one cannot be simulated.
     pub fn of_open(whole: &Problem, best: &'a Fit, open: &Open<'a>) -> Option<Self> {
         let rows = whole.rows(&best.model, &best.x, 0..best.x.len(), Sides::One)?;
         let of = |rival: &&Fit| Some(&rows.residual - whole.weighted_residual(&rival.model, &rival.x)?);
@@ -68,14 +68,14 @@ impl<'a> Question<'a> {
         })
     }
 
-    /// The rivals that do not count any more, once only those do that `counts`.
+    /// Drops the alternatives that do not satisfy `counts`; returns them.
     pub fn count_only(&mut self, counts: impl Fn(usize) -> bool) -> Vec<&'a Fit> {
         let (counted, others): (Vec<usize>, Vec<usize>) = self.counted.iter().partition(|r| counts(**r));
         self.counted = counted;
         others.into_iter().map(|r| self.rivals[r]).collect()
     }
 
-    /// Whether no rival counts.
+    /// Whether no alternative counts.
     pub fn is_empty(&self) -> bool {
         self.counted.is_empty()
     }
@@ -85,7 +85,7 @@ impl<'a> Question<'a> {
         self.case.channels[self.recorded..].iter().map(|c| c.column.as_str())
     }
 
-    /// What a run would show; `None` where a model diverges on it.
+    /// Predicted measurements of a run; `None` if a model diverges on it.
     pub fn foresee(&self, run: &CaseRun) -> Option<Foreseen> {
         let problem = Problem { case: &self.case, runs: Vec::new(), noise: &self.noise };
         let (model, x) = (&self.best.model, &self.best.x);
@@ -114,9 +114,9 @@ impl<'a> Question<'a> {
         Some(Foreseen { recorded: Digest::stack(&recorded.iter().collect::<Vec<_>>()), sensors })
     }
 
-    /// Distance in standard errors from each rival, after the best's parameters have been fitted to that rival on all there would
-    /// then be. What the best's law leaves grows with the run, and with it what counts as a difference: more of the same
-    /// settles nothing.
+    /// Distance in standard errors to each alternative, after fitting the best model's parameters to it on all data
+    /// there would then be. The best model's discrepancy grows with the run, and the dispersion with it: more of the
+    /// same decides nothing.
     pub fn separations(&self, foreseen: &Foreseen, more: More) -> Vec<f64> {
         let sensors = match more {
             More::Nothing => &[],
@@ -153,8 +153,8 @@ fn with_every_sensor(problem: &Problem) -> (Case, Vec<Noise>) {
     (case, noise)
 }
 
-/// Many rows in few: sensitivities to the best's parameters, then the difference of each rival. A rotation of the rows leaves all lengths
-/// and angles as they are; this one leaves no more rows than columns.
+/// Compresses many rows: sensitivities of the best's parameters, then the difference to each alternative. A rotation
+/// keeps all lengths and angles; this one leaves no more rows than columns.
 #[derive(Clone)]
 struct Digest {
     rows: DMatrix<f64>,
@@ -184,7 +184,7 @@ impl Digest {
         Self { rows, parameters, samples: parts.iter().map(|p| p.samples).sum() }
     }
 
-    /// Length of each difference less what the sensitivities can make of it.
+    /// Length of each difference orthogonal to the sensitivities.
     fn beyond(&self) -> Vec<f64> {
         let basis = directions(&self.rows.columns(0, self.parameters).into_owned());
         let left = |r: DVectorView<f64>| (r - &basis * basis.tr_mul(&r)).norm();

@@ -1,4 +1,4 @@
-//! Programmes that a rig can play: waves between 0 and 1 over the stroke of every plunger.
+//! Input trajectories that a rig can play: waves between 0 and 1 over the stroke of every plunger.
 //!
 //! ```
 //! use smam::diagnose::programme::{sample, sine, strokes};

@@ -1,4 +1,4 @@
-//! Step 1: the scene's own calibration, refitted, and the noise that it leaves.
+//! Step 1: refits the scene's own calibration and estimates the noise from its residual.
 
 use super::model::Model;
 use super::problem::{Fit, Problem};
@@ -6,7 +6,7 @@ use crate::diagnose::case::noise::estimate;
 use crate::diagnose::case::{Case, Noise, RunSet};
 use crate::diagnose::error::DiagnoseError;
 
-/// Baseline on the open runs, with the noise estimated from what it leaves.
+/// Baseline on the open runs, with the noise estimated from its residual.
 pub(in crate::diagnose) struct Baseline {
     pub fit: Fit,
     pub noise: Vec<Noise>,

@@ -1,4 +1,4 @@
-//! The way a fit goes down.
+//! Damped Gauss-Newton descent of a fit.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,17 +6,17 @@ use super::model::{Model, Sides};
 use super::normal::{FitParameter, Normal, Rows, prior_cost};
 use super::problem::{Fit, Problem};
 
-/// Stop when an iteration promises less than this many units of chi²: enough to choose by, and for the parameters of the answer, which
-/// otherwise lie up to a standard error from where the data would have them.
+/// Stop when an iteration promises less than this many units of chi²: enough to choose between models, and for the
+/// parameters of the answer, which would otherwise be up to a standard error off.
 const GAIN: f64 = 0.5;
 const LAST_GAIN: f64 = 0.01;
-/// Chi² by which a fit from elsewhere is another: less is where descents stop.
+/// A fit from another start is different if it is lower by this chi²; descents stop within less.
 const LOWER: f64 = 5.0;
 /// Steps on an updated Jacobian, and how often it is evaluated anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
 const TRIES: usize = 8;
-/// The same where playing is dear: a gain of 0.05 is two tenths of a standard error.
+/// The same for the full scene, which is expensive: a gain of 0.05 is two tenths of a standard error.
 const PLAYED_GAIN: f64 = 0.05;
 const PLAYED_ITERATIONS: usize = 4;
 const PLAYED_TRIES: usize = 3;
@@ -25,20 +25,20 @@ const PLAYED_REFRESHES: usize = 4;
 const LEAST_DAMPING: f64 = 1e-10;
 
 impl Problem<'_> {
-    /// Fits a model from `start`. `None` when it cannot be simulated there.
+    /// Fits a model from `start`. `None` if it cannot be simulated there.
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         self.fit_until(GAIN, model, start)
     }
 
-    /// The same from the scene's calibration, effects as `start` has them; none unless it ends lower than `cost`. A calibration that
-    /// had to make up for what the model lacked may stand in a valley of its own.
+    /// The same from the scene's calibration, with effects as in `start`; `None` unless it ends lower than `cost`. A
+    /// calibration that compensated for a missing effect may be in another valley.
     pub fn fit_afresh(&self, model: &Model, start: &[f64], cost: f64) -> Option<Fit> {
         let mut afresh = start.to_vec();
         afresh.iter_mut().zip(&self.case.parameters).for_each(|(x, p)| *x = p.start);
         self.fit(model, &afresh).filter(|fit| fit.cost < cost - LOWER)
     }
 
-    /// The same as [`Problem::fit`], until next to nothing is to be gained.
+    /// As [`Problem::fit`], until next to nothing is to be gained.
     pub fn fit_to_the_end(&self, model: &Model, start: &[f64]) -> Option<Fit> {
         self.fit_until(LAST_GAIN, model, start)
     }
@@ -76,7 +76,7 @@ impl Problem<'_> {
         Underway { model: model.clone(), x, rows, damping: LEAST_DAMPING }
     }
 
-    /// Goes on for so many steps at most.
+    /// Continues for at most this many steps.
     pub fn go_on(&self, underway: Underway, iterations: usize) -> Underway {
         let Underway { model, x, rows, damping } = underway;
         let parameters = self.parameters(&model);
@@ -96,9 +96,9 @@ impl Problem<'_> {
         Descent::new(self, &model, &parameters, x, rows, &residual).finish()
     }
 
-    /// Goes on from `start` with something else than the reduced-order model playing: `played` gives the residuals in units of the noise, the fast
-    /// model the Jacobian. Every play may cost seconds, so there are few. With it the step that the Jacobian still asks for and that
-    /// does not come nearer, in the parameters' units; `None` where nothing can be played.
+    /// Refines a fit with another model: `played` gives the residuals in units of the noise, the reduced-order model
+    /// the Jacobian. Every evaluation may cost seconds, so there are few. Also returns the step that the Jacobian still
+    /// asks for and that does not lower the cost, in parameter units; `None` if nothing can be simulated.
     pub fn fit_played(&self, model: &Model, start: &[f64], played: &Play) -> Option<(Fit, Vec<f64>)> {
         let parameters = self.parameters(model);
         let rows = Rows { residual: played(start)?, ..self.rows(model, start, 0..start.len(), Sides::Both)? };
@@ -125,7 +125,7 @@ fn within(x: &[f64], parameters: &[FitParameter]) -> Vec<f64> {
     x.iter().zip(parameters).map(|(x, n)| x.clamp(n.min, n.max)).collect()
 }
 
-/// A rough fit that can be left and taken up again.
+/// A rough fit that can be interrupted and continued.
 pub(in crate::diagnose) struct Underway {
     model: Model,
     x: Vec<f64>,
@@ -134,16 +134,16 @@ pub(in crate::diagnose) struct Underway {
 }
 
 impl Underway {
-    /// Sum of squares that it has come down to.
+    /// Sum of squares reached so far.
     pub fn cost(&self) -> f64 {
         self.rows.residual.norm_squared()
     }
 }
 
-/// Residuals at some parameters, in units of the noise; none where the model diverges.
+/// Residuals at some parameters, in units of the noise; `None` if the model diverges.
 pub(super) type Play<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + 'a;
 
-/// A fit on its way.
+/// A fit in progress.
 struct Descent<'a> {
     problem: &'a Problem<'a>,
     model: &'a Model,
@@ -176,7 +176,7 @@ impl<'a> Descent<'a> {
         Normal::of(&self.rows, self.parameters, &self.x)
     }
 
-    /// Chi² per sample, at least 1: a model that is far off need not be far off to the last digit.
+    /// Chi² per sample, at least 1: a model that is far off need not be converged to the last digit.
     fn unit(&self) -> f64 {
         (self.rows.residual.norm_squared() / self.rows.residual.len().max(1) as f64).max(1.0)
     }
@@ -191,7 +191,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// One step downwards; what it gained, none when less than a third of `least` can be had.
+    /// One step; returns its gain, `None` if less than a third of `least` can be gained.
     fn improve(&mut self, least: f64) -> Option<f64> {
         let here = self.normal();
         for _ in 0..self.tries {

@@ -1,4 +1,4 @@
-//! Parts of the recordings that are left out by turns: for cross-validation.
+//! Folds of the recordings for cross-validation.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use super::problem::Problem;
 use crate::diagnose::case::CaseRun;
 
 impl Problem<'_> {
-    /// Every run left out once: the others, and it. A single run is cut into its halves.
+    /// Leaves out every run once: returns the others, and it. A single run is cut into halves.
     pub fn runs_left_out(&self) -> Vec<(Problem<'_>, Problem<'_>)> {
         if self.runs.len() < 2 {
             return self.halves_left_out();
@@ -20,7 +20,7 @@ impl Problem<'_> {
         (0..self.runs.len()).map(without).collect()
     }
 
-    /// Every half of every run left out once: all the rest, and it.
+    /// Leaves out every half of every run once: returns the rest, and it.
     pub fn halves_left_out(&self) -> Vec<(Problem<'_>, Problem<'_>)> {
         let one = |i: usize| {
             let run = &self.runs[i];
@@ -46,7 +46,7 @@ impl Problem<'_> {
     }
 }
 
-/// A run that is driven as before, with nothing measured at some of its times.
+/// A run with the same inputs and no measurements at some times.
 fn without_samples(run: &CaseRun, times: Range<usize>) -> CaseRun {
     let mut part = run.clone();
     part.measured.iter_mut().for_each(|m| m[times.clone()].fill(f64::NAN));

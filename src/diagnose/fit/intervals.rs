@@ -1,4 +1,4 @@
-//! Intervals that hold where something is left that is not noise.
+//! Intervals that are valid in presence of model discrepancy.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use super::model::Sides;
 use super::normal::Normal;
 use super::problem::{Fit, Problem};
 
-/// Residuals of one run within so long count as one, s: what a law leaves over in one reversal is not independent.
+/// Residuals of one run within this time count as one, s: what a law leaves in one reversal is not independent.
 const BLOCK_S: f64 = 2.0;
 
 /// Widens the intervals of a fit to those that its residuals give by themselves, taken in blocks of two seconds (a sandwich

@@ -1,4 +1,4 @@
-//! What is compared with the recordings: calibrated parameters and a set of effects.
+//! The model that is compared with recordings: calibrated parameters and a set of effects.
 
 use crate::effects::{Effect, Element, Entry, EntryId};
 use crate::system::RomSetting;
@@ -45,7 +45,7 @@ pub struct Variant {
     pub values: Vec<f64>,
 }
 
-/// Relaxation times of one muscle, or terms of one hypothesis, at most.
+/// Maximum number of relaxation times of one muscle, or of terms of one hypothesis.
 const MOST_BRANCHES: usize = 3;
 
 /// A set of effects beside the calibration, and the parameters that are not fitted.
@@ -82,7 +82,7 @@ impl Model {
         model
     }
 
-    /// Whether an effect may be added: not twice on one element, but for relaxation, which has a spectrum.
+    /// Whether an effect may be added: once per element, except relaxation, which has a spectrum.
     pub fn takes(&self, placed: &Placed) -> bool {
         let standing = self.effects.iter().filter(|e| *e == placed).count();
         standing < if placed.entry.may_repeat { MOST_BRANCHES } else { 1 }
@@ -97,7 +97,7 @@ impl Model {
         model
     }
 
-    /// The same with one of the effects behind the others.
+    /// The same with one effect moved to the end.
     pub(crate) fn with_last(&self, index: usize) -> Self {
         let mut model = self.without(index);
         model.effects.push(self.effects[index].clone());
@@ -127,7 +127,8 @@ impl Model {
 }
 
 impl Model {
-    /// What the reduced-order model is given for a run; `x` holds the calibration, then the fitted parameters of the effects.
+    /// Setting of the reduced-order model for a run; `x` holds the calibration, then the fitted parameters of the
+    /// effects.
     pub(in crate::diagnose) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> RomSetting<f64> {
         let parameters = case.rom_parameters(run, x);
         let mut effects = case.known_effects.clone();
@@ -167,7 +168,7 @@ pub(in crate::diagnose) fn simulate_many(
     many.into_iter().map(|series| series.map(compared)).collect()
 }
 
-/// A number of `x` and the step over which its derivative is taken, to one side or to both.
+/// A parameter and the step of its difference quotient, one-sided or central.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::diagnose) struct Probe {
     pub number: usize,
@@ -176,7 +177,7 @@ pub(in crate::diagnose) struct Probe {
 }
 
 impl Probe {
-    /// Derivative of every channel from its values at the probe's step and without it.
+    /// Sensitivity of every channel from its values with and without the probe's step.
     pub fn sensitivity(&self, ahead: &[Vec<f64>], behind: &[Vec<f64>]) -> Vec<Vec<f64>> {
         sensitivity(ahead, behind, self.step)
     }
@@ -187,17 +188,17 @@ fn sensitivity(ahead: &[Vec<f64>], behind: &[Vec<f64>], way: f64) -> Vec<Vec<f64
     channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect()).collect()
 }
 
-/// Differences to one side cost half; those to both sides are exact enough for narrow valleys.
+/// One-sided differences cost half; central ones are accurate enough for narrow valleys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::diagnose) enum Sides {
     One,
     Both,
 }
 
-/// Simulates with derivatives, as differences over the probes' steps.
+/// Simulates with sensitivities, as difference quotients over the probes' steps.
 ///
-/// The exact derivatives that the reduced-order model also has would cost the same. But where a cable hangs between taut and
-/// slack they are those of the branch taken at every step, and grow without bound; a finite step does not.
+/// The exact derivatives of the reduced-order model would cost the same. But where a cable switches between taut and
+/// slack they follow the branch taken at every step and grow without bound; a finite step does not.
 pub(in crate::diagnose) fn respond(
     case: &Case,
     run: &CaseRun,

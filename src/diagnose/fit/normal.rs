@@ -8,9 +8,9 @@ pub(in crate::diagnose) struct FitParameter {
     pub min: f64,
     pub max: f64,
     pub scale: f64,
-    /// By how many scales it is moved for a derivative.
+    /// Step of its difference quotient, in scales.
     pub step: f64,
-    /// Where the prior sits, and one over its standard deviation; 0: there is none.
+    /// Mean of the prior, and one over its standard deviation; 0: no prior.
     pub prior: f64,
     pub prior_weight: f64,
 }
@@ -24,7 +24,7 @@ pub(in crate::diagnose) struct Rows {
 }
 
 impl Rows {
-    /// All parts below each other; none without parts.
+    /// Stacks all parts; `None` if there are none.
     pub fn stack(parts: &[Self]) -> Option<Self> {
         let count = parts.iter().map(|p| p.residual.len()).sum();
         let mut all =
@@ -38,8 +38,8 @@ impl Rows {
         Some(all)
     }
 
-    /// Moves on by `step` to where `residual` is left, and updates the Jacobian so that it agrees with what the step did
-    /// (Broyden's update: the least change that does).
+    /// Moves by `step` to where the residual is `residual`, and updates the Jacobian to agree with the observed change
+    /// (Broyden's least-change update).
     pub fn move_on(&mut self, step: &DVector<f64>, residual: DVector<f64>) {
         let length = step.norm_squared();
         if length > 0.0 {
@@ -74,7 +74,7 @@ impl Normal {
         normal
     }
 
-    /// A damped step in scaled parameters from `x`; parameters that a bound holds back stay.
+    /// A damped step in scaled parameters from `x`; parameters held by a bound stay.
     pub fn bounded_step(&self, parameters: &[FitParameter], x: &[f64], damping: f64) -> Option<DVector<f64>> {
         let mut held = vec![false; x.len()];
         loop {
@@ -107,7 +107,7 @@ impl Normal {
         DVector::from_fn(held.len(), |i, _| if held[i] { 0.0 } else { self.gradient[i] })
     }
 
-    /// By how much the cost falls over a step if all is linear.
+    /// Predicted reduction of the cost over a step.
     pub fn promised_gain(&self, step: &DVector<f64>) -> f64 {
         2.0 * self.gradient.dot(step) - step.dot(&(&self.matrix * step))
     }
@@ -129,7 +129,7 @@ pub(super) fn prior_cost(parameters: &[FitParameter], x: &[f64]) -> f64 {
     parameters.iter().zip(x).map(|(n, x)| ((x - n.prior) * n.prior_weight).powi(2)).sum()
 }
 
-/// What of `v` the columns of an orthonormal `basis` cannot make up.
+/// The part of `v` orthogonal to the columns of an orthonormal `basis`.
 pub(in crate::diagnose) fn orthogonal(basis: &DMatrix<f64>, v: &DVector<f64>) -> DVector<f64> {
     v - basis * basis.tr_mul(v)
 }

@@ -16,7 +16,7 @@ pub struct Fit {
     pub model: Model,
     /// Calibration, then the fitted parameters of the effects.
     pub x: Vec<f64>,
-    /// Sum of squared residuals in units of the noise, colour allowed for.
+    /// Sum of squared residuals in units of the noise, autocorrelation accounted for.
     pub cost: f64,
     /// Inverse of the normal matrix: covariance of `x`.
     pub covariance: DMatrix<f64>,
@@ -25,7 +25,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The same with one of the effects behind the others.
+    /// The same with one effect moved to the end.
     pub(crate) fn with_last(&self, effect: usize) -> Self {
         let calibration = self.x.len() - self.model.effect_parameters();
         let places = self.model.places();
@@ -47,14 +47,15 @@ impl Fit {
     }
 }
 
-/// Steps of the differences, as shares of the parameters' scales: above what kinks of the laws make of a smaller one.
+/// Steps of difference quotients, as shares of the parameters' scales: large against the effect of kinks in the laws.
 const CALIBRATION_STEP: f64 = 1e-3;
 const EFFECT_STEP: f64 = 2e-2;
-/// The same for calibrated parameters where cables go slack. Where a joint comes to rest after that depends on how it bounced: over a
-/// thousandth of a range that makes derivatives a hundred times too large and intervals too narrow, over a tenth it averages out.
+/// The same for calibrated parameters if cables go slack. Where a joint then comes to rest depends on how it bounced: a
+/// step of a thousandth of a range makes derivatives a hundred times too large and intervals too narrow, a tenth
+/// averages it out.
 const STEP_ACROSS_SLACK: f64 = 1e-1;
 
-/// Steps to both sides are alike; away from a bound that is near.
+/// Central steps are symmetric; steps lead away from a near bound.
 pub(in crate::diagnose) fn probes(
     parameters: &[FitParameter],
     x: &[f64],
@@ -64,7 +65,7 @@ pub(in crate::diagnose) fn probes(
     which.map(|number| probe(&parameters[number], x[number], number, sides)).collect()
 }
 
-/// The step over which a number at `x` is differentiated.
+/// Step of the difference quotient of a parameter at `x`.
 pub(in crate::diagnose) fn probe(n: &FitParameter, x: f64, number: usize, sides: Sides) -> Probe {
     // A number grown far beyond its scale is probed in proportion.
     let size = (n.step * n.scale).max(1e-3 * x.abs());
@@ -108,7 +109,7 @@ impl Problem<'_> {
         parameters
     }
 
-    /// Where a fit of a model starts: calibration as in `near` (or the scene), effects at their parameters.
+    /// Start of a fit: calibration as in `near` (or the scene), effects at their start values.
     pub fn start(&self, model: &Model, near: Option<&[f64]>) -> Vec<f64> {
         let n = self.case.parameters.len();
         let mut x: Vec<f64> = match near {
@@ -130,7 +131,7 @@ impl Problem<'_> {
         all.into_iter().collect()
     }
 
-    /// Residuals at `x` and the derivatives to the parameters `wanted`, one row per sample that is there.
+    /// Residuals at `x` and the Jacobian for the parameters `wanted`, one row per existing sample.
     pub fn rows(&self, model: &Model, x: &[f64], wanted: Range<usize>, sides: Sides) -> Option<Rows> {
         let parameters = self.parameters(model);
         let probes = probes(&parameters, x, wanted.clone(), sides);
@@ -147,7 +148,7 @@ impl Problem<'_> {
         Rows::stack(&parts.concat())
     }
 
-    /// The same at a fit, with the derivatives to all its parameters, taken to both sides.
+    /// The same at a fit, with the Jacobian for all parameters from central differences.
     pub fn rows_of(&self, fit: &Fit) -> Option<Rows> {
         self.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both)
     }
@@ -189,7 +190,7 @@ impl Problem<'_> {
         rows
     }
 
-    /// Derivative of a channel where it was measured, in units of the noise and of the number's scale.
+    /// Derivative of a channel at its measured samples, in units of the noise and of the parameter's scale.
     pub fn weighted_sensitivity(
         &self,
         run: &CaseRun,
@@ -202,7 +203,8 @@ impl Problem<'_> {
             .map(move |(sensitivity, weight)| (sensitivity - zero) * weight)
     }
 
-    /// What a small change of this size does to a channel where it was measured, in units of the noise, whatever its zero.
+    /// Change of a channel at its measured samples for a small change of this size, in units of the noise, free zero
+    /// ignored.
     pub fn seen(&self, run: &CaseRun, channel: usize, sensitivity: &[f64], size: f64) -> impl Iterator<Item = f64> {
         self.sensitivity_in_noise(run, channel, sensitivity, size).map(|(sensitivity, weight)| sensitivity * weight)
     }
@@ -251,7 +253,7 @@ impl Problem<'_> {
         run.measured.iter().enumerate().map(channel).collect()
     }
 
-    /// Where a channel's zero lies: the mean of `value(sample, measured)` if it is free, else 0.
+    /// The zero of a channel: the mean of `value(sample, measured)` if it is free, else 0.
     fn zero(&self, run: &CaseRun, channel: usize, value: impl Fn(usize, f64) -> f64) -> f64 {
         if !self.case.channels[channel].has_free_zero {
             return 0.0;

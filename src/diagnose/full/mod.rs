@@ -1,4 +1,5 @@
-//! The full scene with the parameters of a fit: as text, played beside the reduced-order model, and with the last word on the parameters.
+//! The full scene with fitted parameters: as a file, compared with the reduced-order model, and for the final
+//! refinement.
 //!
 //! May import `fit`, `case`, `diagnosis` and `error`.
 

@@ -1,4 +1,4 @@
-//! The reduced-order model against the full scene: on every diagnosis, with the parameters that were found.
+//! Compares the reduced-order model with the full scene, in every diagnosis, at the fitted parameters.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ use crate::diagnose::diagnosis::FullScene;
 use crate::diagnose::error::DiagnoseError;
 use crate::diagnose::fit::{Fit, simulate};
 
-/// Difference between the models, in units of the noise, up to which they agree.
+/// The models agree up to this difference, in units of the noise.
 const AGREES: f64 = 0.5;
 
-/// The full scene's channels of one run, and how far the reduced-order model is from them.
+/// The full scene's channels of one run, and the deviation of the reduced-order model.
 #[derive(Clone, Debug)]
 pub struct FullRun {
     pub is_held_out: bool,
@@ -26,7 +26,7 @@ pub struct FullRun {
     pub difference_over_noise: Vec<f64>,
 }
 
-/// Plays every run on the full scene with the parameters of a fit.
+/// Simulates every run on the full scene with fitted parameters.
 ///
 /// # Errors
 /// A scene that the engine cannot play with these parameters.
@@ -55,7 +55,7 @@ fn play(case: &Case, fit: &Fit, noise: &[Noise], run: &CaseRun) -> Result<FullRu
     Ok(FullRun { is_held_out: run.is_held_out, values, difference_over_noise })
 }
 
-/// What the full scene shows in a run, with the parameters of a fit: by channel, then time.
+/// Channels of the full scene in a run with fitted parameters: by channel, then time.
 ///
 /// # Errors
 /// A scene that the engine cannot play with these parameters.

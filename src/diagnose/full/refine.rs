@@ -1,4 +1,4 @@
-//! The parameters of the answer as the full scene would have them.
+//! Full-model refinement: fits the answer's parameters to the full scene.
 
 use std::borrow::Cow;
 
@@ -9,11 +9,11 @@ use super::play::play_on_full;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Problem};
 
-/// Goes on from a fit of the reduced-order model with the full scene in its place: the residuals are the full scene's, the derivatives the fast
-/// model's. A step is taken only where the full scene itself comes nearer to the recordings. Intervals grow by what their parameters
-/// moved, and by what the derivatives ask for at the end and the scene refuses: they are another model's.
+/// Refines a fit with residuals of the full scene and the Jacobian of the reduced-order model. A step is accepted only
+/// if the full scene comes closer to the recordings. Intervals grow by the shift of the parameters, and by the last
+/// step that the Jacobian proposes and the full scene rejects.
 ///
-/// `None` where the full scene cannot be played with the fit.
+/// `None` if the full scene cannot be simulated with the fit.
 pub(in crate::diagnose) fn refine(whole: &Problem, fit: Fit) -> Option<Fit> {
     let residual = |x: &[f64]| -> Option<DVector<f64>> {
         let there = Fit { x: x.to_vec(), ..fit.clone() };
@@ -36,7 +36,7 @@ mod tests {
     use crate::diagnose::fit::Model;
     use crate::scene::Override;
 
-    /// From a reduced-order model's fit that is wrong by two per cent to the number with which the full scene was played; and no further.
+    /// Starts 2 % off the parameter that the full scene was simulated with, and ends at it.
     #[test]
     fn numbers_are_those_that_the_full_scene_was_played_with() {
         let set = [Override::number("friction_m0_n", 0.11)];

@@ -1,31 +1,31 @@
-//! The likelihood of recordings in stretches if signals at some ports wander: a Kalman filter.
+//! Likelihood of condensed recordings if signals at some ports follow random walks: a Kalman filter.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::stretches::{Condensed, Measured};
 
-/// Variance of a signal at the beginning, in squared sizes plain to see: it may begin anywhere.
+/// Initial variance of a signal, relative to a clearly visible one: it may begin anywhere.
 const FIRST: f64 = 100.0;
-/// Share of a number's own information below which it is held where others do what it does.
+/// A parameter with less than this share of its own information is held, because others do the same.
 const FAINT: f64 = 1e-10;
 
-/// Signals at some ports, and the variance that each of them gains in a second.
+/// Signals at some ports, and the variance that each gains per second.
 pub struct Walk<'a> {
     pub ports: &'a [usize],
     pub variance_s: f64,
 }
 
-/// What the filter makes of all runs.
+/// Result of the filter for all runs.
 pub struct Likelihood {
-    /// Minus twice its logarithm, but for a constant; calibration and free zeros as they make it greatest.
+    /// Minus twice the log likelihood, up to a constant, maximised over calibration and free zeros.
     pub cost: f64,
-    /// Of each run, how far the innovations' sum of squares lies above that of noise, in its standard errors.
+    /// By run, the innovations' sum of squares above that of noise, in standard errors.
     pub left_sigma: Vec<f64>,
 }
 
-/// Innovations of one run, each divided by its standard deviation.
+/// Normalised innovations of one run.
 struct Innovations {
-    /// Their products, residual first, then the Jacobian.
+    /// Their products: residual first, then the columns of the Jacobian.
     products: DMatrix<f64>,
     /// Sum of the logarithms of their variances.
     spread: f64,
@@ -49,7 +49,7 @@ impl Likelihood {
 }
 
 impl Innovations {
-    /// With the parameters of the run alone, which come behind `shared` others, as they explain most.
+    /// Profiles out the run's own parameters, which follow `shared` others.
     fn without_own(self, shared: usize) -> Self {
         let own = self.products.nrows() - shared;
         if own == 0 {
@@ -62,14 +62,14 @@ impl Innovations {
     }
 }
 
-/// The parameters that explain most of the residual, from the products of both.
+/// Least-squares parameters for the residual, from the products.
 fn sizes(products: &DMatrix<f64>) -> DVector<f64> {
     let n = products.nrows() - 1;
     let jacobian = products.view((1, 1), (n, n)).into_owned();
     inverse(&jacobian) * products.view((1, 0), (n, 1)).column(0)
 }
 
-/// Inverse of a matrix of products; of what others do as well nothing is asked.
+/// Pseudo-inverse of a matrix of products, without redundant directions.
 fn inverse(products: &DMatrix<f64>) -> DMatrix<f64> {
     let length: Vec<f64> = products.diagonal().iter().map(|x| x.max(f64::MIN_POSITIVE).sqrt()).collect();
     let scaled = DMatrix::from_fn(length.len(), length.len(), |i, j| products[(i, j)] / (length[i] * length[j]));
@@ -78,15 +78,15 @@ fn inverse(products: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(length.len(), length.len(), |i, j| inverse[(i, j)] / (length[i] * length[j]))
 }
 
-/// State and signals, as far as they are known.
+/// Estimates of states and signals, with their covariance.
 struct Filter {
-    /// Best guesses, for the residual and each column of the Jacobian.
+    /// Means, for the residual and each column of the Jacobian.
     mean: DMatrix<f64>,
     covariance: DMatrix<f64>,
     found: Innovations,
 }
 
-/// The filter gone through one run.
+/// Runs the filter over one run.
 fn filtered(run: &Condensed, walk: &Walk) -> Innovations {
     let own = walk.ports;
     let columns = run.measured.first().map_or(run.shared, |m| m.rows.ncols());
@@ -115,7 +115,7 @@ fn filtered(run: &Condensed, walk: &Walk) -> Innovations {
 }
 
 impl Filter {
-    /// Takes in what was measured over a stretch, channel by channel.
+    /// Measurement update with one stretch, channel by channel.
     fn look(&mut self, seen: &DMatrix<f64>, measured: &Measured) {
         for c in (0..measured.counts.len()).filter(|&c| measured.counts[c] > 0.0) {
             let shown = seen.row(c).transpose();
@@ -130,7 +130,7 @@ impl Filter {
         }
     }
 
-    /// To the end of a stretch.
+    /// Time update to the end of a stretch.
     fn go_on(&mut self, moves: &DMatrix<f64>) {
         self.mean = moves * &self.mean;
         let moved = moves * &self.covariance * moves.transpose();

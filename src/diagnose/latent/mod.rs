@@ -1,11 +1,13 @@
-//! Where a misfit comes from, before any law is known: an unknown signal at each port, as likely as it makes the recordings.
+//! Locates a misfit before any law is known: an unknown signal at each port, scored by the likelihood of the
+//! recordings.
 //!
-//! A port's signal wanders: a random walk through all of a run, begun anywhere. Along the fitted model's runs, linear in what is small
-//! ([`crate::system::Linear`]), a Kalman filter gives the likelihood of what was measured if such a signal acts there, the calibration and
-//! free zeros as free as they were, and the pace of the walk as likely as can be. One number for every port, so that all are measured alike:
-//! what a signal at the right port needs is small and slow, and all channels agree on it; at another it would have to be large, to
-//! follow every sample, or leaves part of what was measured. That is the balance of all other elements: where it closes, nothing else has to be
-//! missing. (Unknown inputs: Willsky and Jones, IEEE TAC 21, 1976; likelihood from innovations: Schweppe, IEEE TIT 11, 1965.)
+//! The signal at a port is a random walk with an unknown start. Along the fitted model's runs, linear in small signals
+//! ([`crate::system::Linear`]), a Kalman filter gives the likelihood of the recordings with the signal at that port;
+//! calibration and free zeros stay free, and the pace of the walk is the most likely one. This gives one comparable
+//! number for every port. At the right port the signal is small and slow, and all channels agree on it; at another one
+//! it has to be large, to follow every sample, or leaves part of the misfit. This is the balance of all other elements:
+//! if it closes, nothing else has to be missing. (Unknown inputs: Willsky and Jones, IEEE TAC 21, 1976; likelihood from
+//! innovations: Schweppe, IEEE TIT 11, 1965.)
 //!
 //! May import `grammar`, `fit` and `case`.
 
@@ -20,45 +22,46 @@ use crate::laws::Address;
 use likelihood::{Likelihood, Walk};
 use stretches::condensed;
 
-/// Stretches that the longest run is cut into, and all of them together, at most: what a signal does within one is not asked.
+/// Maximum number of stretches of the longest run, and of all runs together. A signal is constant within a stretch.
 const STRETCHES: f64 = 500.0;
 const ALL_STRETCHES: f64 = 4000.0;
-/// Paces of the walk that are tried, in sizes plain to see over the longest run; then halfway to the neighbours of the best, so many times.
+/// Paces of the walk that are tried, relative to a clearly visible signal over the longest run; then bisected around
+/// the best this many times.
 const PACES: [f64; 5] = [0.03, 0.3, 3.0, 30.0, 300.0];
 const HALVINGS: i32 = 2;
 
-/// Where what a channel shows is not what is there. A signal there is in standard deviations of its noise.
+/// Place of a sensor's error. Its signal is in noise standard deviations of the channel.
 const SENSOR: &str = "sensor";
 
-/// Log odds by which a place may fall behind the likeliest and still be where something is missing: a share of those, since the model is
-/// linear in what is small alone, and what chance makes.
+/// A place is likely if it falls behind the most likely one by at most this share of the log odds (the model is only
+/// linear) or by chance.
 const SHARE_OF_ODDS: f64 = 0.05;
 const CHANCE: f64 = 20.0;
 
-/// A balance closes when no run keeps more than this many standard errors above noise.
+/// A balance closes if no run keeps more than this many standard errors above noise.
 const CLOSES_SIGMA: f64 = 3.0;
 
-/// What an unknown signal at one place would make of the recordings.
+/// Result for an unknown signal at one place.
 #[derive(Clone, Debug)]
 pub struct Latent {
-    /// A port; without a number on a rig with several such elements: a signal for each of them.
+    /// Address of the port; without a number on several equal elements: one signal each.
     pub address: String,
     pub element: String,
-    /// Twice the logarithm of how much more likely it makes them.
+    /// Twice the log likelihood ratio against no signal.
     pub log_odds: f64,
-    /// What it leaves of each open run, in standard errors of what noise would leave.
+    /// What is left of each open run, in standard errors of noise.
     pub left_sigma: Vec<f64>,
 }
 
 impl Latent {
-    /// Whether it leaves no more than noise of any run: the balances of all other elements close.
+    /// Whether it leaves no more than noise in any run: the balances of all other elements close.
     pub fn closes(&self) -> bool {
         self.left_sigma.iter().all(|sigma| *sigma < CLOSES_SIGMA)
     }
 }
 
-/// What an unknown signal at each place would make of the runs of a problem, the likeliest place first; `known` are the rows of the fit.
-/// Nothing where the model cannot be made linear: it diverges, is not integrated, or has sensors that act on what they show.
+/// Results for an unknown signal at each place, the most likely first; `known` are the rows of the fit. Empty if the
+/// model cannot be linearised: it diverges, is not integrated, or has sensors that act on what they show.
 pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let settings: Vec<_> = problem.runs.iter().map(|run| fit.model.setting(problem.case, run, &fit.x)).collect();
     if problem.runs.iter().zip(&settings).any(|(run, setting)| run.rom.has_sensors(setting)) {
@@ -88,7 +91,7 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     found
 }
 
-/// Those of some places, the likeliest first, where something may be missing in the rig; what sensors make of it is no place there.
+/// The likely places in the rig, the most likely first; sensors are excluded.
 pub fn likely(latents: Vec<Latent>) -> Vec<Latent> {
     let mut likely = latents;
     likely.retain(|latent| latent.element != SENSOR);
@@ -97,7 +100,7 @@ pub fn likely(latents: Vec<Latent>) -> Vec<Latent> {
     likely
 }
 
-/// Whether a place is one of them and nothing is missing there, but at another.
+/// Whether a place is among them, and far behind another one.
 pub fn is_behind(latents: &[Latent], address: &str) -> bool {
     latents.iter().any(|latent| latent.address == address && latent.log_odds < least(latents))
 }
@@ -106,7 +109,7 @@ fn least(latents: &[Latent]) -> f64 {
     latents.first().map_or(0.0, |best| (1.0 - SHARE_OF_ODDS) * best.log_odds - CHANCE)
 }
 
-/// The likelihood at the pace that makes it greatest: it is smooth over the pace's logarithm, with one peak.
+/// The likelihood at its maximum over the pace: smooth over the logarithm, with one peak.
 fn likeliest(at: &dyn Fn(f64) -> Likelihood) -> Likelihood {
     let tried = |pace: f64| (pace, at(pace));
     let mut best = tried(PACES[0]);
@@ -137,7 +140,7 @@ mod tests {
     use crate::diagnose::fit::{Model, Sides};
     use crate::scene::Override;
 
-    /// The latents of a case whose scene is played with some parameters changed, without calibration to take them up.
+    /// Results for a case simulated with changed parameters, without calibration to absorb them.
     fn of(scene: &str, set: &[(&str, &str)], (inputs, outputs): (&[&str], &[&str]), sd: &[f64]) -> Vec<Latent> {
         let set: Vec<Override> =
             set.iter().map(|(key, value)| Override::parse(&format!("{key}={value}")).expect("one")).collect();
@@ -166,8 +169,8 @@ mod tests {
         latents.iter().find(|latent| latent.address == address).expect("a place of the scene")
     }
 
-    /// Something in the muscle accounts for a muscle that is stiffer, and nothing in the fluid does; of a syringe that gives more the other
-    /// way round. What no sensor can tell apart comes out alike.
+    /// A stiffer muscle is located in the muscle and not in the fluid; a softer syringe the other way round. Places
+    /// that sensors cannot distinguish score alike.
     #[test]
     fn balances_of_a_bench_tell_muscle_from_fluid() {
         let stiffer = bench("muscles.tube.material.c1_pa", "2.7e5");
@@ -185,7 +188,7 @@ mod tests {
         assert!(likely(softer).iter().all(|latent| latent.element != "muscle"));
     }
 
-    /// By one sensor alone muscle and fluid are told apart by the pace of what would have to happen there alone: all close.
+    /// With one sensor, only the required pace distinguishes muscle and fluid: all balances close.
     #[test]
     fn one_sensor_leaves_no_balance_open() {
         let recorded: (&[&str], &[&str]) = (&["plunger_mm"], &["elongation_mm"]);
@@ -193,7 +196,7 @@ mod tests {
         assert!(["muscle.wall", "line.outflow", "plunger"].iter().all(|at| place(&found, at).closes()), "{found:?}");
     }
 
-    /// What a sensor makes of it is a place of its own, and none in the rig.
+    /// A sensor is a place of its own, and none in the rig.
     #[test]
     fn sensors_are_no_place_in_the_rig() {
         let found = bench("muscles.tube.material.c1_pa", "2.7e5");

@@ -1,7 +1,7 @@
-//! Recordings and the linear model of a run, condensed to short stretches of time.
+//! Condenses recordings and the linear model of a run to short stretches of time.
 //!
-//! Over a stretch a signal stands still, and of each channel the mean is taken, times the root of its samples: noise of variance one.
-//! Nothing of the model is lost by it but what the signal does within a stretch.
+//! A signal is constant over a stretch, and each channel is averaged and multiplied by the root of its sample count, so
+//! its noise has variance one. Only what the signal does within a stretch is lost.
 
 use std::borrow::Cow;
 
@@ -14,12 +14,12 @@ use crate::diagnose::fit::{Problem, Rows};
 use crate::effects::Effect;
 use crate::system::{Linear, RomSetting};
 
-/// A run: what was measured over each stretch, and what the model makes of states and signals there.
+/// One run: measurements by stretch, and the response to states and signals there.
 pub struct Condensed {
     pub measured: Vec<Measured>,
-    /// How many parameters come before those of the run alone: the residual, then the parameters of the fit.
+    /// Columns before the run's own parameters: the residual, then the parameters of the fit.
     pub shared: usize,
-    /// What a signal at each port comes to at the first sample: the state. Behind the ports stand the channels, a signal on each.
+    /// Initial response of the states to a signal at each port. Behind the ports follow the channels, one signal each.
     pub start: DMatrix<f64>,
     pub maps: Vec<Map>,
 }
@@ -27,12 +27,12 @@ pub struct Condensed {
 /// Of one stretch: a row for each channel, of residual, Jacobian, and derivatives to the free zeros of the run.
 pub struct Measured {
     pub rows: DMatrix<f64>,
-    /// How many samples of each channel there are.
+    /// Number of samples by channel.
     pub counts: Vec<f64>,
     pub lasts_s: f64,
 }
 
-/// What the state at a stretch's beginning, then each port's signal, come to.
+/// Response to the state at the beginning of a stretch, then to each port's signal.
 pub struct Map {
     /// At its end: the state.
     pub end: DMatrix<f64>,
@@ -40,7 +40,7 @@ pub struct Map {
     pub seen: DMatrix<f64>,
 }
 
-/// Every run in stretches of so many seconds; none where the model diverges or is not integrated.
+/// All runs in stretches of this many seconds; `None` if the model diverges or is not integrated.
 pub fn condensed(
     problem: &Problem,
     settings: &[RomSetting<f64>],
@@ -69,7 +69,7 @@ pub fn condensed(
     problem.runs.par_iter().enumerate().map(one).collect()
 }
 
-/// The samples behind the last of each stretch. The first sample, before any interval, belongs to none.
+/// Index after the last sample of each stretch. The first sample belongs to none.
 fn ends(times_s: &[f64], stretch_s: f64) -> Vec<usize> {
     let mut ends = Vec::new();
     let mut from = 0;
@@ -85,7 +85,7 @@ fn ends(times_s: &[f64], stretch_s: f64) -> Vec<usize> {
     ends
 }
 
-/// What was measured over each stretch; the run's rows begin at `row`.
+/// Measurements by stretch; the run's rows begin at `row`.
 fn measured(problem: &Problem, run: &CaseRun, (known, mut row): (&Rows, usize), ends: &[usize]) -> Vec<Measured> {
     let channels = &problem.case.channels;
     let zeros: Vec<usize> = (0..channels.len()).filter(|&c| channels[c].has_free_zero).collect();

@@ -1,4 +1,4 @@
-//! Which effects a rig could have, and with which parameters each is first tried.
+//! Effects that a rig could have, and the parameters each is first tried with.
 
 use crate::effects::{Element, ElementKind, EntryId, Levels, catalogue};
 use crate::recording::parse_column;
@@ -8,7 +8,7 @@ use crate::diagnose::case::Case;
 use crate::diagnose::fit::{Placed, Variant};
 use crate::diagnose::grammar;
 
-/// Every effect that can sit on the case's scene, each in the variants it is first tried in.
+/// Every effect that fits the scene, in its initial variants.
 pub fn variants(case: &Case) -> Vec<Variant> {
     let mut all = Vec::new();
     for entry in catalogue().filter(|e| !e.hypothetical && (case.has_clock || !e.trying.needs_clock)) {
@@ -50,13 +50,13 @@ fn places(case: &Case, entry: EntryId) -> Vec<Placed> {
     placed
 }
 
-/// How many chambers were recorded: each run may be another's.
+/// Number of recorded chambers: each run may be of another one.
 fn chambers(case: &Case) -> usize {
     let parameters = case.runs.iter().filter_map(|r| r.scene.file.chamber.as_ref()).map(|c| c.number);
     parameters.max().unwrap_or(1)
 }
 
-/// Whether the scene takes the effect: the checks of a scene file decide.
+/// Whether the scene accepts the effect, by the checks of a scene file.
 fn fits_scene(case: &Case, placed: &Placed, values: &[f64]) -> bool {
     let trying = &placed.spec().trying;
     // What a scene calibrates is no candidate beside it.
@@ -82,7 +82,7 @@ fn has_flexures(scene: &Scene) -> bool {
     joints.any(|j| j.stiffness_n_m_rad.is_some_and(|k| k > 0.0))
 }
 
-/// Starting parameters. Where a second number bends the law (a time, a threshold), several are tried.
+/// Start values. If a second parameter bends the law (a time, a threshold), several are tried.
 fn starts(case: &Case, placed: &Placed) -> Vec<Vec<f64>> {
     let typical = placed.spec().typical();
     let trying = &placed.spec().trying;
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::diagnose::case::made;
 
-    /// Rows that are only counted tell an order, and no pace.
+    /// Rows without a clock tell an order but no pace.
     #[test]
     fn without_a_clock_no_lag_is_tried() {
         let mut case = made::recorded("antagonistic_pulley", &[], &["plunger_1_mm", "plunger_2_mm"], &["angle_deg"]);

@@ -1,7 +1,7 @@
-//! Relaxations one by one, or one that goes on over decades of time.
+//! Single relaxations, or logarithmic creep over decades of time.
 //!
-//! A polymer creeps along the logarithm of time. Exponentials fit what was recorded of that, one for each decade of it, and then end:
-//! they do not predict the decade to come. With fewer parameters logarithmic creep does.
+//! A polymer creeps along the logarithm of time. Exponentials fit the recorded part, one per decade, and then end: they
+//! do not predict the next decade. Logarithmic creep does, with fewer parameters.
 
 use super::refits::cross_validates_runs;
 use super::reweight::open_runs;
@@ -11,16 +11,17 @@ use crate::diagnose::case::{Case, Noise, Step};
 use crate::diagnose::fit::{Fit, Model, Placed, Problem, Variant};
 use crate::effects::Native;
 
-/// Decades of a broad relaxation: from the shortest time on beyond any recording's length, so that where they end does not matter.
+/// Decades of logarithmic creep: from the shortest time to beyond the length of any recording, so that the end does not
+/// matter.
 const DECADES: f64 = 5.0;
-/// Where the shortest time begins, as shares of the shortest that was found.
+/// Start values of the shortest time, as shares of the shortest relaxation found.
 const SHORTER: [f64; 2] = [1.0, 0.1];
 
-/// Replaces all relaxations of a muscle by logarithmic creep, where that predicts runs better that it was not fitted to, and either has
-/// fewer parameters or leaves less. Where no runs are predicted it must leave less.
+/// Replaces all relaxations of a muscle by logarithmic creep, if that cross-validates better and has fewer parameters
+/// or leaves less. If there is nothing to cross-validate, it must leave less.
 ///
-/// It begins to relax far earlier than the others: both are compared with steps that are short enough for it, which the case keeps
-/// where it is taken.
+/// Its shortest time is far below the others': both models are compared with steps short enough for it. The case keeps
+/// those steps if creep is accepted.
 pub(in crate::diagnose) fn broaden(
     case: &mut Case,
     noise: &[Noise],
@@ -45,7 +46,7 @@ pub(in crate::diagnose) fn broaden(
     found
 }
 
-/// Baseline, what was found and that with a broad relaxation, all fitted with the steps that the last needs.
+/// Baseline, answer, and the answer with logarithmic creep, all fitted with the steps that the last one needs.
 fn with_steps_of_broad(case: &mut Case, noise: &[Noise], found: &Found, placed: &Placed) -> Option<[Fit; 3]> {
     let broad = as_broad(&open_runs(case, noise), &found.best, placed)?;
     case.plan_steps(&broad.model.settings(case, &broad.x), noise)?;
@@ -62,7 +63,7 @@ fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {
     (is_nearer || broad.x.len() < was.x.len()) && cross_validates_runs(problem, was, broad)
 }
 
-/// Whether an effect is a relaxation over decades.
+/// Whether an effect is logarithmic creep.
 pub(in crate::diagnose) fn is_broad(model: &Model, effect: usize) -> bool {
     relaxes(&model.effects[effect]) && model.values[effect][2] > 0.0
 }
@@ -71,7 +72,7 @@ fn relaxes(placed: &Placed) -> bool {
     placed.entry.native == Some(Native::Viscoelasticity)
 }
 
-/// Each muscle that relaxes, once.
+/// Each relaxing muscle once.
 fn relaxing(fit: &Fit) -> Vec<Placed> {
     let mut relaxing: Vec<Placed> = Vec::new();
     for placed in fit.model.effects.iter().filter(|e| relaxes(e)) {
@@ -82,8 +83,7 @@ fn relaxing(fit: &Fit) -> Vec<Placed> {
     relaxing
 }
 
-/// The fit with one broad relaxation in place of all that a muscle has, the best of its beginnings; `None` where it has none, as
-/// another muscle's broad one may have taken its place.
+/// The best fit with logarithmic creep in place of all relaxations of a muscle. `None` if it has none any more.
 fn as_broad(problem: &Problem, fit: &Fit, placed: &Placed) -> Option<Fit> {
     let calibrated = problem.case.parameters.len();
     let mut rest = fit.clone();

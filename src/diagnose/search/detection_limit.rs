@@ -1,15 +1,15 @@
-//! From which size on an effect could be seen.
+//! Detection limits: the smallest size of an effect that the recordings could show.
 
 use super::screening::{Screened, least_gain, signatures};
 use crate::diagnose::fit::{Fit, Problem, Sides, orthogonal};
 
-/// A least size that moves by less stands.
+/// Relative change at which the iteration stops.
 const AGREES: f64 = 1.1;
 const ROUNDS: usize = 5;
 
-/// Seeks the least sizes beyond the typical one at those sizes themselves: the signature at next to nothing promises too much of laws that
-/// level off. A force sensor that lags by a second shows hardly less than one that lags by two, and both may be within the noise.
-/// Without end where no size of the range would be seen.
+/// Recomputes limits above the typical size at that size: the signature at zero is too optimistic for laws that level
+/// off. A force sensor that lags by a second looks much like one that lags by two, and both may be within the noise.
+/// Infinite if no size within the range would be seen.
 pub(in crate::diagnose) fn confirm_least_sizes(problem: &Problem, fit: &Fit, screened: &mut [Screened]) {
     let Some(rows) = problem.rows(&fit.model, &fit.x, 0..fit.x.len(), Sides::Both) else { return };
     let needed = least_gain(rows.residual.len()).sqrt();
@@ -41,7 +41,7 @@ mod tests {
     use crate::diagnose::search::candidates;
     use crate::diagnose::search::screening::screen;
 
-    /// The bench's force hardly moves: what a lag of it promises at nothing, none of half a minute keeps.
+    /// The bench's force hardly changes: a lag that the signature at zero shows is invisible at half a minute.
     #[test]
     fn what_levels_off_within_the_noise_is_not_visible() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "force_n"]);

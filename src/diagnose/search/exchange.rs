@@ -1,27 +1,28 @@
-//! Deletions and exchanges: what stands in a model must be needed, and better than anything else in its place.
+//! Stepwise deletions and exchanges: every effect of a model must be needed, and better than any alternative.
 
 use super::refits::{Absorbed, BRANCH_TIE, pick, refit};
 use super::screening::screen;
 use crate::diagnose::fit::{Fit, Model, Placed, Problem, Variant};
 
-/// Exchanges in one search, and what they have come to.
+/// Exchanges of one search, with their results.
 pub(super) struct Exchange<'a> {
     pub problem: &'a Problem<'a>,
     pub variants: &'a [Variant],
-    /// Effects that have been worth something somewhere: they are tried again even where the calibration takes them in.
+    /// Effects that were useful somewhere: they are retried even if the calibration absorbs them.
     pub known: Vec<Placed>,
-    /// Ends of former exchanges: those that come there again end with them.
+    /// Results of earlier exchanges; a search that reaches one of them again ends there.
     ends: Vec<Converged>,
 }
 
-/// A model in which nothing is needless and nothing else is better, with the others tried in place of each of its effects.
+/// A model in which every effect is needed and none has a better alternative; with the alternatives tried for each
+/// effect.
 #[derive(Clone, Debug)]
 pub(super) struct Converged {
     pub best: Fit,
     pub rivals: Vec<Vec<Fit>>,
 }
 
-/// The stage that added a model's last effect: the fit without it, and all that were tried, cheapest first.
+/// The step that added a model's last effect: the fit before it, and all candidates, cheapest first.
 pub(super) struct Stage<'a> {
     pub before: &'a Fit,
     pub refits: &'a [Fit],
@@ -32,8 +33,8 @@ impl<'a> Exchange<'a> {
         Self { problem, variants, known, ends: Vec::new() }
     }
 
-    /// Leaves out effects that others have made needless and puts better ones in their place, until neither helps. `last`:
-    /// how the start's last effect was added, if that is known; it is not done again.
+    /// Deletes redundant effects and replaces others by better ones until neither helps. `last`: how the start's last
+    /// effect was added, if known; that step is not repeated.
     pub fn converge(&mut self, start: Fit, least: f64, mut last: Option<Stage>, say: &dyn Fn(String)) -> Converged {
         let mut best = start;
         let mut rivals: Vec<Vec<Fit>> = Vec::new();
@@ -70,7 +71,8 @@ impl<'a> Exchange<'a> {
         end
     }
 
-    /// A model without one of its effects, and others in its place. `None` where it cannot be simulated without.
+    /// Fits without one effect, and with each alternative in its place. `None` if the model cannot be simulated without
+    /// it.
     fn in_place_of(&mut self, best: &Fit, index: usize, least: f64) -> Option<(Fit, Vec<Fit>)> {
         let start = self.problem.start_without(best, index);
         let fewer = self.problem.fit(&best.model.without(index), &start)?;
@@ -84,7 +86,7 @@ impl<'a> Exchange<'a> {
         Some((fewer, refits))
     }
 
-    /// Remembers which effects were worth something.
+    /// Records which effects were useful.
     pub fn keep_in_mind(&mut self, before: &Fit, refits: &[Fit], least: f64) {
         for placed in refits.iter().filter(|f| before.cost - f.cost > least).filter_map(|f| f.model.effects.last()) {
             if !self.known.contains(placed) {
@@ -94,10 +96,10 @@ impl<'a> Exchange<'a> {
     }
 }
 
-/// Costs of one model that differ by a smaller share are those of one fit: ways come to it from different sides.
+/// Costs of one model that differ by less than this share belong to the same fit, reached from different sides.
 const SAME_COST: f64 = 2e-4;
 
-/// Whether two fits are one: the same effects, in whatever order, at the same cost.
+/// Whether two fits are the same: equal effects in any order, at the same cost.
 pub(super) fn is_same(a: &Fit, b: &Fit) -> bool {
     let sorted = |fit: &Fit| {
         let mut effects = fit.model.effects.clone();
@@ -107,12 +109,12 @@ pub(super) fn is_same(a: &Fit, b: &Fit) -> bool {
     (a.cost - b.cost).abs() < SAME_COST * a.cost && sorted(a) == sorted(b)
 }
 
-/// What was tried beside the effect that a model ends with.
+/// Candidates tried with the effect that a model ends with.
 fn others(refits: &[Fit], model: &Model) -> Vec<Fit> {
     refits.iter().filter(|f| f.model.effects.last() != model.effects.last()).cloned().collect()
 }
 
-/// Whether an effect stands there with more than one branch.
+/// Whether an effect has several branches.
 fn has_branches(model: &Model) -> bool {
     model.effects.iter().enumerate().any(|(i, e)| model.effects[..i].contains(e))
 }

@@ -1,4 +1,4 @@
-//! Candidates for one more effect: which are worth a joint refit, the refits, and which of them may win.
+//! Candidates for one more effect: selection, joint refits, and the order in which they may win.
 
 use rayon::prelude::*;
 
@@ -6,27 +6,28 @@ use super::screening::{Screened, Screening, least_gain, screen, start_values};
 use crate::diagnose::case::Step;
 use crate::diagnose::fit::{Fit, Placed, Problem, Sides, Variant};
 
-/// Candidates that are refitted in full at every stage.
+/// Maximum number of candidates refitted at every stage.
 const REFITTED: usize = 10;
-/// Of those, at most so many to the end, when they come within this share of the best's gain.
+/// Maximum number converged, if they come within this share of the best's gain.
 const FINISHED: usize = 4;
 const NEAR: f64 = 0.1;
-/// Candidates that promise less than this share of the best are not refitted.
+/// Candidates with less than this share of the best promise are skipped.
 const WORTH: f64 = 0.1;
-/// At most so many that the calibration may hide.
+/// Maximum number of candidates that the calibration may have absorbed.
 const MOST_ABSORBED: usize = 2;
-/// Share of all that is explained by which a fit with another effect must beat one with a further branch of the same.
+/// A different effect must beat a further branch of the same by this share of the explained misfit.
 pub(super) const BRANCH_TIE: f64 = 0.02;
 
-/// Which effects are tried that the calibration has taken in. From the scene's calibration their fits are the dearest of all.
+/// Which absorbed effects are tried. Their fits start at the scene's calibration and are the most expensive ones.
 #[derive(Clone, Copy)]
 pub(super) enum Absorbed<'a> {
     Any,
-    /// Those of these.
+    /// Those among these.
     Among(&'a [Placed]),
 }
 
-/// The candidates worth a full refit: the most promising of every effect, and some that the calibration may hide.
+/// Candidates worth a refit: the most promising variant of every effect, and some that the calibration may have
+/// absorbed.
 pub(super) fn pick(screened: &[Screened], least: f64, absorbed: Absorbed) -> Vec<Screened> {
     let mut picked: Vec<Screened> = Vec::new();
     let top = screened.first().map_or(0.0, |s| s.gain);
@@ -44,8 +45,8 @@ pub(super) fn pick(screened: &[Screened], least: f64, absorbed: Absorbed) -> Vec
     picked
 }
 
-/// Effects that the calibration has taken in, the most visible first. Their signatures promise nothing: at another calibration
-/// they may explain more than all that do.
+/// Effects absorbed by the calibration, the most visible first. Their signatures are no guide: at another calibration
+/// they may explain more than all others.
 fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
     let is_tried = |s: &&Screened| match which {
         Absorbed::Any => s.is_absorbed,
@@ -56,8 +57,8 @@ fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
     absorbed.into_iter().take(MOST_ABSORBED).cloned().collect()
 }
 
-/// Joint refits of a model with each candidate added, best first; of several starts of one effect the better. All are
-/// fitted roughly; those that come near the best are fitted to the end.
+/// Joint refits with each candidate added, best first; of several starts of one effect, the better. All are fitted
+/// roughly; those near the best are converged.
 pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
     let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
     let rough = best_of_each(rough.into_iter().flatten().collect());
@@ -70,14 +71,13 @@ pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Scre
     fits
 }
 
-/// The effects that do best beside a fit, refitted jointly; cheapest first.
+/// The best effects beside a fit, refitted jointly; cheapest first.
 pub(in crate::diagnose) fn beside(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Fit> {
     let Some(screening) = screen(problem, fit, variants) else { return Vec::new() };
     refit(problem, &screening, &pick(&screening.screened, least_gain(problem.samples()), Absorbed::Any))
 }
 
-/// The same refits, cheapest first, those near the best also fitted from the scene's calibration: only where the best one gains by
-/// it, since mostly none does.
+/// Refits the ones near the best from the scene's calibration as well, if the best gains by that; mostly it does not.
 pub(super) fn afresh(problem: &Problem, refits: Vec<Fit>) -> Vec<Fit> {
     let again = |f: &Fit| problem.fit_afresh(&f.model, &f.x, f.cost);
     let Some(best) = refits.first().and_then(again) else { return refits };
@@ -104,7 +104,8 @@ fn best_of_each(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits
 }
 
-/// A rough fit with one effect more, on the Jacobian of the fit it starts from and that of the effect's parameters.
+/// A rough fit with one effect more; the Jacobian is that of the fit it starts from, extended by the effect's
+/// parameters.
 fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option<Fit> {
     let (from, values) = (&screening.from, start_values(candidate));
     let model = from.model.plus(&candidate.variant.placed, &values);
@@ -123,7 +124,7 @@ fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option
     problem.fit_roughly(&model, &start, jacobian)
 }
 
-/// Refits that may win, in the order in which they are asked: the simplest of the best, then what comes near it.
+/// Refits that may win, in order: the simplest of the best, then those near it.
 pub(super) fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Vec<&'a Fit> {
     let Some(first) = simplest(refits, before, baseline_cost) else { return Vec::new() };
     let near = before.cost - NEARLY_AS_GOOD * (before.cost - first.cost);
@@ -131,7 +132,7 @@ pub(super) fn candidates<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64
     std::iter::once(first).chain(others.take(FINISHED)).collect()
 }
 
-/// Share of the best's gain from which another refit may stand in for it.
+/// Another refit may win if it has this share of the best's gain.
 const NEARLY_AS_GOOD: f64 = 0.5;
 
 pub(super) fn first_that_cross_validates<'a>(
@@ -149,36 +150,36 @@ pub(super) fn first_that_cross_validates<'a>(
     None
 }
 
-/// Whether a fit only gives an effect that is there already one more branch.
+/// Whether a fit only adds a further branch to an effect.
 pub(super) fn adds_branch(before: &Fit, after: &Fit) -> bool {
     after.model.effects.last().is_some_and(|e| before.model.effects.contains(e))
 }
 
-/// The cheapest fit; but of nearly equal ones that which only gives an effect already named one more branch.
+/// The cheapest fit; among nearly equal ones, that which only adds a branch to an effect already named.
 fn simplest<'a>(refits: &'a [Fit], before: &Fit, baseline_cost: f64) -> Option<&'a Fit> {
     let cheapest = refits.first()?;
     let tie = cheapest.cost + BRANCH_TIE * (baseline_cost - cheapest.cost).max(0.0);
     refits.iter().take_while(|f| f.cost <= tie).find(|f| adds_branch(before, f)).or(Some(cheapest))
 }
 
-/// Share of its gain that an effect must predict of halves of runs where it does not predict whole ones.
+/// Share of its gain that an effect must predict on left-out halves of runs if it does not predict whole runs.
 const PREDICTED: f64 = 0.5;
 
-/// Whether a model predicts each run, fitted to the others, better than the one before it. A single run is cut in two.
+/// Whether a model predicts each run, fitted to the others, better than the simpler one. A single run is cut in two.
 ///
-/// Where the other runs say too little about an effect or the calibration beside it, it is carried too far: then it must predict halves
-/// of runs, all others known, and much better.
+/// If the other runs determine an effect poorly, it extrapolates too far. Then it must predict halves of runs, with all
+/// others known, and much better.
 pub(in crate::diagnose) fn cross_validates(problem: &Problem, before: &Fit, after: &Fit) -> bool {
     cross_validates_runs(problem, before, after)
         || gain_left_out(problem.halves_left_out(), before, after) > PREDICTED * (before.cost - after.cost)
 }
 
-/// Whether a model predicts whole runs, each fitted to the others, better than another does. A single run is cut in two.
+/// Whether a model predicts whole left-out runs better than another. A single run is cut in two.
 pub(in crate::diagnose) fn cross_validates_runs(problem: &Problem, before: &Fit, after: &Fit) -> bool {
     problem.case.is_without(Step::CrossValidation) || gain_left_out(problem.runs_left_out(), before, after) > 0.0
 }
 
-/// By how much less chi² a model leaves in what its fits have not seen.
+/// Reduction of chi² on left-out data.
 fn gain_left_out(folds: Vec<(Problem, Problem)>, before: &Fit, after: &Fit) -> f64 {
     // A fold on which the model before cannot be played says nothing; one on which that with more in it cannot is not predicted.
     let gain = |(rest, left_out): (Problem, Problem)| -> f64 {

@@ -1,4 +1,4 @@
-//! Weights and steps of the search: set by the baseline, renewed around what was found.
+//! Noise weights and integration steps of the search: set at the baseline, renewed at the answer.
 
 use super::screening::least_gain;
 use super::stepwise::{Begun, Found};
@@ -6,7 +6,7 @@ use super::way::Bound;
 use crate::diagnose::case::{Case, Noise, RunSet, noise};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 
-/// Searches again from what was found, where that asks for other weights or other steps.
+/// Repeats the search from the answer if that changes weights or steps.
 pub(in crate::diagnose) fn weigh(
     case: &mut Case,
     mut noise: Vec<Noise>,
@@ -39,20 +39,20 @@ pub(in crate::diagnose) fn weigh(
     (found, noise)
 }
 
-/// Steps hold when new ones change chi² by less than this share of the least gain.
+/// Steps are kept if new ones change chi² by less than this share of the least gain.
 const SAME_COST: f64 = 0.3;
 
-/// What was found and the baseline, fitted with weights and steps of their own.
+/// Answer and baseline, fitted with renewed weights and steps.
 pub(in crate::diagnose) struct Renewed {
     pub noise: Vec<Noise>,
-    /// Whether the former weights were good enough.
+    /// Whether the old weights were good enough.
     weights_hold: bool,
     pub start: Fit,
     pub baseline: Fit,
 }
 
-/// Estimates the noise from what was found, plans the steps around it, and fits it again. `None` where the reduced-order model then
-/// diverges; the case's steps are those that it does so with.
+/// Estimates the noise from the answer's residual, plans steps around it, and refits. `None` if the reduced-order model
+/// then diverges; the case keeps the steps it diverged with.
 pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Found) -> Option<Renewed> {
     let residuals = open_runs(case, former).residuals(&found.best.model, &found.best.x)?;
     let noise = noise::estimate(case, &residuals);

@@ -1,4 +1,4 @@
-//! What each candidate promises, by its signature alone.
+//! Screens candidates by their signatures.
 
 use std::sync::Arc;
 
@@ -10,48 +10,48 @@ use crate::effects::Effect;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, FitParameter, Probe, Problem, Rows, Sides, Variant, orthogonal, probe, simulate_many};
 
-/// Share of an effect in chi² per sample below which it is not called missing physics.
+/// Effects below this chi² per sample are not called missing physics.
 const LEAST_SHARE: f64 = 2e-3;
-/// Least gain in chi² of an effect: about five sigma after looking at forty candidates.
+/// Least gain in chi²: about five sigma after looking at forty candidates.
 const LEAST_GAIN: f64 = 35.0;
 
-/// Fall of chi² that makes an effect worth naming, for so many samples.
+/// Least reduction of chi² for an effect, for this number of samples.
 pub fn least_gain(samples: usize) -> f64 {
     LEAST_GAIN.max(LEAST_SHARE * samples as f64)
 }
 
-/// A candidate with what it would gain, by its signature alone.
+/// A candidate and its predicted gain.
 #[derive(Clone, Debug)]
 pub struct Screened {
     pub variant: Variant,
-    /// Fall of chi² that the signature promises, colour of the noise allowed for.
+    /// Predicted reduction of chi², autocorrelated noise accounted for.
     pub gain: f64,
-    /// Size at which the promise is met.
+    /// Size with the predicted gain.
     pub size: f64,
-    /// Size that would gain [`least_gain`]: what could just be seen.
+    /// Detection limit: the size that would gain [`least_gain`].
     pub least_size: f64,
-    /// Whether the calibration has taken the effect in: it imitates nearly all of the signature, and what it does not
-    /// points out of the effect's range. A misfit may then still be that effect's, at a size that only a refit finds.
+    /// Whether the calibration has absorbed the effect: it imitates nearly all of the signature, and the rest points
+    /// out of the effect's range. The misfit may still be due to the effect, at a size that only a refit finds.
     pub is_absorbed: bool,
     /// The signature without what the calibration can imitate, of unit length.
     direction: Arc<DVector<f64>>,
 }
 
 impl Screened {
-    /// The effect at the size that could just be seen; none where no size could.
+    /// The effect at its detection limit; `None` if there is none.
     pub fn just_visible(&self) -> Option<Effect<f64>> {
         let mut values = self.variant.values.clone();
         values[0] = self.signed_least();
         self.is_possible().then(|| self.variant.placed.with(&values))
     }
 
-    /// Whether the law's range holds the size that could just be seen.
+    /// Whether the detection limit lies in the law's range.
     pub(super) fn is_possible(&self) -> bool {
         let range = self.variant.placed.spec().parameters[0].range;
         self.least_size < range.max.abs().max(range.min.abs())
     }
 
-    /// The size that could just be seen, of the sign that the law's range has.
+    /// The detection limit with the sign that the law's range has.
     pub(super) fn signed_least(&self) -> f64 {
         let range = self.variant.placed.spec().parameters[0].range;
         if range.max > 0.0 { self.least_size } else { -self.least_size }
@@ -61,7 +61,7 @@ impl Screened {
         self.variant.placed.spec().parameters[0].typical.abs()
     }
 
-    /// How much more than just visible the effect is at its typical size.
+    /// Typical size over detection limit.
     pub fn typical_over_least(&self) -> f64 {
         self.typical() / self.least_size
     }
@@ -72,7 +72,7 @@ impl Screened {
     }
 }
 
-/// Parameters to start a refit from: the size that the signature promises, kept within reason.
+/// Start values of a refit: the predicted size, limited.
 pub(super) fn start_values(s: &Screened) -> Vec<f64> {
     let mut values = s.variant.values.clone();
     let p = &s.variant.placed.spec().parameters[0];
@@ -82,7 +82,7 @@ pub(super) fn start_values(s: &Screened) -> Vec<f64> {
     values
 }
 
-/// A fit with its Jacobian, and what the signatures of all variants promise there, best first.
+/// A fit with its Jacobian and the predictions for all variants, best first.
 #[derive(Clone)]
 pub(super) struct Screening {
     pub from: Fit,
@@ -97,13 +97,12 @@ pub(super) fn screen(problem: &Problem, from: &Fit, variants: &[Variant]) -> Opt
     Some(Screening { from: from.clone(), jacobian: known.jacobian, screened })
 }
 
-/// The same share from which on nothing is left but rounding.
+/// Share below which only rounding is left.
 const NOTHING_LEFT: f64 = 1e-9;
-/// Length of what the calibration cannot imitate of a signature, as a share of the signature, below which it may have taken
-/// the effect in.
+/// The calibration may have absorbed an effect if it leaves less than this share of the signature's length.
 const ABSORBED: f64 = 0.5;
 
-/// What every variant promises, best first.
+/// Predictions for all variants, best first.
 fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) -> Vec<Screened> {
     let fresh: Vec<&Variant> = variants.iter().filter(|v| fit.model.takes(&v.placed)).collect();
     let basis = known.jacobian.clone().qr().q();
@@ -133,15 +132,16 @@ fn promises(problem: &Problem, fit: &Fit, known: &Rows, variants: &[Variant]) ->
     screened
 }
 
-/// A variant, its size as a fitted number, and how far from zero that is tried.
+/// A variant, its size as a fit parameter, and the size of the difference.
 struct Trial<'a> {
     variant: &'a Variant,
     number: FitParameter,
     probe: Probe,
 }
 
-/// Derivatives of the simulated channels to the size of each variant at zero, in units of the typical size: one simulation
-/// for each and one that all share, since an effect of no size is none. Over a small size, or over that which stands beside the variant.
+/// Derivatives of the simulated channels with respect to each variant's size at zero, in units of the typical size: one
+/// simulation each and one shared by all, because an effect of zero size is absent. Taken over a small size, or over
+/// the size given with the variant.
 pub(super) fn signatures(
     problem: &Problem,
     fit: &Fit,
@@ -158,7 +158,7 @@ pub(super) fn signatures(
     (0..trials.len()).map(whole).collect()
 }
 
-/// The part of each signature that stands in one run.
+/// The rows of each signature in one run.
 fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<Option<DVector<f64>>> {
     let case = problem.case;
     let base = fit.model.setting(case, run, &fit.x);

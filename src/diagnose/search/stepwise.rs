@@ -1,60 +1,62 @@
-//! Which effects explain the recordings: ways up from the calibration, effect by effect.
+//! Stepwise search from the calibration upwards, one effect at a time.
 
 use super::exchange::Exchange;
 use super::screening::{Screened, least_gain, screen};
 use super::way::{Bound, MOST_EFFECTS, Seen, Up, Way, climb, leaves_much, several_to_begin};
 use crate::diagnose::fit::{Fit, Placed, Problem, Variant};
 
-/// A model with the rivals that were refitted beside it.
+/// A model with the alternatives refitted beside it.
 #[derive(Clone, Debug)]
 pub struct Found {
     pub baseline: Fit,
     pub best: Fit,
-    /// For each effect of the best: the other effects tried in its place, refitted jointly; cheapest first.
+    /// For each effect of the best: the alternatives refitted in its place; cheapest first.
     pub rivals: Vec<Vec<Fit>>,
-    /// Chi² that the rivals' compares with: the best's beside which they were fitted, before it was given hypothetical terms.
+    /// Chi² to compare the alternatives with: of the best model as they were fitted, before hypothetical terms.
     pub rivals_against: f64,
-    /// What the baseline's residual promised of every effect.
+    /// Screening at the baseline.
     pub screened: Vec<Screened>,
-    /// For each effect of the best: laws of other shapes or at other places that explain as much in its place, the last effect of each.
+    /// For each effect of the best: other forms (shapes, places) that explain as much; the law is the last effect of
+    /// each.
     pub forms: Vec<Vec<Fit>>,
-    /// What predicts held-out runs worse than the calibration, or cannot be played: known, and not put into the scene.
+    /// The answer that was withheld because it predicts held-out runs worse than the calibration, or cannot be
+    /// simulated.
     pub withheld: Option<Box<Found>>,
 }
 
 impl Found {
-    /// Those of one effect.
+    /// Forms of one effect.
     pub fn forms_of(&self, effect: usize) -> &[Fit] {
         self.forms.get(effect).map_or(&[], Vec::as_slice)
     }
 
-    /// The same with these for the last effect, and none for the others.
+    /// The same with these forms for the last effect, and none for the others.
     pub fn with_last_forms(self, forms: Vec<Fit>) -> Self {
         let others = self.best.model.effects.len().saturating_sub(1);
         Self { forms: std::iter::repeat_n(Vec::new(), others).chain([forms]).collect(), ..self }
     }
 
-    /// Effects that were worth fitting.
+    /// Effects that were worth a fit.
     pub(super) fn known(&self) -> Vec<Placed> {
         let rivals = self.rivals.iter().flatten().filter_map(|f| f.model.effects.last());
         self.best.model.effects.iter().chain(rivals).cloned().collect()
     }
 }
 
-/// A search that has begun: where its way up stands, and what it has come by.
+/// A search under way.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Begun {
     baseline: Fit,
     way: Way,
     seen: Seen,
-    /// Effects that one knows to be worth something somewhere.
+    /// Effects that were useful somewhere.
     known: Vec<Placed>,
     screened: Vec<Screened>,
     is_new: bool,
 }
 
 impl Begun {
-    /// The best single effect beside the calibration.
+    /// Finds the best single effect.
     pub fn with_one(problem: &Problem, baseline: Fit, variants: &[Variant], say: &dyn Fn(String)) -> Self {
         let screening = screen(problem, &baseline, variants);
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
@@ -64,7 +66,7 @@ impl Begun {
         Self { baseline, way, seen, known: exchange.known, screened, is_new: true }
     }
 
-    /// From what a former search has found and known.
+    /// Continues from the result of an earlier search.
     pub fn again(
         problem: &Problem,
         (baseline, start): (Fit, Fit),
@@ -82,7 +84,7 @@ impl Begun {
         Self { baseline, way, seen: Seen::default(), known: exchange.known, screened, is_new: false }
     }
 
-    /// Goes on to so many effects one by one, and no further.
+    /// Continues to at most this many effects, one by one.
     pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
         let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let singly = Up { most, is_singly: true };
@@ -91,7 +93,7 @@ impl Begun {
         self
     }
 
-    /// What stands as far as it went.
+    /// The result so far.
     pub fn found(&self) -> Found {
         Found {
             baseline: self.baseline.clone(),
@@ -104,10 +106,10 @@ impl Begun {
         }
     }
 
-    /// Goes on to the end.
+    /// Continues to the end.
     ///
-    /// The way up is greedy. Where it ends with much left over it may have begun with the wrong effect: then the next best
-    /// beginnings are tried as well. Where a law outdoes two effects the way ends there.
+    /// The search is greedy. If it ends with much misfit, it may have started with the wrong effect, and the next best
+    /// starts are tried. It stops where a law outdoes two effects.
     pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
         let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();
@@ -143,11 +145,11 @@ impl Begun {
     }
 }
 
-/// Beginnings other than the best that are tried, and the share of its gain that makes one worth it.
+/// Other starts that are tried, and the share of the best gain that they need.
 const BEGINNINGS: usize = 2;
 const BEGINNING_WORTH: f64 = 0.3;
 
-/// The best fits with one effect that no way has come by, each effect once.
+/// The best fits with one effect that no path has visited, each effect once.
 fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
     let worth = baseline.cost - BEGINNING_WORTH * (baseline.cost - first.first().map_or(0.0, |f| f.cost));
     let mut others: Vec<Fit> = Vec::new();
@@ -160,7 +162,7 @@ fn other_beginnings(baseline: &Fit, first: &[Fit], seen: &Seen) -> Vec<Fit> {
     others
 }
 
-/// What was found with another best model, and the rivals of that.
+/// The result with another best model and its alternatives.
 pub(in crate::diagnose) fn converged(
     problem: &Problem,
     found: Found,

@@ -1,4 +1,4 @@
-//! One way up from a fit: effect by effect, or several at once.
+//! One greedy path: effect by effect, or several at once.
 
 use super::exchange::{Converged, Exchange, Stage, is_same};
 use super::refits::{
@@ -7,31 +7,32 @@ use super::refits::{
 use super::screening::{Screening, least_gain, screen};
 use crate::diagnose::fit::{Fit, Problem};
 
-/// At most this many effects in one answer.
+/// Maximum number of effects in one answer.
 pub(in crate::diagnose) const MOST_EFFECTS: usize = 4;
-/// Share of all that is explained below which one more effect may be no more than the others' laws being idealised.
+/// An effect below this share of the explained misfit may only absorb the model discrepancy of others.
 const LEAST_OF_ALL: f64 = 1e-3;
 
-/// One more effect explains this share of all that is explained, or that share of what was left over: laws that are
-/// idealised leave something that others imitate in part.
+/// An effect must explain this share of the explained misfit, or that share of the remaining one: model discrepancy of
+/// the other laws can be imitated in part.
 const FAIR_OF_ALL: f64 = 0.03;
 const FAIR_OF_LEFT: f64 = 0.75;
 
-/// Share of the misfit that is much.
+/// Share of the misfit that counts as much.
 const MUCH: f64 = 0.05;
 
-/// Whether a fit leaves much of what the baseline leaves.
+/// Whether a fit leaves much of the baseline's misfit.
 pub(in crate::diagnose) fn leaves_much(problem: &Problem, baseline: &Fit, best: &Fit) -> bool {
     let noise = problem.noise_cost();
     best.cost - noise > MUCH * (baseline.cost - noise) && best.cost - noise > least_gain(problem.samples())
 }
 
-/// A law that nobody listed against which the search for several effects is held: where it leaves little, they must leave less.
+/// An unlisted law that the search competes with: if it leaves little, several effects must leave less.
 #[derive(Clone, Copy)]
 pub(in crate::diagnose) struct Bound<'a>(pub Option<&'a Fit>);
 
 impl Bound<'_> {
-    /// Whether the law leaves less than several effects do, and not much. A single law is not compared with a single effect: it bends.
+    /// Whether the law leaves less than several effects, and little. It is not compared with single effects, because a
+    /// free shape always fits better.
     pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
         self.0.is_some_and(|law| {
             let is_simpler = [several, law].iter().any(|fit| fit.model.effects.len() > 1);
@@ -41,18 +42,18 @@ impl Bound<'_> {
     }
 }
 
-/// One greedy way up.
+/// One greedy path.
 #[derive(Clone)]
 pub(super) struct Way {
     pub best: Fit,
     pub rivals: Vec<Vec<Fit>>,
-    /// The refits with one effect, cheapest first, if it began with none.
+    /// Refits with one effect, cheapest first, if the path started from none.
     pub first: Vec<Fit>,
-    /// What the effects promise at `best`, where that is known.
+    /// Screening at `best`, if known.
     pub screening: Option<Screening>,
-    /// The refits with one effect more, where that has been tried and none does its share by itself.
+    /// Refits with one effect more, if none was accepted by itself.
     pub none_alone: Option<Vec<Fit>>,
-    /// Whether nothing that can be added helps.
+    /// Whether no addition helps.
     pub is_at_end: bool,
 }
 
@@ -62,7 +63,7 @@ impl Way {
     }
 }
 
-/// Where the ways of one search have been: another that comes there goes on as they did.
+/// Models visited by the paths of one search: another path that reaches one continues as the first did.
 #[derive(Clone, Default)]
 pub(super) struct Seen(Vec<Fit>);
 
@@ -71,13 +72,13 @@ impl Seen {
         self.0.iter().any(|other| is_same(other, fit))
     }
 
-    /// Whether a way has come further with as many effects.
+    /// Whether another path has reached a lower cost with as many effects.
     pub fn is_behind(&self, fit: &Fit) -> bool {
         let is_as_simple = |other: &&Fit| other.model.effects.len() <= fit.model.effects.len();
         self.0.iter().filter(is_as_simple).any(|other| other.cost < fit.cost)
     }
 
-    /// Whether no way has been here before; from now on one has.
+    /// Whether this model is new; records it.
     pub fn is_new(&mut self, fit: &Fit) -> bool {
         let is_new = !self.contains(fit);
         if is_new {
@@ -87,7 +88,7 @@ impl Seen {
     }
 }
 
-/// A way on which no single effect helped, begun with several at once; as it was where those do not help either.
+/// Starts a path with several effects at once if no single one helped; unchanged if that does not help either.
 pub(super) fn several_to_begin(exchange: &mut Exchange, mut way: Way, say: &dyn Fn(String)) -> Way {
     let least = least_gain(exchange.problem.samples());
     if let Some(next) = together(exchange, &way.best, &way.first, least, say) {
@@ -96,7 +97,7 @@ pub(super) fn several_to_begin(exchange: &mut Exchange, mut way: Way, say: &dyn 
     way
 }
 
-/// [`several_at_once`], and says so.
+/// [`several_at_once`], with a progress message.
 fn together(
     exchange: &mut Exchange,
     before: &Fit,
@@ -109,11 +110,11 @@ fn together(
     Some(next)
 }
 
-/// How far up a way goes.
+/// Limits of a path.
 #[derive(Clone, Copy)]
 pub(super) struct Up {
     pub most: usize,
-    /// Whether several effects at once, where none helps by itself, are left for later: they are the dearest step of all.
+    /// Whether to postpone adding several effects at once, the most expensive step.
     pub is_singly: bool,
 }
 
@@ -123,7 +124,8 @@ impl Up {
     }
 }
 
-/// Adds effect by effect, and settles after each, until nothing helps, a law outdoes them or another way has been there.
+/// Adds effects one by one and converges after each, until nothing helps, a law outdoes them, or the model was visited
+/// before.
 pub(super) fn climb(
     exchange: &mut Exchange,
     baseline: &Fit,
@@ -161,19 +163,19 @@ pub(super) fn climb(
     way
 }
 
-/// What comes of one effect more.
+/// Result of trying one effect more.
 enum Tried {
     Better(Converged),
-    /// None does its share by itself; with the refits of all that were tried, of which several together may.
+    /// None is accepted by itself; with the refits, of which several together may be.
     NoneAlone(Vec<Fit>),
 }
 
-/// Fall of chi² that is worth an effect beside a fit.
+/// Reduction of chi² that justifies one effect more.
 fn least_of(problem: &Problem, baseline: &Fit, best: &Fit) -> f64 {
     least_gain(problem.samples()).max(LEAST_OF_ALL * (baseline.cost - best.cost).max(0.0))
 }
 
-/// The best with one effect more, converged. `first` gets the refits where there was none before.
+/// The best model with one effect more, converged. `first` receives the refits if the model had none before.
 fn step_up(
     exchange: &mut Exchange,
     baseline: &Fit,
@@ -204,14 +206,14 @@ fn step_up(
     Tried::Better(Converged { best: winner, rivals: vec![rivals] })
 }
 
-/// Share of what is left over that several effects together must explain where none does its share by itself: nearly all of it, which
-/// effects that only imitate another's idealised law do not.
+/// Several effects together must explain this share of the remaining misfit: nearly all of it, which effects that only
+/// imitate a model discrepancy do not.
 const TOGETHER: f64 = 0.9;
-/// Misfit per sample, in units of the noise's variance, from which it is worth looking for several at once.
+/// Misfit per sample, in noise variances, from which several at once are tried.
 const MUCH_PER_SAMPLE: f64 = 0.3;
 
-/// Two effects or more that explain together what is left over, where none of them does its share by itself: the first that was found
-/// may stand for another, and then each of the others alone changes little. `None` if they do not, or not on runs left out.
+/// Adds two or more effects that explain the remaining misfit only together: if the first one found is a surrogate,
+/// each single addition changes little. `None` if they do not explain it, or fail on left-out data.
 fn several_at_once(exchange: &mut Exchange, before: &Fit, refits: &[Fit], least: f64) -> Option<Converged> {
     let problem = exchange.problem;
     let left = before.cost - problem.noise_cost();
@@ -233,7 +235,7 @@ fn several_at_once(exchange: &mut Exchange, before: &Fit, refits: &[Fit], least:
     }
 }
 
-/// Whether what one more effect explains is more than what another's idealised law may leave over.
+/// Whether one more effect explains more than model discrepancy could.
 fn explains_its_share(problem: &Problem, baseline_cost: f64, before: &Fit, after: &Fit) -> bool {
     let (gain, all) = (before.cost - after.cost, baseline_cost - after.cost);
     let left = before.cost - problem.noise_cost();

@@ -1,8 +1,9 @@
-//! Other places at which a law would do the same: what the sensors cannot tell apart.
+//! Alternatives at other places: what the sensors cannot distinguish.
 //!
-//! Where two places come out alike, the search stumbles on one of them. Along the runs of the model that was found signals are injected at
-//! every port; a slot whose curves imitate what the found effect does, all but what chance could make, the parameters of the calibration free,
-//! is another place for it: over the same variable, over none, or, of a law, over another that goes with it in these runs.
+//! When two places look alike, the search finds one of them by chance. Signals are therefore injected at every port
+//! along the runs of the answer. A slot is an alternative if a curve over its variable imitates what the effect does,
+//! up to chance and with the calibration free. Slots have the effect's variable, no variable, or, for laws, one that
+//! correlates with it in these runs.
 
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
@@ -10,17 +11,16 @@ use crate::diagnose::fit::{Fit, Placed, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, slots, variant};
 use crate::diagnose::verdict;
 
-/// Share of what an effect does that a slot's curve may leave, or so many times the chi² by which other models are as good: the curve is no
-/// law yet.
+/// A slot may miss this share of what the effect does, or this many ties of chi²: a curve is not yet a law.
 const LEFT_SHARE: f64 = 0.03;
 const LEFT_TIES: f64 = 3.0;
-/// Other places that are tried, at most so many over a variable at one address, in so many shapes each.
+/// Maximum number of slots refitted, per address, and shapes for each.
 const PLACES: usize = 10;
 const OF_ADDRESS: usize = 2;
 const SHAPES: usize = 3;
 
-/// Fits with a law at another place instead of the last effect of a fit, cheapest first: of those places that may do the same. Other models
-/// are as good within `tie` of chi².
+/// Rough fits with a law elsewhere in place of the last effect, cheapest first. Fits within `tie` of chi² are equally
+/// good.
 pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let Some(mut shown) = Shown::last_effect(problem, fit) else { return Vec::new() };
     let all = alike(problem, fit);
@@ -38,7 +38,7 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     shown.refits(&all, &places, SHAPES)
 }
 
-/// The first slots, a few of each address; one of each address comes before a second.
+/// The first slots, a few per address; first ones of all addresses come before second ones.
 fn some_of_each<'a>(slots: impl Iterator<Item = &'a Slot>) -> Vec<&'a Slot> {
     let mut ranked: Vec<(usize, &Slot)> = Vec::new();
     for slot in slots {
@@ -53,7 +53,7 @@ fn some_of_each<'a>(slots: impl Iterator<Item = &'a Slot>) -> Vec<&'a Slot> {
     ranked.into_iter().map(|(_, slot)| slot).take(PLACES).collect()
 }
 
-/// Whether a slot is where the last effect of a fit acts, over what that depends on.
+/// Whether a slot has the port and variable of the last effect.
 fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
     let is_listed_there = |e: &Placed| {
         let is_over = e.spec().variables.contains(&slot.variable) && slot.reading == Reading::Plain;
@@ -63,7 +63,7 @@ fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
     is_law_of(fit, slot) || fit.model.effects.last().is_some_and(is_listed_there)
 }
 
-/// The shape of a fit's last law, which is one of this slot, and its scale.
+/// The shape of the last law of a fit, if it belongs to this slot, and its scale.
 fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f64)> {
     let last = fit.model.effects.len().checked_sub(1)?;
     let law = &fit.model.effects[last].spec().unlisted()?.law;
@@ -78,9 +78,9 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
     Some((shape, values[scale]))
 }
 
-/// Every slot over a variable or none, and those whose law remembers or multiplies as the last effect of a fit does. For an effect of the
-/// catalogue those over its own variables and over none must do: beside it a law counts little. Of one that remembers it is not known how a
-/// law would.
+/// Candidate slots: all plain ones, and those with the same kind of memory or product as the last effect. For effects
+/// of the catalogue only their own variables and constants, since a law has a low prior beside them; for those with
+/// memory, any law with memory over their variables.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
     let mut plain = slots(problem.case, fit, Reach::Plain);
     let Some(last) = fit.model.effects.last() else { return Vec::new() };
@@ -113,7 +113,8 @@ mod tests {
     use crate::effects::{Element, find};
     use crate::scene::Override;
 
-    /// A syringe that gives more, answered with the line's compliance times a number: the syringe's does the same, and nothing in the muscle.
+    /// A softer syringe, answered by a factor of the line's compliance: the syringe's compliance is an alternative,
+    /// nothing in the muscle is.
     #[test]
     fn a_mere_number_has_other_places() {
         let softer = Override::parse("hydraulics.upstream_compliance_m3_pa=9e-15").expect("a key");
@@ -138,7 +139,7 @@ mod tests {
             |fit: &Fit| fit.model.effects.last().map(verdict::port).is_some_and(|p| p.starts_with("muscle"));
         assert!(answered.cost < baseline.cost - 1000.0 && !others.iter().any(is_in_muscle));
     }
-    /// Of what remembers are asked laws that do as well, over its own variables; of what does not, none.
+    /// Laws with memory are alternatives only to effects with memory, over the same variables.
     #[test]
     fn only_what_remembers_has_places_that_do() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);

@@ -1,4 +1,4 @@
-//! Which of several fits are equally good, which of them stands, and which an answer names beside it.
+//! Chooses among equally good fits, and the alternatives that an answer names.
 
 use rayon::prelude::*;
 
@@ -9,20 +9,20 @@ use crate::diagnose::verdict::{self, misfit};
 
 /// Fits are called equally good within so many units of chi²: odds of one to twenty.
 pub(in crate::diagnose) const SAME: f64 = 6.0;
-/// Two laws of one place whose chi² differ by no more are one.
+/// Two laws at one place whose chi² differ by no more are the same law in other words.
 const SAME_LAW: f64 = 0.01;
-/// Rough fits are fitted to the end within so many times what makes fits equally good.
+/// Rough fits are converged if they lie within this many ties of the best.
 const NEARLY: f64 = 20.0;
-/// A rough fit leaves at most so many times what it leaves when it is fitted to the end.
+/// A rough fit leaves at most this many times what the converged one leaves.
 const STILL_TO_COME: f64 = 2.0;
-/// Standard errors from which what is left is more than noise.
+/// Significance of the remaining misfit, standard errors.
 const SEEN: f64 = 3.0;
-/// What a letter of a law costs among forms that are equally good, in units of the criterion.
+/// Price per letter of a law among equally good forms, in units of the criterion.
 const PER_LETTER: f64 = 0.02;
-/// Forms that an answer names beside its own, at most.
+/// Maximum number of alternatives named.
 const MOST_FORMS: usize = 4;
 
-/// Schwarz's criterion in units of what the best of several models leaves: `chi² / dispersion + parameters ln(samples)`.
+/// Schwarz's criterion with the dispersion of the best of several models: `chi² / dispersion + parameters ln(samples)`.
 pub(super) struct Criterion {
     dispersion: f64,
     per_parameter: f64,
@@ -40,15 +40,15 @@ impl Criterion {
     }
 }
 
-/// Whether a fit leaves more than noise, and more than a search would still take up.
+/// Whether a fit leaves more than noise, and enough for a search to act on.
 pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })
 }
 
-/// A fit with a law, and those with one at another place that does the same and may be named, fitted to the end. Where one of these is
-/// better, what does the same as that too: at the first place it may have another shape. `before` is the chi² without it.
+/// A fit with a law, and the converged fits with a law elsewhere that does the same. If one of these is better, also
+/// the alternatives to that one, which may bring another shape at the first place. `before`: chi² without the law.
 pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
     let others = |fit: &Fit| -> Vec<Fit> {
         let tie = tie(open, fit, before);
@@ -64,8 +64,8 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
     fits
 }
 
-/// Rough fits, cheapest first, of which the best, so many at most, are fitted to the end where they may come near the first of them;
-/// `before` is the chi² without what they have in common.
+/// Converges up to `most` of the best rough fits, if they may come near the first. `before`: chi² without their last
+/// effect.
 pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before: f64) -> Vec<Fit> {
     let to_the_end = |fit: &Fit| open.fit(&fit.model, &fit.x).filter(|f| f.cost < fit.cost);
     let Some(first) = rough.first_mut() else { return rough };
@@ -85,13 +85,14 @@ pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before:
     rough
 }
 
-/// Chi² within which other models are as good as one; `before` is the chi² without its last effect.
+/// Models within this chi² are equally good. `before`: chi² without the last effect.
 pub(super) fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
     let left = misfit::left(open, fit).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
     SAME * verdict::unit(before - fit.cost, left)
 }
 
-/// Of fits, cheapest first, those that the data cannot tell apart: the simplest, and the others. `before` is the chi² without them.
+/// The simplest of the fits that the data cannot distinguish, and the others. Fits cheapest first; `before`: chi²
+/// without them.
 pub(in crate::diagnose) fn equally_good(open: &Problem, fits: &[Fit], before: f64) -> Option<(Fit, Vec<Fit>)> {
     let first = fits.first()?;
     let criterion = Criterion::of(open, [first]);
@@ -102,8 +103,8 @@ pub(in crate::diagnose) fn equally_good(open: &Problem, fits: &[Fit], before: f6
     Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
 }
 
-/// Of fits that are as good as another, best first, those that an answer names: one on every other element first, then one at every
-/// other place, then other shapes. What the sensors cannot tell apart comes before how it may be written.
+/// The alternatives that an answer names: one on every other element first, then one at every other place, then other
+/// shapes. What sensors cannot distinguish matters more than how it is written.
 pub(super) fn other_forms<'a>(best: &Fit, same: impl Iterator<Item = &'a Fit>) -> Vec<Fit> {
     let same: Vec<&Fit> = same.filter(|f| f.model.effects != best.model.effects).collect();
     let mut named = vec![best];
@@ -126,7 +127,7 @@ fn is_at_another_place(own: &Fit, other: &Fit) -> bool {
     place(own) != place(other)
 }
 
-/// Whether it is not the same law in other words: `abs(time_s)` is `time_s`.
+/// Whether it is more than the same law in other words (`abs(time_s)` and `time_s`).
 fn is_another_law(own: &Fit, other: &Fit) -> bool {
     is_at_another_place(own, other) || (own.cost - other.cost).abs() > SAME_LAW
 }
@@ -137,13 +138,13 @@ fn element(fit: &Fit) -> Option<String> {
     Some(last.spec().unlisted().map_or_else(|| last.element.to_string(), |own| own.law.address.element()))
 }
 
-/// Where the last effect of a fit acts, and on what it depends.
+/// Port and variables of the last law of a fit.
 fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
     let law = &fit.model.effects.last()?.spec().unlisted()?.law;
     Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
 }
 
-/// Length of the last effect's law as text: of forms that do the same the shorter stands.
+/// Length of the last law as text; of equivalent forms the shorter one is chosen.
 fn letters(fit: &Fit) -> usize {
     fit.model.effects.last().map_or(0, |e| e.spec().equation.len())
 }
@@ -157,8 +158,8 @@ mod tests {
     use crate::diagnose::fit::{Model, Placed};
     use crate::effects::{Element, ElementKind, find};
 
-    /// Recordings without anything hidden or any noise: whatever is fitted to the end leaves nothing, and whatever cannot come near the first is
-    /// left as it was, as are those beyond the most that are asked for.
+    /// Noise-free recordings with nothing hidden: every converged fit leaves nothing. Fits that cannot come near the
+    /// first, or are beyond `most`, stay rough.
     #[test]
     fn rough_fits_that_may_come_near_the_first_are_fitted_to_the_end() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);

@@ -1,9 +1,9 @@
-//! What the recordings say of a law, whatever its shape.
+//! Non-parametric estimate of a law.
 //!
-//! Along the runs of the fit with the law, corrections that go straight from knot to knot of its variable are fitted to what is left, with every
-//! number of the fit free but the law's own (linear in all of them). Where the law has the right shape they are none; where it
-//! has not, they show how it bends. A knot is as far from the law as the law is high, give or take, before anything is known: where nothing was
-//! measured it stays there.
+//! Piecewise linear corrections over the law's variable are fitted to the residual, linearised along the runs, with
+//! every parameter of the fit free except those of the law. If the law has the right shape, they vanish; otherwise they
+//! show how it deviates. Their prior deviation is the height of the law, so a knot where nothing was measured stays on
+//! it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,12 +15,12 @@ use crate::diagnose::grammar::{Action, injected, places};
 use crate::laws::{Acts, Address, Law, Port};
 use crate::system::Signals;
 
-/// Knots over what was visited.
+/// Number of knots over the visited range.
 const KNOTS: usize = 9;
 /// Half a 95 % interval, in standard deviations.
 const HALF: f64 = 1.96;
 
-/// The freehand curve behind that of an effect of a fit; none where its law acts on what a channel shows, or nothing can be said.
+/// The freehand curve of one effect of a fit. `None` for laws on sensors, or if nothing can be said.
 pub(in crate::diagnose) fn freehand(problem: &Problem, fit: &Fit, at: usize, curve: &Curve) -> Option<Freehand> {
     let law = &fit.model.effects[at].spec().unlisted()?.law;
     if law.address.port == Port::Sensor {
@@ -59,14 +59,14 @@ pub(in crate::diagnose) fn freehand(problem: &Problem, fit: &Fit, at: usize, cur
     y.iter().all(|y| y.is_finite()).then_some(Freehand { x, y, low, high })
 }
 
-/// Corrections and their covariance if their mean is none: the level of what scales is a number of the calibration.
+/// Corrections with zero mean, and their covariance: the mean of a law that scales is absorbed by the calibration.
 fn about_its_level(off: &DVector<f64>, covariance: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let with_mean = covariance.column_sum();
     let of_mean = with_mean.sum();
     (off - &with_mean * (off.sum() / of_mean), covariance - &with_mean * with_mean.transpose() / of_mean)
 }
 
-/// A law at its place, or on each of the equal elements that it is on, with a law there whose only number is what acts.
+/// One constant law at the place of a law, or on each equal element that it acts on.
 fn parts(problem: &Problem, law: &Law) -> Option<Vec<(Law, Placed)>> {
     let all = places(problem.case);
     let own = law.address.to_string();
@@ -86,7 +86,8 @@ fn parts(problem: &Problem, law: &Law) -> Option<Vec<(Law, Placed)>> {
     addresses.into_iter().map(part).collect()
 }
 
-/// For each knot what a unit there does to all that was measured: `hat` is its share of that at a value of the variable.
+/// For each knot, the response of all measured channels to a unit value there; `hat` is the knot's share at a value of
+/// the variable.
 fn signatures(
     problem: &Problem,
     fit: &Fit,
@@ -133,7 +134,7 @@ fn in_run(
     (0..KNOTS).map(of_knot).collect()
 }
 
-/// What all parameters but those of an effect, and the free zeros, can imitate where signals say something; what is left there without that.
+/// Basis of what the other parameters and the free zeros can imitate in the linear range, and the residual without it.
 fn others(problem: &Problem, fit: &Fit, at: usize, linear: &[bool]) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let rows = problem.rows_of(fit)?;
     let calibration = problem.case.parameters.len();

@@ -1,4 +1,4 @@
-//! Step 6: what the catalogue does not explain, as laws that the grammar proposes. They are found on the open runs alone.
+//! Step 6: explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
 
 use rayon::prelude::*;
 
@@ -13,55 +13,56 @@ use crate::diagnose::search::{
 };
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 
-/// Laws in one answer, at most.
+/// Maximum number of laws in one answer.
 const MOST_LAWS: usize = 2;
 /// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
-/// By so much the criterion of an answer with a law must be lower than that of an answer of the catalogue alone.
+/// An answer with a law replaces one of the catalogue if its criterion is lower by this much.
 pub(super) const CLEARLY: f64 = 20.0;
-/// A model with a law, and the others that are as good.
+/// A model with a law, and the equally good alternatives.
 #[derive(Clone)]
 pub(in crate::diagnose) struct Lawful {
     pub best: Fit,
     pub forms: Vec<Fit>,
 }
 
-/// What one law makes of the recordings before the catalogue has tried several effects.
+/// Result of trying one law before several effects of the catalogue.
 pub(in crate::diagnose) enum OneLaw {
-    /// It explains all that is more than noise, clearly better than any single effect. With the noise that it leaves.
+    /// One law explains everything above noise, and clearly better than any single effect. With the noise estimated
+    /// from its residual.
     All(Box<Found>, Vec<Noise>),
-    /// It does not, or was not asked for.
+    /// It does not, or the step was left out.
     Part(Box<Tried>),
 }
 
-/// Laws proposed beside the calibration.
+/// Laws proposed on top of the calibration.
 #[derive(Default)]
 pub(in crate::diagnose) struct Known {
     pub plain: Option<Proposals>,
-    /// Single laws that remember, multiply or bend otherwise.
+    /// Single laws with memory, with products of variables, or of wider shapes.
     pub wide: Option<Proposals>,
-    /// Second laws, and the law that they are beside.
+    /// Second laws, and the first law that they accompany.
     pub second: Option<(Vec<Placed>, Proposals)>,
 }
 
-/// What has been tried with one law, for later.
+/// Results for one law, kept for later.
 #[derive(Default)]
 pub(in crate::diagnose) struct Tried {
     pub known: Known,
     /// The best law that is clearly better than any single effect.
     pub law: Option<Fit>,
-    /// The law in the place of the best single effect, or beside it, however much that leaves.
+    /// The law that replaces or accompanies the best single effect, whatever it leaves.
     pub instead: Option<Lawful>,
 }
 
 impl Known {
-    /// What was proposed beside this law.
+    /// Proposals to accompany this law.
     fn beside(&mut self, law: &Fit) -> Option<Proposals> {
         self.second.take_if(|(own, _)| *own == law.model.effects).map(|(_, proposals)| proposals)
     }
 }
 
-/// Looks for one law in the place of the best single effect, where that leaves more than noise.
+/// Searches for one law to replace the best single effect, if that effect leaves more than noise.
 pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
     let nothing = OneLaw::Part(Box::default());
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
@@ -95,7 +96,7 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     }
 }
 
-/// What explains all, with the weights and steps that it asks for; none where it leaves more than noise then.
+/// Refits a complete explanation with renewed weights and steps. `None` if it then leaves more than noise.
 pub(super) fn renewed(
     case: &mut Case,
     noise: &[Noise],
@@ -113,8 +114,8 @@ pub(super) fn renewed(
     Some((found, noise))
 }
 
-/// One law in the place of the best single effect, or beside it where that is not needless then. Where much is missing derivatives at the
-/// calibration alone point anywhere; the effect, wrong as it may be, has brought the model nearer to what was measured.
+/// One law that replaces the best single effect, or accompanies it if both are needed. With a large misfit, derivatives
+/// at the calibration point nowhere; even a wrong effect brings the model nearer to the measurement.
 fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful> {
     if found.best.model.effects.is_empty() {
         return None;
@@ -125,8 +126,8 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
     Some(Lawful { best, forms })
 }
 
-/// Whether a fit with a law is clearly better than what was found, and predicts better what it was not fitted to. Beside what the
-/// catalogue explains a law must predict whole runs left out better than that does by itself.
+/// Whether a fit with a law is clearly better than the answer and cross-validates better. An effect of the catalogue is
+/// replaced only if the law predicts whole left-out runs better.
 pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
     let criterion = Criterion::of(open, [&found.best, lawful]);
     let predicts = || match found.best.model.effects.is_empty() {
@@ -137,7 +138,7 @@ pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> 
 }
 
 impl Lawful {
-    /// What was found with the law in its place.
+    /// The answer with the law in its place.
     pub fn beside(self, found: &Found) -> Found {
         let rivals = vec![Vec::new(); self.best.model.effects.len()];
         let found = Found { rivals_against: self.best.cost, best: self.best, rivals, ..found.clone() };
@@ -145,8 +146,8 @@ impl Lawful {
     }
 }
 
-/// What laws make of what was found: one alone or two, or one beside the catalogue's effects, or nothing. `tried`: what one law came to
-/// before several effects were tried.
+/// Improves the answer by laws: one alone, two, or one beside effects of the catalogue. `tried`: earlier results for
+/// one law.
 pub(in crate::diagnose) fn weigh_laws(
     case: &Case,
     noise: &[Noise],
@@ -190,7 +191,7 @@ pub(in crate::diagnose) fn weigh_laws(
     Some(best.beside(found))
 }
 
-/// The same with weights and steps that the law asks for: the law and the forms beside it are fitted and chosen anew.
+/// Renews weights and steps for the law, then refits and chooses among it and its alternatives.
 pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Found) -> (Found, Vec<Noise>) {
     let former = case.runs.clone();
     let Some(renewed) = reweight::renew(case, noise, &found) else {
@@ -212,13 +213,13 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
     (found, renewed.noise)
 }
 
-/// Whether a fit leaves so little of the misfit that no further law is looked for.
+/// Whether a fit leaves too little of the misfit to search for another law.
 fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     let noise = open.noise_cost();
     fit.cost - noise < EXPLAINED * (baseline.cost - noise)
 }
 
-/// The search for laws in the place of what was found, or beside it where that leaves more than noise (`is_open`).
+/// Searches for laws that replace the answer, or accompany it if it leaves more than noise (`is_open`).
 struct Search<'a> {
     open: &'a Problem<'a>,
     found: &'a Found,
@@ -227,12 +228,13 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Adds laws to a fit; `known` were proposed with other weights.
+    /// Adds laws to a fit. `known` were proposed with other weights.
     fn from(&self, from: &Fit, known: Known) -> Option<Lawful> {
         self.add_laws(from.clone(), None, known)
     }
 
-    /// Goes on from a law that was found with other weights: fitted anew, held against others that do the same, and one more beside it.
+    /// Continues from a law found with other weights: refits it, compares it with alternatives elsewhere, and tries one
+    /// more beside it.
     fn go_on(&self, own: Lawful) -> Option<Lawful> {
         let open = self.open;
         let fit = open.fit(&own.best.model, &own.best.x)?;
@@ -248,7 +250,7 @@ impl Search<'_> {
         self.add_laws(best.clone(), Some(Lawful { best, forms }), Known::default())
     }
 
-    /// Adds laws one by one, as long as much is left.
+    /// Adds laws one by one while much of the misfit remains.
     fn add_laws(&self, mut here: Fit, mut lawful: Option<Lawful>, mut known: Known) -> Option<Lawful> {
         let open = self.open;
         for _ in usize::from(lawful.is_some())..self.most() {
@@ -275,20 +277,20 @@ impl Search<'_> {
         lawful
     }
 
-    /// Laws, at most: in the place of effects that leave nothing fewer than these are, or there is nothing in it.
+    /// Maximum number of laws: fewer than the effects they replace, if those leave nothing.
     fn most(&self) -> usize {
         let fewer = self.found.best.model.effects.len().saturating_sub(1).max(1);
         if self.is_open { MOST_LAWS } else { fewer.min(MOST_LAWS) }
     }
 
-    /// Whether laws that remember or bend otherwise are worth trying. Beside effects that leave nothing they are where the same law
-    /// without memory explains nearly all.
+    /// Whether to try laws with memory or of wider shapes. If the effects leave nothing, only where the same law
+    /// without memory explains nearly everything.
     fn may_be_wider(&self, plain: &Fit) -> bool {
         self.is_open || !leaves_much(self.open, &self.found.baseline, plain)
     }
 }
 
-/// A fit and its forms without the effects that the law which came last, as it now stands, has made needless.
+/// Removes the effects that the last law has made redundant, from a fit and its alternatives.
 pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -> (Fit, Vec<Fit>) {
     let without = |fit: &Fit, i: usize| open.fit(&fit.model.without(i), &open.start_without(fit, i));
     let least = least_gain(open.samples());
@@ -303,7 +305,7 @@ pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -
     }
 }
 
-/// Fits with laws that remember, multiply or bend otherwise in the place of plain ones, where they are clearly better; cheapest first.
+/// Replaces plain laws by ones with memory, products or wider shapes where these are clearly better. Cheapest first.
 fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>, say: &dyn Fn(String)) -> Vec<Fit> {
     let wide = known.map(|wide| wide.again(open)).or_else(|| propose(open, from, Reach::Wide, say));
     let Some(wide) = wide else { return plain };

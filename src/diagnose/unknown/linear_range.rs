@@ -1,9 +1,9 @@
-//! Where along a fitted model's runs what is small stays small.
+//! Finds the samples of a fitted model's runs at which small signals stay small.
 //!
-//! Signals at ports are followed by derivatives along the runs. Where a cable goes slack, a rod meets a stop or a joint comes to rest in a
-//! dead zone, derivatives are those of that very course: a little earlier or later it would have ended elsewhere. There they say nothing of what
-//! a law of any size does. Something steady at a few ports is followed twice, by derivatives and by differences of a size that is plain to
-//! see; samples at which the two have nothing in common are not looked at.
+//! Responses to signals are derivatives along the runs. Where a cable goes slack, a rod meets a stop or a joint rests
+//! in a dead zone, derivatives describe that very trajectory; a slightly different one would end elsewhere, and they
+//! say nothing of a law of finite size. The response to a constant signal at a few ports is therefore computed twice,
+//! by derivatives and by finite differences. Samples at which they disagree are excluded.
 
 use std::borrow::Cow;
 
@@ -17,15 +17,16 @@ use crate::effects::Effect;
 use crate::laws::Port;
 use crate::system::{Change, RomSetting};
 
-/// Ports at which something steady is asked for.
+/// Ports of the constant signals.
 const ASKED: [Port; 3] = [Port::Pull, Port::Outflow, Port::Torque];
-/// Share of what is plain to see by which differences are taken.
+/// Step of the differences, relative to a clearly visible signal.
 const STEP: f64 = 0.1;
-/// Derivatives and differences have nothing in common where they differ by more than their size, at a sample or throughout.
+/// Derivatives and differences disagree if they differ by more than this share of their size, at the sample or overall.
 const NOTHING_IN_COMMON: f64 = 1.0;
 
-/// Whether derivatives say something at each row of a problem, in the order of [`Problem::rows`]. Ports are asked one after the other, the
-/// best followed first, as long as half of the rows are left: what one of them says everywhere of a joint that is free says little of the others.
+/// Whether derivatives are valid at each row of a problem, in the order of [`Problem::rows`]. Ports are applied in
+/// order of agreement while half of the rows remain: disagreement everywhere at one port, on a free joint, says little
+/// of the others.
 pub(super) fn linear_rows(problem: &Problem, fit: &Fit) -> Vec<bool> {
     let all = places(problem.case);
     let asked: Vec<&Place> =
@@ -49,7 +50,7 @@ fn count(linear: &[bool]) -> usize {
     linear.iter().filter(|linear| **linear).count()
 }
 
-/// For each port the rows of one run; where something cannot be followed at all, nothing is held against it.
+/// Valid rows of one run, by port. All rows if a response cannot be computed.
 fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, asked: &[&Place]) -> Vec<Vec<bool>> {
     let setting = fit.model.setting(problem.case, run, &fit.x);
     let at: Vec<Effect<f64>> = asked.iter().map(|place| place.injected.with(&[0.0])).collect();
@@ -74,27 +75,27 @@ fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, asked: &[&Place]) -> Vec<
     asked.iter().enumerate().map(of_port).collect()
 }
 
-/// By what the second of two runs differs from the first; none where one of them diverges.
+/// Difference of two simulations; `None` if one diverges.
 fn difference(two: &[Option<Change>]) -> Option<Change> {
     let [Some(first), Some(second)] = two else { return None };
     let of_channel = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| b - a).collect();
     Some(first.iter().zip(second).map(of_channel).collect())
 }
 
-/// The rows of a column at which signals say something; nothing in the others.
+/// A column with the excluded rows set to zero.
 pub(super) fn where_linear(mut column: DVector<f64>, linear: &[bool]) -> DVector<f64> {
     column.iter_mut().zip(linear).filter(|(_, linear)| !**linear).for_each(|(x, _)| *x = 0.0);
     column
 }
 
-/// Columns at right angles that span what these can imitate where signals say something.
+/// Orthonormal basis of columns in the linear range.
 pub(super) fn basis(free: impl Iterator<Item = DVector<f64>>, linear: &[bool], rows: usize) -> DMatrix<f64> {
     let there = free.map(|column| where_linear(column, linear));
     let free: Vec<DVector<f64>> = there.filter(|column| column.norm_squared() > 0.0).collect();
     if free.is_empty() { DMatrix::zeros(rows, 0) } else { DMatrix::from_columns(&free).qr().q() }
 }
 
-/// What a change does to all that was measured in a run, in units of the noise, whatever the zeros.
+/// Change of all measured samples of a run, in units of the noise, free zeros ignored.
 pub(super) fn in_noise(problem: &Problem, run: &CaseRun, change: &Change, size: f64) -> Vec<f64> {
     let channels = problem.case.channels.iter().enumerate();
     let each = channels.flat_map(|(c, channel)| {
@@ -110,7 +111,7 @@ mod tests {
     use crate::diagnose::fit::Model;
     use crate::scene::Override;
 
-    /// At how many of all rows derivatives say something of a scene with some parameters changed.
+    /// Number of valid rows, and of all rows, for a scene with changed parameters.
     fn of(scene: &str, set: &[&str], inputs: &[&str], outputs: &[&str]) -> (usize, usize) {
         let set: Vec<Override> = set.iter().map(|text| Override::parse(text).expect("one")).collect();
         let case = made::recorded_for(scene, [&set, &set], inputs, outputs);
@@ -122,7 +123,8 @@ mod tests {
         (count(&linear), linear.len())
     }
 
-    /// A bench has no place where it would be free. A pulley whose cables both hang is: where it comes to rest there is that run's own.
+    /// A bench is linear everywhere. A pulley with both cables slack is not: where it comes to rest belongs to that
+    /// run.
     #[test]
     fn what_is_free_is_not_looked_at() {
         let (linear, all) = of("muscle_bench", &[], &["plunger_mm"], &["elongation_mm", "pressure_kpa"]);

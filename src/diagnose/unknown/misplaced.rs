@@ -1,7 +1,7 @@
-//! Effects that stand where nothing is missing.
+//! Removes surrogates: effects placed where nothing is missing.
 //!
-//! Left out of an answer, an effect leaves a misfit. Where something unknown at another place makes that far likelier than anything at the
-//! effect's own, and likelier than the effect makes it, the effect only stands in for it.
+//! Leaving an effect out of the answer leaves a misfit. The effect is a surrogate if an unknown signal at another place
+//! makes that misfit far more likely than a signal at the effect's own place, and more likely than the effect does.
 
 use super::forms::{Criterion, equally_good};
 use super::hypothesis::{CLEARLY, Lawful, without_idle};
@@ -13,7 +13,7 @@ use crate::diagnose::latent::{Latent, is_behind, latents};
 use crate::diagnose::search::Found;
 use crate::diagnose::verdict;
 
-/// What was found with a law at a likelier place instead of one of its effects, where that is clearly better.
+/// Replaces one effect of the answer by a law at a more likely place, if that is clearly better.
 pub(in crate::diagnose) fn exchanged(
     case: &Case,
     noise: &[Noise],
@@ -29,7 +29,7 @@ pub(in crate::diagnose) fn exchanged(
     listed.map(|(index, _)| index).find_map(|index| elsewhere(&open, found, index, say))
 }
 
-/// The same for one of them.
+/// The same for one effect.
 fn elsewhere(open: &Problem, found: &Found, index: usize, say: &dyn Fn(String)) -> Option<Found> {
     let own = &found.best.model.effects[index];
     let others = found.best.model.effects.len() - 1;
@@ -51,7 +51,7 @@ fn elsewhere(open: &Problem, found: &Found, index: usize, say: &dyn Fn(String)) 
     is_better.then(|| Lawful { best, forms }.beside(found))
 }
 
-/// Whether something unknown at the likeliest place makes what an effect leaves out likelier than the effect does.
+/// Whether an unknown signal at the most likely place explains what an effect leaves out better than the effect does.
 fn is_likelier(open: &Problem, latents: &[Latent], bare: &Fit, with: &Fit) -> bool {
     let parameters = with.model.effect_parameters() - bare.model.effect_parameters();
     let explained = bare.cost - with.cost - parameters as f64 * (open.samples() as f64).ln();
@@ -68,7 +68,7 @@ mod tests {
 
     const CHANNELS: [&str; 2] = ["elongation_mm", "pressure_kpa"];
 
-    /// What stands for an error of the pressure gauge's gain: `None` where it stays.
+    /// What replaces a gain error of the pressure gauge; `None` if it stays.
     fn instead_of_a_gain(mut case: Case) -> Option<String> {
         case.parameters.clear();
         let noise = [0.01, 1.0].map(Noise::white);
@@ -86,8 +86,8 @@ mod tests {
         Some(format!("{} over {:?}", verdict::port(last), last.spec().variables))
     }
 
-    /// A muscle whose bore grows has its pressure fall behind: a gain of the gauge does some of it, and gives way. A gauge that is
-    /// off keeps it.
+    /// With a growing bore the pressure lags: a gain of the gauge explains part of it and is replaced. A real gain
+    /// error stays.
     #[test]
     fn an_effect_gives_way_to_a_law_where_something_is_missing() {
         let grows = Override::parse("muscles.tube.area_growth_1_m=4.0").expect("a key");

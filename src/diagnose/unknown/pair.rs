@@ -1,4 +1,4 @@
-//! Two things at once of which the catalogue holds one or none: a law with a listed effect beside it, or with a second law.
+//! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
 use super::forms::{equally_good, leaves_something};
 use super::hypothesis::{Lawful, Tried, is_clearly_better, renewed, without_idle};
@@ -8,21 +8,22 @@ use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{Found, beside, leaves_much};
 
-/// Share of what a law leaves that its partner must explain: each of two is fitted as if it were alone at first, and still explains much.
+/// A partner must explain this share of what the law leaves: each of the two is first fitted as if alone and still
+/// explains much.
 const LEAST_SHARE: f64 = 1.0 / 3.0;
 
-/// What two things make of the recordings.
+/// Result of trying two causes.
 pub(in crate::diagnose) enum Pair {
-    /// A law with its partner explains all that is more than noise. With the noise that it leaves.
+    /// A law with its partner explains everything above noise. With the noise estimated from its residual.
     All(Box<Found>, Vec<Noise>),
-    /// The laws only stood for two effects of the catalogue that leave little: the search goes on from there.
+    /// The laws were surrogates for two effects of the catalogue that leave little: the search continues from there.
     Listed(Fit, Box<Tried>),
     /// Neither.
     Part(Box<Tried>),
 }
 
-/// Looks for a law with something beside it, where the best listed effects leave much. What does best beside the best single law
-/// is its partner; beside that the law is sought anew, since alone it had to stand for both.
+/// Searches for a law with a partner if the best listed effects leave much. The partner is what does best beside the
+/// best single law; the law is then searched anew beside the partner, because alone it had to represent both.
 pub(in crate::diagnose) fn pair(
     case: &mut Case,
     noise: &[Noise],
@@ -72,15 +73,15 @@ pub(in crate::diagnose) fn pair(
     Pair::Part(Box::new(tried))
 }
 
-/// The best of proposals, where it leaves nothing and is clearly better than what was found.
+/// The best proposal, if it leaves nothing above noise and is clearly better than the answer.
 fn explains_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<Lawful> {
     let (best, forms) = equally_good(open, &proposals.fits, found.baseline.cost)?;
     let is_all = !leaves_something(open, &best) && is_clearly_better(open, found, &best);
     is_all.then_some(Lawful { best, forms })
 }
 
-/// Of two things, the same with an effect of the catalogue in the place of a law, where that leaves little. It is sought where the law
-/// has brought the model: fitted without it the other two, calibration and partner, would stand for it.
+/// Replaces one of two laws by an effect of the catalogue if that leaves little. The effect is fitted where the law has
+/// brought the model; otherwise calibration and partner would absorb it.
 fn listed_instead(open: &Problem, baseline: &Fit, two: &Fit, variants: &[Variant]) -> Option<Fit> {
     if two.model.effects.len() != 2 {
         return None;
@@ -95,13 +96,13 @@ fn listed_instead(open: &Problem, baseline: &Fit, two: &Fit, variants: &[Variant
     laws.filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// The same with the law behind the listed effect, where it stands before it: forms are of the last.
+/// Moves the law behind the listed effect: alternatives belong to the last effect.
 fn law_last(fit: &Fit) -> Option<Fit> {
     let [law, listed] = &fit.model.effects[..] else { return None };
     (law.entry.hypothetical && !listed.entry.hypothetical).then(|| fit.with_last(0))
 }
 
-/// A law that leaves much with what does best beside it; none where that does little.
+/// A law that leaves much, with its best partner. `None` if the partner does little.
 fn with_partner(
     open: &Problem,
     (baseline, law): (&Fit, &Fit),

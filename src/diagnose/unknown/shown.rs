@@ -1,4 +1,5 @@
-//! Signals injected at the ports of a fitted model: how much of a misfit a law at each of them could explain, whatever its shape.
+//! Injects small signals at the ports of a fitted model: how much of the misfit could a law at each port explain,
+//! whatever its shape?
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -13,22 +14,22 @@ use crate::laws::{Address, Port};
 use crate::recording::parse_column;
 use crate::system::{Change, Signals};
 
-/// Scales of a shape that are tried, in those of the slot.
+/// Scales tried for a shape, relative to the slot's.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
-/// Steps that every refit takes, how many of the refits go on, and for how many steps more.
+/// Steps of every refit; number of refits that continue, and their further steps.
 const FIRST_STEPS: usize = 4;
 const GOING_ON: usize = 8;
 const MORE_STEPS: usize = 20;
 
-/// A slot with the share of the misfit that a curve over its variable could explain.
+/// A slot, and how much a curve over its variable could explain.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Located {
     pub slot: Slot,
-    /// Fall of chi² that the best curve promises.
+    /// Predicted reduction of chi².
     pub gain: f64,
 }
 
-/// A signature that is wanted: slot, shape and scale of the variable.
+/// A requested signature: slot, shape, and scale of the variable.
 #[derive(Clone, Copy, Debug)]
 struct Wanted<'a> {
     slot: &'a Slot,
@@ -42,44 +43,45 @@ impl PartialEq for Wanted<'_> {
     }
 }
 
-/// A shape beside those of a slot's basis, with its scale.
+/// An additional shape with its scale, beside those of a slot's basis.
 pub(super) type More = Option<(&'static Shape, f64)>;
 
-/// Signatures of which a slot's curve is made up.
+/// Signatures that make up the curve of a slot.
 fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
     slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
 }
 
-/// A law with parameters to start from.
+/// A model with one law more, and its start values.
 struct Candidate {
     model: Model,
     x: Vec<f64>,
 }
 
-/// What has to be explained, along the runs of a fitted model.
+/// The misfit to be explained along the runs of a fitted model.
 pub(super) struct Shown<'a> {
     problem: &'a Problem<'a>,
-    /// The model along whose runs signals are injected.
+    /// The model along whose runs signals are injected, and the model that laws are added to.
     along: &'a Fit,
     /// The model that laws are added to.
     from: Fit,
-    /// What is measured by the parameters of `from`, and what these can imitate.
+    /// Jacobian of `from`.
     jacobian: DMatrix<f64>,
-    /// Rows at which signals say something; what calibration and free zeros can imitate there.
+    /// Rows in the linear range; basis of what calibration and free zeros can imitate there.
     linear: Vec<bool>,
     basis: DMatrix<f64>,
-    /// What has to be explained there, less what these can imitate.
+    /// Misfit in the linear range, without what these can imitate.
     left: DVector<f64>,
 }
 
 impl<'a> Shown<'a> {
-    /// What a fit leaves, whose rows are `known`.
+    /// The residual of a fit whose rows are `known`.
     pub fn misfit(problem: &'a Problem<'a>, fit: &'a Fit, known: Rows) -> Self {
         Self::along(problem, fit, fit.clone(), known.jacobian, known.residual)
     }
 
-    /// What the last effect of a fit does, by its size. `None` where the model cannot be simulated, or the size is not fitted.
+    /// The response of the last effect of a fit. `None` if the model cannot be simulated, or the effect's size is not
+    /// fitted.
     pub fn last_effect(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
         let last = fit.model.effects.len().checked_sub(1)?;
         let without = Fit { x: problem.start_without(fit, last), model: fit.model.without(last), ..fit.clone() };
@@ -92,7 +94,7 @@ impl<'a> Shown<'a> {
         Some(Self::along(problem, fit, without, jacobian, does))
     }
 
-    /// What is `left` of a model along the runs of a fit, with what is measured by the model's parameters.
+    /// The misfit `left` along the runs of a fit, with the Jacobian of the model that laws are added to.
     fn along(problem: &'a Problem<'a>, along: &'a Fit, from: Fit, jacobian: DMatrix<f64>, left: DVector<f64>) -> Self {
         let linear = linear_rows(problem, along);
         let free = jacobian.column_iter().map(|column| column.into_owned()).chain(problem.free_zeros());
@@ -101,8 +103,8 @@ impl<'a> Shown<'a> {
         Self { problem, along, from, jacobian, linear, basis, left }
     }
 
-    /// Keeps of what has to be explained the part that curves over a slot's variable can. Differences hold more than signals along one run
-    /// have: what comes of other bounces where cables go slack, and what a law does between two samples.
+    /// Keeps the part of the misfit that curves over a slot's variable can explain. Finite effects contain more than
+    /// linear signals do: different bounces where cables go slack, and what a law does between samples.
     pub fn keep(&mut self, all: &[Slot], own: &Slot, more: More) {
         let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &of_curve(own, more)).into_iter().collect();
         let Some(signatures) = signatures else { return };
@@ -110,17 +112,18 @@ impl<'a> Shown<'a> {
         self.left = signatures.iter().zip(sizes).fold(DVector::zeros(self.left.len()), |sum, (s, size)| sum + s * size);
     }
 
-    /// Sum of squares of what has to be explained.
+    /// Sum of squares of the misfit.
     pub fn whole(&self) -> f64 {
         self.left.norm_squared()
     }
 
-    /// Joint refits with a law at each of these slots in its most promising shapes, at most so many of each; cheapest first.
+    /// Joint rough refits with a law at each slot in its most promising shapes, at most so many per slot; cheapest
+    /// first.
     pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
         self.refitted(&self.shapes(all, best, most), GOING_ON)
     }
 
-    /// The same with a curve at each of these slots; none goes on, for a curve is no answer.
+    /// The same with a free curve at each slot. None is converged, because a curve is not an answer.
     pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
         let plain: Vec<&Slot> =
             best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
@@ -140,7 +143,7 @@ impl<'a> Shown<'a> {
         self.refitted(&candidates, 0)
     }
 
-    /// Rough fits, of which so many that are best after a few steps go on.
+    /// Rough fits; the best `going_on` of them continue.
     fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
         let problem = self.problem;
         let begin = |candidate: &Candidate| {
@@ -161,8 +164,7 @@ impl<'a> Shown<'a> {
         fits
     }
 
-    /// How much of it a curve over each of some slots' variables could explain, of one shape more where that is given with its scale; the
-    /// best first.
+    /// How much a curve over the variable of each slot could explain; with one additional shape if given. Best first.
     pub fn locate(&self, all: &[Slot], some: &[Slot], more: More) -> Vec<Located> {
         let wanted: Vec<Vec<Wanted>> = some.iter().map(|slot| of_curve(slot, more)).collect();
         let signatures = self.signatures(all, &wanted.concat());
@@ -177,7 +179,7 @@ impl<'a> Shown<'a> {
         located
     }
 
-    /// The most promising shapes of these slots, at most so many of each, ready to be refitted.
+    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit.
     fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
         let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
         let wanted: Vec<Wanted> = best
@@ -218,7 +220,7 @@ impl<'a> Shown<'a> {
         Some(self.with(&own))
     }
 
-    /// A law with its parameters beside the model that laws are added to.
+    /// A law added to the model.
     fn with(&self, own: &Variant) -> Candidate {
         let model = self.from.model.plus(&own.placed, &own.values);
         let mut x = self.from.x.clone();
@@ -226,8 +228,8 @@ impl<'a> Shown<'a> {
         Candidate { model, x }
     }
 
-    /// Derivatives of what is measured to the size of each law at zero, without what the calibration imitates. A law on all of
-    /// several equal elements shows what those on each show together.
+    /// Derivatives of all measured channels with respect to the size of each law at zero, without what the calibration
+    /// imitates. For a law on several equal elements, the sum over the elements.
     fn signatures(&self, all: &[Slot], wanted: &[Wanted]) -> Vec<Option<DVector<f64>>> {
         let mut single: Vec<Wanted> = Vec::new();
         let members: Vec<Vec<usize>> = wanted
@@ -264,7 +266,7 @@ impl<'a> Shown<'a> {
         members.par_iter().map(sum).collect()
     }
 
-    /// The part of each signature that stands in one run.
+    /// The rows of each signature in one run.
     fn in_run(&self, r: usize, run: &CaseRun, wanted: &[Wanted]) -> Vec<Option<Vec<f64>>> {
         let setting = self.along.model.setting(self.problem.case, run, &self.along.x);
         let mut ports: Vec<(&Slot, Vec<usize>)> = Vec::new();
@@ -297,7 +299,7 @@ impl<'a> Shown<'a> {
         found
     }
 
-    /// What a signal changes that is added to what a channel shows: that channel.
+    /// Response to a signal added to a channel: that channel alone.
     fn on_channel(&self, run: &CaseRun, slot: &Slot, signal_si: Vec<f64>) -> Vec<f64> {
         let channels = &self.problem.case.channels;
         let own = channels.iter().find(|c| slot.injected.channel.as_ref() == Some(&c.column));
@@ -309,7 +311,7 @@ impl<'a> Shown<'a> {
         self.weighted(run, &change, slot.action.typical)
     }
 
-    /// What a signal of this size changes, in units of the noise.
+    /// Response to a signal of this size, in units of the noise.
     fn weighted(&self, run: &CaseRun, change: &Change, size: f64) -> Vec<f64> {
         let number = number(size);
         let channels = self.problem.case.channels.iter().enumerate();
@@ -322,7 +324,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// The slots of single elements that a slot is made up of: itself, or those of its port on every element.
+/// The slots of single elements that make up a slot on several: the slot itself if there is only one.
 fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> {
     let is_part = move |other: &&Slot| {
         let is_same =

@@ -1,16 +1,16 @@
-//! What signatures explain together.
+//! Joint least squares of signatures.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Share of its largest direction below which a curve's signature says nothing.
+/// Directions with less than this share of the largest eigenvalue are dropped.
 const FAINT: f64 = 1e-6;
 
-/// Fall of the sum of squares that signatures explain together.
+/// Reduction of the sum of squares by all signatures together.
 pub fn explained(signatures: &[&DVector<f64>], left: &DVector<f64>) -> f64 {
     directions(signatures, left).iter().map(|d| d.along * d.along / d.length).sum()
 }
 
-/// Sizes of signatures that together come nearest to what is left.
+/// Amplitudes of the signatures that together fit the residual best.
 pub fn sizes(signatures: &[DVector<f64>], left: &DVector<f64>) -> Vec<f64> {
     let signatures: Vec<&DVector<f64>> = signatures.iter().collect();
     let mut sizes = vec![0.0; signatures.len()];
@@ -20,16 +20,16 @@ pub fn sizes(signatures: &[DVector<f64>], left: &DVector<f64>) -> Vec<f64> {
     sizes
 }
 
-/// One of several directions at right angles that signatures span.
+/// One of several orthogonal directions spanned by signatures.
 struct Direction {
-    /// Of what is left along it, with its square of length.
+    /// Projection of the residual, and the squared length of the direction.
     along: f64,
     length: f64,
-    /// Sizes of the signatures in it.
+    /// Amplitudes of the signatures in it.
     sizes: Vec<f64>,
 }
 
-/// The directions that signatures span and that say something.
+/// The directions spanned by signatures, without degenerate ones.
 fn directions(signatures: &[&DVector<f64>], left: &DVector<f64>) -> Vec<Direction> {
     let n = signatures.len();
     if n == 0 {

@@ -1,4 +1,4 @@
-//! What an effect of an answer could be instead: laws at other places that do the same.
+//! Alternatives to an effect of the answer: laws at other places that explain as much.
 
 use super::forms::{Criterion, other_forms, tie, with_elsewhere};
 use super::hypothesis::{CLEARLY, Lawful};
@@ -7,8 +7,9 @@ use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::Found;
 use crate::diagnose::verdict;
 
-/// Of a single effect of the catalogue: laws at other places that explain the recordings as well become its forms. Whether one explains
-/// them clearly better, so that the effect only stands in for a law; what a sensor shows is no place in the rig, and stands in for none.
+/// Adds the laws elsewhere that explain as much as a single effect of the catalogue to its alternatives. Returns
+/// whether one is clearly better, so that the effect is a surrogate. Sensor effects are never surrogates of laws in the
+/// rig.
 pub(super) fn other_places(open: &Problem, found: &mut Found) -> bool {
     let [effect] = &found.best.model.effects[..] else { return false };
     if effect.entry.hypothetical {
@@ -21,8 +22,8 @@ pub(super) fn other_places(open: &Problem, found: &mut Found) -> bool {
     best.is_some_and(|best| is_in_rig && criterion.at(&best) < criterion.at(&found.best) - CLEARLY)
 }
 
-/// The same for every effect of several of which none is known yet. The law that came last has its forms. What was found with a law elsewhere
-/// in the place of one of several laws, where that explains the recordings clearly better: others had made up for it.
+/// The same for each of several effects whose alternatives are not known yet. Returns the answer with a law elsewhere
+/// in place of one of several laws, if that is clearly better.
 pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut Found) -> Option<Found> {
     let count = found.best.model.effects.len();
     if count < 2 || case.is_without(Step::OpenSet) {
@@ -50,8 +51,8 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
     exchanged.map(|best| Lawful { best, forms: Vec::new() }.beside(found))
 }
 
-/// The best fit with a law elsewhere in the place of the last effect, and those that an answer names beside it. `before` is the chi² without
-/// it.
+/// The best fit with a law elsewhere in place of the last effect, and the alternatives that an answer names. `before`:
+/// chi² without the last effect.
 fn stand_ins(open: &Problem, fit: &Fit, before: f64) -> (Option<Fit>, Vec<Fit>) {
     let port = fit.model.effects.last().map(verdict::port);
     let is_elsewhere = |other: &Fit| other.model.effects.last().map(verdict::port) != port;

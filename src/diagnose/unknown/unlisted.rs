@@ -1,8 +1,8 @@
-//! The law that nobody listed.
+//! Proposes laws that nobody listed.
 //!
-//! Every slot of the grammar (a port and a variable) is screened first: small signals of several shapes are injected at its port,
-//! and what a curve made up of them could explain says how well the slot does, whatever the law's shape. Around the best slots all
-//! shapes are screened, and the mere number at the same place; the best are refitted jointly with the calibration.
+//! Every slot of the grammar (a port and a variable) is screened first: small signals of several shapes are injected at
+//! its port, and their best combination tells how much any law there could explain. All shapes, and the constant, are
+//! then screened around the best slots; the best candidates are refitted jointly with the calibration.
 
 use rayon::prelude::*;
 
@@ -12,27 +12,28 @@ use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Slot, slots};
 use crate::diagnose::latent::{Latent, latents, likely};
 
-/// Slots of which the best shape is refitted, at most so many at ports of one kind; slots around which all shapes are.
+/// Slots whose best shape is refitted: at most so many in all, and at ports of one kind. All shapes are tried around
+/// the best [`WIDENED`].
 const SLOTS: usize = 12;
 const SLOTS_OF_PORT: usize = 3;
-/// Of these, those at the places where an unknown signal is likeliest, at most so many at one place.
+/// Of these, slots at the places where an unknown signal is most likely: in all, and at one place.
 const SLOTS_BY_PLACE: usize = 8;
 const SLOTS_OF_PLACE: usize = 2;
 const WIDENED: usize = 4;
 /// Constant laws that are refitted beside them.
 const NUMBERS: usize = 4;
-/// Shapes of one slot that are refitted there, and refits that are fitted to the end.
+/// Shapes refitted per slot; refits that are converged.
 const SHAPES_OF_SLOT: usize = 6;
 const FINISHED: usize = 6;
 
-/// What the grammar makes of a fit's misfit.
+/// Laws proposed for the misfit of a fit.
 pub(in crate::diagnose) struct Proposals {
-    /// Refits with one law more, cheapest first; the last effect of each is the law.
+    /// Refits with one law more, cheapest first; the law is the last effect.
     pub fits: Vec<Fit>,
 }
 
 impl Proposals {
-    /// The best of them fitted again to a problem with other weights or steps.
+    /// Refits the best of them with other weights or steps.
     pub fn again(self, problem: &Problem) -> Self {
         let best = &self.fits[..self.fits.len().min(FINISHED)];
         let again = best.par_iter().filter_map(|f| problem.fit(&f.model, &f.x));
@@ -42,7 +43,7 @@ impl Proposals {
     }
 }
 
-/// Screens all slots at a fit and refits the best laws beside it. `None` where the fit cannot be simulated.
+/// Screens all slots at a fit and refits the best laws. `None` if the fit cannot be simulated.
 pub(in crate::diagnose) fn propose(
     problem: &Problem,
     from: &Fit,
@@ -88,7 +89,7 @@ pub(in crate::diagnose) fn propose(
     Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
 }
 
-/// The slots whose laws, a shape or a curve, leave least.
+/// The slots whose law or curve leaves least.
 fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) -> Vec<&'a Slot> {
     let mut fits: Vec<&Fit> = fits.collect();
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -101,7 +102,7 @@ fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) ->
     wide
 }
 
-/// The best slots, few of them at ports of one kind, and the best constant ones: first those of the likeliest places.
+/// The best slots, few at ports of one kind, and the best constants; slots at the most likely places first.
 fn several_ports<'a>(located: &'a [Located], latents: &[Latent]) -> Vec<&'a Slot> {
     let mut best: Vec<&Slot> = Vec::new();
     for latent in latents {
@@ -123,7 +124,7 @@ fn several_ports<'a>(located: &'a [Located], latents: &[Latent]) -> Vec<&'a Slot
     best
 }
 
-/// Whether the last effect of a fit is a law of this slot.
+/// Whether the last effect of a fit is a law at this slot.
 pub(super) fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
     let Some(written) = fit.model.effects.last().and_then(|e| e.spec().unlisted()) else { return false };
     let law = &written.law;

@@ -1,4 +1,4 @@
-//! Step 7, the consequences: what does not hold on held-out runs is taken back, and the full scene has the last word.
+//! Step 7, consequences: withdraws what fails on held-out runs, and compares with the full scene.
 
 use super::{consistency, prove};
 use crate::diagnose::case::Step;
@@ -10,8 +10,8 @@ use crate::diagnose::search::{self, Found, cross_validates};
 use crate::diagnose::verdict::{self, Confirmed, misfit};
 use rayon::prelude::*;
 
-/// What the held-out runs say to what the open ones have found. They choose nothing: where they gain nothing, the answer stays, as a part
-/// of the truth.
+/// What the held-out runs say about the answer. They choose nothing: if they show no gain, the answer stays, as
+/// incomplete.
 pub(in crate::diagnose) fn confirm(
     held_out: &Problem,
     found: &Found,
@@ -33,10 +33,10 @@ pub(in crate::diagnose) fn confirm(
     Confirmed::InPart
 }
 
-/// Distance between baseline and best on the held-out runs, standard errors, below which these can say nothing.
+/// Distance of baseline and best on the held-out runs, in standard errors, below which these decide nothing.
 const SHOWN: f64 = 5.0;
 
-/// A channel of the open runs that the held-out ones lack, where what they have shows no difference.
+/// A channel that the held-out runs lack, if the others show no difference.
 fn missing_sensor<'a>(held_out: &Problem<'a>, found: &Found) -> Option<&'a str> {
     let case = held_out.case;
     let has = |is_held_out: bool, c: usize| {
@@ -49,7 +49,7 @@ fn missing_sensor<'a>(held_out: &Problem<'a>, found: &Found) -> Option<&'a str> 
     (apart < SHOWN).then_some(case.channels[lacking].column.as_str())
 }
 
-/// Takes back what the reduced-order model cannot follow on every run, held-out ones included.
+/// Withdraws what the reduced-order model cannot simulate on every run.
 pub(in crate::diagnose) fn take_back_unplayable(
     whole: &Problem,
     mut found: Found,
@@ -65,8 +65,8 @@ pub(in crate::diagnose) fn take_back_unplayable(
     found
 }
 
-/// Takes back one by one the effects without which open runs that no fit has seen are predicted as well: they only filled in for the
-/// others' laws.
+/// Withdraws, one by one, the effects that cross-validation does not need: they only absorbed the model discrepancy of
+/// others.
 pub(in crate::diagnose) fn prune(
     open: &Problem,
     mut found: Found,
@@ -89,8 +89,8 @@ pub(in crate::diagnose) fn prune(
     found
 }
 
-/// Takes back the effects that a run by itself contradicts: they stand in for something else. Where the rest does not
-/// explain the recordings either, all stays as the nearest known, which says no more than that.
+/// Withdraws the effects that a single run contradicts: they are surrogates. If the rest does not explain the
+/// recordings either, all stay as the closest known ones.
 pub(in crate::diagnose) fn take_back_contradicted(
     whole: &Problem,
     open: &Problem,
@@ -119,10 +119,10 @@ pub(in crate::diagnose) fn take_back_contradicted(
     if stands { (fewer, Confirmed::Yes) } else { (found, Confirmed::InPart) }
 }
 
-/// Plays what was found on the full scene. Where the reduced-order model is not near it, the full scene's figures are the proof; where it
-/// cannot be played, that is said, and the reduced-order model's stand.
+/// Simulates the answer on the full scene. If the reduced-order model differs, the full scene's figures count; if the
+/// full scene cannot be simulated, a warning says so and the reduced-order model's figures count.
 ///
-/// Whether the full scene can be played at all.
+/// Returns whether the full scene can be simulated.
 pub fn check_on_full_scene(
     held_out: &Problem,
     found: &Found,
@@ -169,10 +169,10 @@ fn compare_with_full_scene(
     Ok(())
 }
 
-/// Wrong effects that are put through the same door, at most.
+/// Maximum number of alternatives evaluated for comparison.
 const PLACEBOS: usize = 5;
 
-/// What the rivals that lost would have gained on the held-out runs.
+/// What the rejected alternatives would have gained on the held-out runs.
 pub fn placebos(held_out: &Problem, found: &Found, seed: u64) -> Vec<(String, f64)> {
     let gained = |rival: &Fit| -> Option<(String, f64)> {
         let proof = prove::prove(held_out, &found.baseline, rival, seed)?;

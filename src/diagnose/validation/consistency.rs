@@ -1,4 +1,4 @@
-//! Step 7, from run to run: does every run by itself ask for the same size of an effect?
+//! Step 7, consistency between runs: does every run alone give the same size?
 
 use std::borrow::Cow;
 
@@ -9,11 +9,11 @@ use crate::diagnose::search::is_broad;
 use crate::diagnose::verdict::is_said;
 use crate::effects::Range;
 
-/// Runs disagree when their sizes spread by this many standard errors and by this share of the size.
+/// Runs disagree if their sizes differ by this many standard errors and this share of the size.
 const SIGMA: f64 = 4.0;
 const SHARE: f64 = 0.25;
 
-/// Size of one effect as each run by itself would have it.
+/// Size of one effect by run.
 pub struct RunSizes {
     /// Index of the effect in the model.
     pub effect: usize,
@@ -21,9 +21,9 @@ pub struct RunSizes {
     pub runs: Vec<(String, Estimate)>,
 }
 
-/// Sizes of the first number of every effect, by run: one step of least squares from a common fit, calibration held;
-/// their intervals grow with what the run is left with. None of a broad relaxation: its stiffness is that at the first instant,
-/// which a run that holds still says next to nothing of.
+/// Size of every effect by run: one least-squares step from the common fit, calibration held. Intervals grow with the
+/// run's residual. Logarithmic creep is excluded: its size is the stiffness at the first instant, which a run at rest
+/// hardly shows.
 pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let first = case.parameters.len();
     let mut sizes: Vec<RunSizes> = Vec::new();
@@ -51,8 +51,8 @@ fn size_in(problem: &Problem, fit: &Fit, first: usize, place: usize) -> Option<E
     half.is_finite().then_some(Estimate { value, ci95: [value - half, value + half] })
 }
 
-/// The first effect that a run by itself contradicts, and how: by a size that its law cannot have, or by one that another
-/// run's is far from.
+/// The first effect that a single run contradicts, and why: its size there is outside the law's range, or far from
+/// another run's.
 pub fn contradiction(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<(usize, String)> {
     sizes_by_run(case, fit, noise).into_iter().find_map(|s| {
         let placed = &fit.model.effects[s.effect];
@@ -70,11 +70,11 @@ pub fn contradiction(case: &Case, fit: &Fit, noise: &[Noise]) -> Option<(usize, 
     })
 }
 
-/// Factor between the sizes of two runs, both nearer to each other by [`SIGMA`] standard errors, from which one law does not stand
-/// behind both: of effects that were there, altered forms included, none came to 1.25.
+/// Two runs contradict one law if their sizes differ by this factor even after moving [`SIGMA`] standard errors closer.
+/// For effects that were present, altered forms included, it never exceeded 1.25.
 const FAR: f64 = 1.3;
 
-/// Two runs whose sizes are so far apart, the larger first.
+/// Two runs with contradicting sizes, the larger first.
 fn far_apart(runs: &[(String, Estimate)]) -> Option<(&str, &str)> {
     let is_far = |a: &Estimate, b: &Estimate| {
         let nearest = a.value.abs() - SIGMA * error(a);
@@ -96,7 +96,7 @@ fn is_outside(size: Estimate, range: Range) -> bool {
     size.value + margin < range.min || size.value - margin > range.max
 }
 
-/// Puts the sizes into the answer, and says where runs disagree: on what, as words.
+/// Adds the sizes to the answer; returns the parameters in which runs disagree.
 pub fn report(sizes: Vec<RunSizes>, fit: &Fit, effects: &mut [NamedEffect], warnings: &mut Vec<String>) -> Vec<String> {
     let mut contradicted = Vec::new();
     for s in sizes {

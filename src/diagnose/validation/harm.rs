@@ -1,4 +1,4 @@
-//! Do no harm: what predicts worse than the calibrated scene does not leave the program.
+//! Do no harm: withholds answers that predict worse than the calibrated scene.
 
 use super::prove;
 use crate::diagnose::case::{Case, CaseRun, Noise, RunSet, Step};
@@ -9,9 +9,9 @@ use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::Found;
 use crate::diagnose::unknown::{SAME, equally_good, propose};
 
-/// What was found, if it does no harm. Else, where cables go slack, another fit that explains the open runs as well, laws that nobody
-/// listed included: that which is nearest to what was left out of them. The held-out runs choose nothing; they refuse, the second time
-/// for good: the answer is then located, not modelled. `proof` becomes that of what is left.
+/// Returns the answer if it does no harm. Otherwise, if cables go slack, the equally good fit (unlisted laws included)
+/// closest to the samples left out of the open runs. The held-out runs choose nothing; they can refuse twice, and after
+/// the second time the answer is located, not modelled. `proof` becomes that of the result.
 pub(in crate::diagnose) fn without(
     case: &Case,
     noise: &[Noise],
@@ -40,7 +40,7 @@ pub(in crate::diagnose) fn without(
     found
 }
 
-/// Takes what was found out of the answer: it is located, not modelled.
+/// Removes the answer: located, not modelled.
 fn withhold(found: &mut Found, proof: &mut Proof) {
     let known = found.clone();
     found.best = found.baseline.clone();
@@ -51,7 +51,7 @@ fn withhold(found: &mut Found, proof: &mut Proof) {
     (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
 }
 
-/// The same where the full scene cannot be played with what was found, and can without it: nobody could run that scene.toml.
+/// The same if the full scene diverges with the answer but not without it: nobody could run that scene.toml.
 pub(in crate::diagnose) fn without_unplayable(
     case: &Case,
     noise: &[Noise],
@@ -69,8 +69,7 @@ pub(in crate::diagnose) fn without_unplayable(
     withhold(found, proof);
 }
 
-/// Of the fits that explain the open runs as well as what was found, that which is nearest to what was left out of them; none where that
-/// is what was found.
+/// Of the equally good fits, the one closest to the left-out samples; `None` if that is the answer.
 fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> Option<Found> {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let distance = |fit: &Fit| left_out(&open, fit).unwrap_or(f64::INFINITY);
@@ -94,7 +93,7 @@ fn gentlest(case: &Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -
     Some(other)
 }
 
-/// Laws that explain the open runs as well as what was found, where that is a single effect; cheapest first.
+/// Laws that explain the open runs as well as a single effect; cheapest first.
 fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
     if open.case.is_without(Step::OpenSet) || found.best.model.effects.len() > 1 {
         return Vec::new();
@@ -104,7 +103,7 @@ fn laws(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Vec<Fit> {
     fits
 }
 
-/// Where another fit stands beside the answer, in the place of its last effect.
+/// Position of another fit among the alternatives of the last effect.
 #[derive(Clone, Copy)]
 enum Place {
     Form(usize),
@@ -118,7 +117,7 @@ fn as_good(found: &Found) -> Vec<(Place, Fit)> {
     forms.chain(rivals).filter(|(_, fit)| fit.cost <= near).map(|(place, fit)| (place, fit.clone())).collect()
 }
 
-/// Puts another fit in the place of the best, and the best in its place.
+/// Exchanges the best fit with another.
 fn exchange(found: &mut Found, other: Place, own: Fit) {
     let was = std::mem::replace(&mut found.best, own);
     match other {
@@ -136,16 +135,16 @@ fn exchange(found: &mut Found, other: Place, own: Fit) {
     }
 }
 
-/// Whether a fit with laws predicts the held-out runs worse, beyond chance, than the listed effects that were found before. The calibrated
-/// scene has its own word, in [`without`].
+/// Whether a fit with laws predicts the held-out runs worse, beyond chance, than the listed effects found before. For
+/// the calibrated scene see [`without`].
 pub(in crate::diagnose) fn is_worse(held_out: &Problem, listed: &Found, lawful: &Fit, seed: u64) -> bool {
     let has_listed = !listed.best.model.effects.is_empty();
     let is_beyond_chance = |p: Proof| p.gap_closed < 0.0 && p.gain_ci95[1] < 0.0;
     has_listed && prove::prove(held_out, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
 }
 
-/// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it loses where samples
-/// are left out of the fit: there next to nothing holds a joint, and a small wrong force drives it anywhere.
+/// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it
+/// loses on samples left out of the fit, where a joint is almost free and a small wrong force moves it anywhere.
 fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &Proof) -> bool {
     if proof.gap_closed < 0.0 && proof.gain_ci95[1] < 0.0 {
         return true;
@@ -157,7 +156,7 @@ fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &P
     lost > 0.0 && lost > gained
 }
 
-/// Chi² that a fit gains on the held-out runs, and that it loses where samples of any run are left out; `None` where it cannot be
+/// Gain in chi² on the held-out runs, and loss on the samples left out of any run; `None` if the fit cannot be
 /// simulated.
 fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Option<[f64; 2]> {
     let [held_out, whole] = [RunSet::HeldOut, RunSet::All].map(|runs| Problem { case, runs: case.subset(runs), noise });
@@ -165,13 +164,13 @@ fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Opt
     Some([cost(baseline)? - cost(fit)?, left_out(&whole, fit)? - left_out(&whole, baseline)?])
 }
 
-/// Sum of squares of what a fit leaves at the samples that are left out of its runs; `None` where it cannot be simulated.
+/// Sum of squared residuals at the samples left out of the runs; `None` if the fit cannot be simulated.
 fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
     let each = problem.runs.iter().map(|run| at_left_out(problem.case, run, problem.noise, fit));
     each.sum()
 }
 
-/// Sum of squares of what a fit leaves at the samples of a run that are left out, in the units of [`Fit::cost`].
+/// Sum of squared residuals at the samples left out of one run, in units of [`Fit::cost`].
 fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option<f64> {
     if run.slack.iter().all(Vec::is_empty) {
         return Some(0.0);

@@ -1,5 +1,5 @@
-//! Steps 0 and 7: whether recordings can carry a diagnosis, and what was found can be trusted: on held-out runs, from run to run, on
-//! the full scene.
+//! Steps 0 and 7: whether the recordings can be diagnosed, and whether the answer can be trusted: on held-out runs,
+//! between runs, on the full scene.
 //!
 //! May import `unknown`, `verdict`, `search`, `grammar`, `full`, `fit`, `case`, `diagnosis` and `error`.
 

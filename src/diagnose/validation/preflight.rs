@@ -1,4 +1,4 @@
-//! Step 0: whether the recordings can carry a diagnosis.
+//! Step 0: whether the recordings can be diagnosed.
 
 use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::{Model, Problem};
@@ -7,19 +7,19 @@ use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
 use crate::scene::Scene;
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
-/// Fewer samples than this say nothing.
+/// Minimum number of samples.
 const LEAST_SAMPLES: usize = 200;
-/// Share of samples at one end value that makes a channel saturated.
+/// Share of samples at one end value from which a channel is saturated.
 const SATURATED_SHARE: f64 = 0.2;
 
-/// Reasons why nothing can be said, and things the reader should know.
+/// Reasons for refusing, and warnings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Preflight {
     pub unusable: Vec<String>,
     pub warnings: Vec<String>,
 }
 
-/// Looks at the recordings alone and at how the uncalibrated scene compares in scale.
+/// Checks the recordings alone, and their scale against the uncalibrated scene.
 ///
 /// # Errors
 /// A law of the scene that has no value somewhere on the way.
@@ -104,14 +104,14 @@ fn channels(case: &Case, found: &mut Preflight) {
     }
 }
 
-/// How long a recording counts as beginning, s, and how far from the scene it may begin, in deviations of its noise and
-/// as a share of its spread.
+/// Length of a recording's beginning, s; allowed initial difference from the scene, in noise standard deviations and as
+/// a share of the spread.
 const BEGINNING_S: f64 = 0.3;
 const BEGINS_OFF: f64 = 10.0;
 const BEGINS_OFF_SHARE: f64 = 0.05;
 
-/// How far from the scene a channel begins, in the same way in every run that begins at zero. What only grows in the first moments is
-/// motion, and where the scene itself begins further away from zero (a muscle under tension) its parameters decide on it.
+/// Initial offset of a channel from the scene that all runs starting at zero share. What only grows in the first
+/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide.
 fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
     let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
     let offsets: Vec<f64> = at_zero
@@ -130,7 +130,7 @@ fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) ->
     offsets.iter().all(|o| (o - mean).abs() < 0.2 * mean.abs()).then_some(mean).filter(|m| m.is_finite())
 }
 
-/// A channel whose spread is below so many deviations of its noise shows its noise: it says nothing of units.
+/// A channel with a spread below this many noise standard deviations shows only noise, and nothing about units.
 const NOISE_ALONE: f64 = 3.0;
 
 /// Compares each channel's spread with that of the scene as it stands.
@@ -179,7 +179,8 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), S
     Ok(())
 }
 
-/// Where a law of the scene has no value, it is the law that is wrong and not the recordings: the full scene tells which, and when.
+/// If a law of the scene has no value somewhere, the law is wrong and not the recordings: the full scene tells which,
+/// and when.
 fn refuse_faulty_law(case: &Case) -> Result<(), SystemError> {
     let at_fault = case.runs.iter().filter(|run| !run.scene.laws.is_empty()).find_map(|run| played(run).err());
     at_fault.filter(|error| matches!(error, SystemError::Law { .. })).map_or(Ok(()), Err)

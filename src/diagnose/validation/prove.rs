@@ -1,4 +1,4 @@
-//! Step 7: what the effects gain on runs that had no part in finding and fitting them.
+//! Step 7: gain of the effects on runs that took no part in finding and fitting them.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::diagnose::case::{Case, Noise};
 use crate::diagnose::diagnosis::{ChannelProof, FullScene, Proof};
 use crate::diagnose::fit::{Fit, Problem};
 
-/// Length of the pieces that are drawn together, s: longer than any memory of the residual that matters.
+/// Length of bootstrap blocks, s: longer than the residual's correlation time.
 const BLOCK_S: f64 = 2.0;
 const DRAWS: usize = 2000;
 

@@ -2,7 +2,7 @@
 
 use crate::laws::{Law, Memory};
 
-/// Where a law's value goes as its variable grows from nothing.
+/// Trend of a law as the magnitude of its variable grows from zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trend {
     Grows,
@@ -11,7 +11,7 @@ enum Trend {
 }
 use Trend::{Either, Falls, Grows};
 
-/// Port, variable, trend, name. Of several rows that fit the first counts.
+/// Port, variable, trend, name. The first matching row counts.
 const NAMES: [(&str, &str, Trend, &str); 44] = [
     ("muscle.friction", "speed_m_s", Falls, "breakaway friction above the sliding friction (Stribeck)"),
     ("muscle.friction", "speed_m_s", Grows, "friction that grows with speed, as in a lubricated contact"),
@@ -64,8 +64,8 @@ const NAMES: [(&str, &str, Trend, &str); 44] = [
     ("joint.damping", "angular_speed_rad_s", Either, "damping of the joint that depends on its speed"),
 ];
 
-/// Name of a law of one variable, or of what it remembers; none where nobody has given it one. `value` is the law over what stands in
-/// the variable's place.
+/// Common name of a law of one variable, or of what it remembers; `None` if there is none. `value`: the law as a
+/// function of its variable.
 pub fn known_as(law: &Law, values: &[f64], value: &dyn Fn(f64) -> f64) -> Option<&'static str> {
     if let Some(state) = law.states.first() {
         return Some(match state.memory {

@@ -1,4 +1,4 @@
-//! How much of what a model leaves is more than noise.
+//! The part of a model's residual that is more than noise.
 
 use crate::diagnose::case::noise::structured_excess;
 use crate::diagnose::fit::{Fit, Problem};
@@ -7,7 +7,7 @@ use crate::diagnose::search::Found;
 /// Residuals by run, channel and time.
 pub type Residuals = Vec<Vec<Vec<f64>>>;
 
-/// Misfit of baseline and best, per sample, and the standard error of such a number.
+/// Misfit per sample of baseline and best, with their standard error.
 #[derive(Clone, Copy, Debug)]
 pub struct Excess {
     pub baseline: f64,
@@ -15,7 +15,7 @@ pub struct Excess {
     pub error: f64,
 }
 
-/// Residuals with what was found, and how much of baseline and best is more than noise.
+/// Residuals of the answer, and the misfit above noise of baseline and best.
 pub(in crate::diagnose) fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
     let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
     let after = whole.residuals(&found.best.model, &found.best.x)?;
@@ -24,7 +24,7 @@ pub(in crate::diagnose) fn misfit(whole: &Problem, found: &Found) -> Option<(Res
     Some((after, Excess { baseline, best, error }))
 }
 
-/// Misfit per sample that a fit leaves, and its standard error; `None` where it cannot be simulated.
+/// Misfit per sample of a fit, and its standard error; `None` if it cannot be simulated.
 pub(in crate::diagnose) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f64)> {
     Some(structured_excess(&problem.residuals(&fit.model, &fit.x)?, problem.noise))
 }

@@ -8,28 +8,29 @@ use crate::diagnose::diagnosis::{Estimate, NamedEffect, Verdict};
 use crate::diagnose::fit::{Fit, Placed};
 use crate::diagnose::search::Found;
 
-/// Rivals with less probability than this are not in the set.
+/// Alternatives with less probability are not listed.
 const LEAST_PROBABILITY: f64 = 0.05;
-/// An answer is one answer from this probability on.
+/// An effect with at least this probability is the only answer.
 const SURE: f64 = 0.9;
-/// Share of the baseline's misfit that may be left when the answer is complete: laws are idealisations.
+/// A complete answer may leave this share of the baseline's misfit: model discrepancy.
 const LEFT_SHARE: f64 = 0.1;
-/// No effect is believed more in an answer that leaves a part unexplained: what it explains may belong to what is missing.
+/// Limit of the probability in an answer that leaves part of the misfit: what the effect explains may belong to what is
+/// missing.
 const MOST_IN_PART: f64 = 2.0 / 3.0;
-/// Misfit per sample below which nothing is called unknown, in units of the noise's variance.
+/// Misfit per sample, in noise variances, below which nothing is called unknown.
 const LEFT_LEAST: f64 = 0.015;
 
-/// What the held-out runs say to what the open ones have found.
+/// What the held-out runs say about the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confirmed {
-    /// It holds, or there is nothing to hold.
+    /// Confirmed, or nothing to confirm.
     Yes,
-    /// It explains open runs and not the held-out ones, or a run contradicts it: not the whole truth.
+    /// It explains the open runs but not the held-out ones, or a run contradicts it.
     InPart,
 }
 
 impl Confirmed {
-    /// Confirmed where both are.
+    /// Confirmed only if both are.
     pub fn and(self, other: Self) -> Self {
         if other == Self::InPart { other } else { self }
     }
@@ -40,23 +41,23 @@ pub fn is_loud(excess: f64, error: f64) -> bool {
     excess > 5.0 * error && excess > LEFT_LEAST
 }
 
-/// Whether more is left than the catalogue explains.
+/// Whether more is left than the catalogue can explain.
 pub fn is_unknown(found: &Found, excess: Excess) -> bool {
     found.best.model.effects.iter().any(|e| e.entry.hypothetical) || leaves_a_part(found, excess)
 }
 
-/// Whether what was found leaves a part of the misfit that idealised laws do not account for.
+/// Whether the answer leaves more than model discrepancy accounts for.
 pub fn leaves_a_part(found: &Found, excess: Excess) -> bool {
     let left = if found.best.model.effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
     is_loud(excess.best, excess.error) && excess.best > left
 }
 
-/// Takes back how far the effects of an answer that leaves a part unexplained are believed.
+/// Limits the probabilities in an answer that leaves part of the misfit.
 pub fn doubt(effects: &mut [NamedEffect]) {
     effects.iter_mut().for_each(|effect| effect.probability = effect.probability.min(MOST_IN_PART));
 }
 
-/// What the search and what is left amount to; in a closed set nothing is unknown.
+/// The verdict of the search and the remaining misfit. In a closed set nothing is unknown.
 pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess, is_open_set: bool) -> Verdict {
     if is_open_set && is_unknown(found, excess) {
         return Verdict::UnknownPhysics;
@@ -73,8 +74,8 @@ pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess, is_open_s
     if ambiguous { Verdict::Ambiguous } else { Verdict::MissingPhysics }
 }
 
-/// The effects of the best model with those rivals that the data leave standing; `left` is the chi² that the best leaves
-/// beyond noise.
+/// The effects of the best model with the alternatives that the data cannot rule out. `left`: chi² of the best above
+/// noise.
 pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     let mut effects = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
@@ -113,14 +114,15 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     effects
 }
 
-/// What a law that nobody listed counts at another port, beside an effect that is known.
+/// Prior odds of an unlisted law at another port against an effect of the catalogue.
 const UNLISTED: f64 = 0.02;
 
-/// Logarithm of odds beyond which nothing is surer: what is lower by any chi² has a finite weight.
+/// Limit of the log odds: a lower chi² of any size has a finite weight.
 const CERTAIN: f64 = 50.0;
 
-/// Forms of an effect at other ports, the best of each, with their weights beside 1 of the effect. Beside an effect of the catalogue that is
-/// one of several, a law that fits better counts as one that fits as well: it bends to what the others, idealised, leave.
+/// The best form at every other port, with its weight relative to the effect. Beside one of several effects of the
+/// catalogue, a law that fits better counts as one that fits equally well, because a free shape absorbs the model
+/// discrepancy of the others.
 fn elsewhere(found: &Found, index: usize, left: f64) -> Vec<(f64, &Fit)> {
     let own = &found.best.model.effects[index];
     let (unit, is_law) = (unit_of(found, left), own.entry.hypothetical);
@@ -139,16 +141,16 @@ fn elsewhere(found: &Found, index: usize, left: f64) -> Vec<(f64, &Fit)> {
     forms
 }
 
-/// What keeps an answer from being one answer.
+/// Alternatives that keep an answer ambiguous.
 #[derive(Clone, Debug)]
 pub struct Open<'a> {
-    /// The rivals that the data leave standing beside effects that are not sure.
+    /// Alternatives to effects that are not certain.
     pub rivals: Vec<&'a Fit>,
-    /// Difference in chi² that counts as one: more than 1 where the best's laws leave something themselves.
+    /// Dispersion: difference in chi² that counts as one, above 1 if the best model leaves a misfit.
     pub unit: f64,
 }
 
-/// What stays open; `left` as for [`named`].
+/// The open alternatives; `left` as for [`named`].
 pub fn open(found: &Found, left: f64) -> Open<'_> {
     let mut rivals = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
@@ -165,8 +167,8 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
     Open { rivals, unit: unit_of(found, left) }
 }
 
-/// Every other model that was fitted in place of the best, with its chi²: one row for each set of effects, its cheapest, cheapest
-/// first. One that reads as the answer does has another law, and says whose number it has.
+/// All other models fitted in place of the best, with their chi², cheapest first: one row per set of effects. A model
+/// that reads like the answer has another form, and the row says which parameter it differs in.
 pub fn lost(found: &Found) -> Vec<(String, f64)> {
     let words = |fit: &Fit| {
         let mut effects: Vec<String> = fit.model.effects.iter().map(Placed::title).collect();
@@ -189,7 +191,7 @@ pub fn lost(found: &Found) -> Vec<(String, f64)> {
     rows
 }
 
-/// A further branch of an effect that is named already: its parameters get the next free number as suffix.
+/// Adds a further branch to an effect already named: its parameters get the next free number as suffix.
 fn add_branch(effect: &mut NamedEffect, parameters: BTreeMap<String, Estimate>) {
     for (key, number) in parameters {
         let free = (2..).map(|n| format!("{key}_{n}")).find(|k| !effect.parameters.contains_key(k));
@@ -204,7 +206,7 @@ pub fn is_said(effect: &NamedEffect, placed: &Placed) -> bool {
         && effect.channel == placed.channel
 }
 
-/// The effect and its rivals with their probabilities, best first; the same words are counted once.
+/// Probabilities of an effect and its alternatives, best first; the same description is counted once.
 fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> Vec<(Placed, f64, &'a Fit)> {
     let best = &found.best;
     // A hypothesis has no rivals by name: what the catalogue offers instead has lost already.
@@ -227,24 +229,23 @@ fn standing<'a>(found: &'a Found, index: usize, placed: &Placed, left: f64) -> V
     all
 }
 
-/// Share of what the best leaves, or explains, that counts as one unit of chi². With the whole of what is left answers were
-/// too timid: of 38 that stayed ambiguous 33 named the truth first (docs/proof.md has the calibration).
+/// Dispersion as a share of what the best model leaves, or explains. With all of the remaining misfit it was too
+/// conservative: of 38 ambiguous answers 33 named the truth first (calibration: docs/proof.md).
 const UNIT_OF_LEFT: f64 = 1.0 / 3.0;
 const UNIT_OF_EXPLAINED: f64 = 0.005 / 3.0;
 
-/// Chi² that counts as one, of a model that explains and leaves so much. Laws are idealised: as far as the model itself leaves something, a
-/// difference counts in proportion to that, and at most to what is explained, not to the number of samples.
+/// Dispersion of a model that explains and leaves this much chi². Differences count relative to the model discrepancy,
+/// at most relative to what is explained, not to the number of samples.
 pub fn unit(explained: f64, left: f64) -> f64 {
     (UNIT_OF_EXPLAINED * explained).min(UNIT_OF_LEFT * left).max(1.0)
 }
 
-/// The same for each effect of what was found.
+/// The dispersion for each effect of the answer.
 fn unit_of(found: &Found, left: f64) -> f64 {
     unit((found.baseline.cost - found.best.cost) / found.best.model.effects.len() as f64, left)
 }
 
-/// Parameters of one effect of a fit, with intervals for those that were fitted. An interval ends where its law does: a width of
-/// less than nothing is no news.
+/// Parameters of one effect of a fit, with intervals for fitted ones, cut at the end of the law's range.
 fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
     let calibration = fit.x.len() - fit.model.effect_parameters();
     let spec = fit.model.effects[effect].spec();
@@ -307,7 +308,7 @@ mod tests {
         assert!(value < high && high <= spec.range.max, "{high}");
     }
 
-    /// A tenth of what the calibration left is what idealised laws leave; more than that is a part of the physics.
+    /// A tenth of the baseline's misfit may be model discrepancy; more is missing physics.
     #[test]
     fn what_leaves_a_part_unexplained_is_not_believed_to_the_end() {
         let [weight, nothing] = [&["gravity_load"][..], &[]].map(|ids| found(fit(ids, 100.0), Vec::new()));
@@ -321,7 +322,8 @@ mod tests {
         assert_eq!(effects[0].probability, MOST_IN_PART);
     }
 
-    /// A form that fits far better makes a lonely effect doubtful. Beside another that is idealised it may have taken up what that leaves.
+    /// A form that fits far better makes a single effect doubtful. Beside another effect it may have absorbed that
+    /// one's model discrepancy.
     #[test]
     fn of_several_effects_a_law_elsewhere_counts_as_one_that_fits_as_well() {
         let elsewhere = fit(&["hypothetical_flow"], 40.0);

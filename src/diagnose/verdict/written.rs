@@ -1,4 +1,4 @@
-//! Laws of an answer in words and numbers: where they act, what they read, what else would do, their curve.
+//! Describes the laws of an answer: port, variables, alternatives, curve.
 
 use crate::effects::WrittenLaw;
 use crate::laws::{Law, Symbol};
@@ -11,12 +11,12 @@ use crate::diagnose::fit::{Fit, Placed};
 /// Points of a curve.
 const POINTS: usize = 101;
 
-/// Law of an effect, if it is one that was written down.
+/// The law of an effect, if it is a written one.
 fn written(placed: &Placed) -> Option<&'static WrittenLaw> {
     placed.spec().unlisted()
 }
 
-/// Says of an effect where it acts and on what it depends; of a written law also its text with the parameters of the fit.
+/// Fills in port and variables of an effect; for a written law also its text with fitted values.
 pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
     effect.port = port(placed);
     if let Some(own) = written(placed) {
@@ -31,7 +31,7 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
     effect.variables.clone_from(&placed.spec().variables);
 }
 
-/// The port that an effect acts at, as answers have it.
+/// The port of an effect, as answers write it.
 pub fn port(placed: &Placed) -> String {
     if let Some(own) = written(placed) {
         return own.law.address.to_string();
@@ -52,7 +52,7 @@ fn values(fit: &Fit, effect: usize) -> Vec<f64> {
     fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
 }
 
-/// A law with the parameters of an effect: its expression, then what it remembers.
+/// A law with fitted values: its expression, then its states.
 fn text(own: &WrittenLaw, parameters: &[f64]) -> String {
     let values = own.values(parameters);
     let number = |expression: &Option<String>| {
@@ -73,7 +73,7 @@ fn text(own: &WrittenLaw, parameters: &[f64]) -> String {
     text
 }
 
-/// A law's expression, or one of its states', with numbers in place of its parameters.
+/// An expression of a law with values in place of its parameters.
 fn with_parameters(law: &Law, expression: &str, values: &[f64]) -> String {
     let mut text = String::new();
     let mut word = String::new();
@@ -92,7 +92,7 @@ fn with_parameters(law: &Law, expression: &str, values: &[f64]) -> String {
     text.trim_end().to_owned()
 }
 
-/// Adds a number with six significant digits; after a plus a negative one becomes a difference.
+/// Appends a number with six significant digits; after a plus, a negative one becomes a difference.
 fn push_number(text: &mut String, value: f64) {
     let is_difference = value < 0.0 && text.ends_with("+ ");
     if is_difference {
@@ -108,7 +108,7 @@ fn push_number(text: &mut String, value: f64) {
     };
 }
 
-/// The other laws that explain as much, with what their chi² is higher by, in units of `unit`.
+/// The alternative laws, with their difference in chi² in units of `unit`.
 pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
     let form = |fit: &Fit| {
         let at = fit.model.effects.len().checked_sub(1)?;
@@ -124,7 +124,7 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
     fits.iter().filter_map(form).collect()
 }
 
-/// A written law over its variable, as far as the runs visited it; its band is that of its own parameters.
+/// The curve of a written law over the visited range, with the band from its own parameters.
 pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     let own = written(&fit.model.effects[at])?;
     let [variable] = own.law.variables()[..] else { return None };
@@ -149,7 +149,7 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     Some(Curve { variable: variable.name(), x, y, low, high, freehand: None })
 }
 
-/// What a law is called by those who know it.
+/// Common name of a law.
 fn known_as(own: &WrittenLaw, parameters: &[f64]) -> Option<String> {
     known_as::known_as(&own.law, &own.values(parameters), &|x| value(own, parameters, x)).map(str::to_owned)
 }
@@ -217,7 +217,7 @@ mod tests {
         assert_eq!(written(table, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
     }
 
-    /// What it remembers stands behind it: without that nobody can tell what it depends on.
+    /// States follow the expression: without them its variables are unknown.
     #[test]
     fn what_a_law_remembers_is_written_with_it() {
         let with = |unit: &str, state: &str, more: &str| {
