@@ -1,14 +1,13 @@
-//! What an answer has to be read with: it stands in the verdict's own words, not in a list below.
+//! Caveats of an answer; they are part of the verdict's sentence.
 
 use crate::diagnose::case::{Case, Noise, noise};
 use crate::diagnose::diagnosis::NamedEffect;
 use crate::diagnose::fit::Fit;
 
-/// So near to an end of its range, in shares of the range, a number stands on it.
+/// A parameter this close to an end of its range, as a share of the range, is on it.
 const ON_BOUND: f64 = 1e-6;
 
-/// Clauses for an answer whose scene has the parameters of `fit`; `contradicted` are parameters of which single runs say
-/// otherwise.
+/// Clauses for an answer with the parameters of `fit`; `contradicted` are parameters that single runs contradict.
 pub(in crate::diagnose) fn caveats(
     case: &Case,
     (fit, effects): (&Fit, &[NamedEffect]),
@@ -32,7 +31,7 @@ fn counted(words: &str, names: &[String]) -> Option<String> {
     (!shown.is_empty()).then(|| format!("{words}: {}{more}", shown.join(", ")))
 }
 
-/// Effects of the catalogue that laws at other ports would explain as well, with the first of these.
+/// Effects of the catalogue that laws at other ports would explain as well, each with the first such law.
 fn with_stand_ins(effects: &[NamedEffect]) -> Vec<String> {
     let words = |e: &NamedEffect| {
         let other = e.forms.iter().find(|form| form.port != e.port).filter(|_| !e.hypothetical)?;
@@ -41,14 +40,14 @@ fn with_stand_ins(effects: &[NamedEffect]) -> Vec<String> {
     effects.iter().filter_map(words).collect()
 }
 
-/// Columns whose noise is the least that is believed.
+/// Columns whose noise is at the assumed minimum.
 fn without_noise(case: &Case, noise: &[Noise]) -> Vec<String> {
     let of_channels = case.channels.iter().zip(noise).enumerate();
     let at_floor = of_channels.filter(|(c, (own, n))| own.stated_sd.is_none() && n.sd <= noise::least(case, *c));
     at_floor.map(|(_, (own, _))| own.column.clone()).collect()
 }
 
-/// Parameters of calibration and effects that the data would have beyond the end of their range. A zero is no news.
+/// Parameters at a bound, which the data would exceed. Zero is not reported.
 fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
     let calibrated = fit.on_bound.iter().filter(|&&i| fit.x[i] != 0.0).map(|&i| case.parameters[i].title());
     let first = fit.x.len() - fit.model.effect_parameters();

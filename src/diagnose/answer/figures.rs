@@ -10,7 +10,7 @@ use crate::diagnose::fit::Fit;
 use crate::diagnose::search::Found;
 use crate::diagnose::verdict::Excess;
 
-/// How much is more than noise, and what could have been seen.
+/// Misfit above noise, and detection limits.
 pub(in crate::diagnose) fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Detection {
     let by_channel = |f: fn(&Noise) -> f64| -> BTreeMap<String, f64> {
         case.channels.iter().zip(noise).map(|(c, n)| (c.column.clone(), f(n))).collect()
@@ -31,7 +31,7 @@ pub(in crate::diagnose) fn detection(case: &Case, noise: &[Noise], found: &Found
     }
 }
 
-/// Probability that noise alone leaves so many standard errors, or more.
+/// Probability that noise alone leaves this many standard errors or more.
 fn by_chance(standard_errors: f64) -> f64 {
     Normal::standard().sf(standard_errors)
 }
@@ -45,7 +45,7 @@ pub(in crate::diagnose) fn calibration(case: &Case, fit: &Fit) -> BTreeMap<Strin
     case.parameters.iter().enumerate().map(|(i, p)| (p.title(), estimate(i))).collect()
 }
 
-/// What to say of calibrated parameters that ended on an end of their range, which is not a zero.
+/// Warning about calibrated parameters at a nonzero bound.
 pub(in crate::diagnose) fn on_bounds(case: &Case, fit: &Fit) -> Vec<String> {
     let parameters = fit.on_bound.iter().map(|&i| (&case.parameters[i], fit.x[i])).filter(|(_, value)| *value != 0.0);
     let words = parameters.map(|(p, value)| {

@@ -8,9 +8,9 @@ use crate::diagnose::error::DiagnoseError;
 use crate::files::Staged;
 use crate::recording::{Recording, RowWriter};
 
-/// Written last: where it stands, the answer is whole and of one piece.
+/// Written last: if it exists, the answer is complete.
 const LAST: &str = "diagnosis.json";
-/// What an answer may consist of besides, `baseline.toml` at the end: it tells a former answer until all of it is gone.
+/// Other files of an answer; `baseline.toml` is removed last, so that it marks an old answer until all of it is gone.
 const OTHERS: [&str; 5] = ["report.html", "diagnosis.rrd", "next_experiment.csv", "scene.toml", "baseline.toml"];
 
 /// Writes `diagnosis.json`, `scene.toml`, `baseline.toml` and `next_experiment.csv` (those that there are) into a folder,
@@ -22,8 +22,8 @@ pub fn write_answer(outcome: &Outcome, folder: &Path) -> Result<(), DiagnoseErro
     write_answer_with(outcome, &[], folder)
 }
 
-/// The same with other files (name and text) that belong to the answer. A former answer stays until all of the new one is
-/// on the disk; then it goes, and `diagnosis.json` comes last.
+/// The same with additional files (name and text). An old answer stays until the new one is on the disk; then it is
+/// removed, and `diagnosis.json` is named last.
 ///
 /// # Errors
 /// As [`write_answer`].
@@ -72,7 +72,7 @@ fn csv(recording: &Recording) -> io::Result<Vec<u8>> {
     rows.finish()
 }
 
-/// Takes a former answer away, so that no two are mixed. A folder without one keeps what it has: it may be somebody's
+/// Removes an old answer, so that no two are mixed. Other files in the folder stay: they may be somebody's own
 /// `scene.toml`.
 fn remove_former(folder: &Path) -> Result<(), DiagnoseError> {
     let is_there = |name: &&str| folder.join(name).is_file();

@@ -1,4 +1,4 @@
-//! Step 3: where the baseline's misfit sits in time and state.
+//! Step 3: where in time and state the baseline's misfit is.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -10,12 +10,12 @@ use crate::diagnose::latent::{Latent, latents};
 use crate::diagnose::search::Found;
 use crate::laws::Address;
 
-/// Length of the pieces that time is cut into, s.
+/// Length of time windows, s.
 const PIECE_S: f64 = 1.0;
-/// A piece counts when its mean square stands this many standard errors above that of noise.
+/// A window counts if its mean square is this many standard errors above noise.
 const SIGMA: f64 = 6.0;
 
-/// Element, time and state in which the baseline's misfit sits.
+/// Element, time and state of the baseline's misfit.
 pub fn location(
     case: &Case,
     found: &Found,
@@ -43,13 +43,13 @@ pub fn location(
     }
 }
 
-/// What something unknown at each place makes of the calibrated scene's misfit. Where effects of the catalogue explain it, they say where.
+/// Balances of the calibrated scene's misfit. Empty if effects of the catalogue explain it: they give the place.
 fn of_baseline(open: &Problem, baseline: &Fit) -> Vec<Latent> {
     let known = open.rows_of(baseline);
     known.map_or_else(Vec::new, |known| latents(open, baseline, &known))
 }
 
-/// What something unknown at one place leaves, beside the likeliest place.
+/// Balance of one place, relative to the most likely one.
 fn balance(latent: &Latent, likeliest: &Latent, open: &Problem) -> Balance {
     let files = open.runs.iter().map(|run| run.file.clone());
     Balance {
@@ -61,7 +61,7 @@ fn balance(latent: &Latent, likeliest: &Latent, open: &Problem) -> Balance {
     }
 }
 
-/// Elements by the share of the misfit that something unknown on them could explain at best.
+/// Elements by the share of the misfit that an unknown signal on them could explain.
 fn by_place(found: &Found, latents: &[Latent]) -> Vec<(String, f64)> {
     let all = found.baseline.cost.max(f64::MIN_POSITIVE);
     let mut ranked: Vec<(String, f64)> = Vec::new();
@@ -73,7 +73,7 @@ fn by_place(found: &Found, latents: &[Latent]) -> Vec<(String, f64)> {
     ranked
 }
 
-/// Elements by the probabilities of their effects; where none is named, by what signatures promise.
+/// Elements by the probabilities of their effects; if none is named, by screening.
 fn by_probability(found: &Found, effects: &[NamedEffect]) -> Vec<(String, f64)> {
     let mut shares: BTreeMap<String, f64> = BTreeMap::new();
     // Hypotheses say where only when nothing known does.
@@ -93,7 +93,7 @@ fn by_probability(found: &Found, effects: &[NamedEffect]) -> Vec<(String, f64)> 
     ranked
 }
 
-/// Of each law named: its element with those of the forms that explain as much.
+/// For each law: its element and those of equally good forms.
 fn alike_forms(effects: &[NamedEffect]) -> Vec<Vec<String>> {
     let set = |e: &NamedEffect| {
         let mut set = vec![e.element.clone()];
@@ -108,10 +108,10 @@ fn alike_forms(effects: &[NamedEffect]) -> Vec<Vec<String>> {
     effects.iter().map(set).filter(|set| set.len() > 1).collect()
 }
 
-/// Signatures more alike than this are not told apart.
+/// Signatures more similar than this are not distinguished.
 const ALIKE: f64 = 0.9;
 
-/// For each effect found: its element with those in which another effect would look the same here.
+/// For each effect: its element and those where another effect has the same signature.
 fn indistinguishable(found: &Found) -> Vec<Vec<String>> {
     let mut sets = Vec::new();
     for placed in &found.best.model.effects {
@@ -130,7 +130,7 @@ fn indistinguishable(found: &Found) -> Vec<Vec<String>> {
     sets
 }
 
-/// Stretches (file, from, to) in which the residual is more than noise.
+/// Windows (file, from, to) in which the residual exceeds noise.
 pub fn time_windows(
     runs: &[Cow<'_, CaseRun>],
     residuals: &[Vec<Vec<f64>>],

@@ -1,4 +1,4 @@
-//! A diagnosis with all that its report and its scenes are made of.
+//! A diagnosis with the data for report and scenes.
 
 use crate::diagnose::case::{Case, Noise};
 use crate::diagnose::diagnosis::Diagnosis;
@@ -7,7 +7,7 @@ use crate::diagnose::full::fitted_scene;
 use crate::effects::Effect;
 use crate::recording::Recording;
 
-/// A diagnosis with what its report and its scene are made of.
+/// A diagnosis with the data for report and scenes.
 pub struct Outcome {
     pub diagnosis: Diagnosis,
     pub case: Case,
@@ -19,11 +19,11 @@ pub struct Outcome {
     /// Measured minus simulated of all runs: baseline, corrected.
     pub residuals: Option<[Vec<Vec<Vec<f64>>>; 2]>,
     pub noise: Vec<Noise>,
-    /// Models that were refitted and lost, with their chi².
+    /// Rejected models, with their chi².
     pub rivals: Vec<(String, f64)>,
-    /// Every effect at the size from which these recordings would show it.
+    /// Every effect at its detection limit.
     pub just_visible: Vec<Effect<f64>>,
-    /// The programme to play next: time and inputs, in the columns' units.
+    /// Input trajectory of the next experiment, in the columns' units.
     pub next_inputs: Option<Recording>,
 }
 
@@ -45,8 +45,8 @@ impl Outcome {
         Some(fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
     }
 
-    /// The calibrated scene with nothing added, as text: calibrated to the open runs, as what was found is compared with it there. Where
-    /// nothing was found it is the corrected scene: what is not named corrects nothing.
+    /// The calibrated scene with nothing added, as text, calibrated to the open runs. If nothing is named, it is the
+    /// corrected scene.
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.

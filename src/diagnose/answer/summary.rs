@@ -2,7 +2,7 @@
 
 use crate::diagnose::diagnosis::{Balance, Diagnosis, Location, NamedEffect, Verdict};
 
-/// The verdict in two sentences, and what it has to be read with.
+/// The verdict in two sentences, with caveats.
 pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
     let verdict = verdict(d);
     if caveats.is_empty() { verdict } else { format!("{verdict} Read it with care: {}.", caveats.join("; ")) }
@@ -48,11 +48,11 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
     }
 }
 
-/// Ports that are named beside the likeliest: twice the logarithm of the odds against them, and how many at most.
+/// Ports named beside the most likely one: limit of twice the log odds, and maximum number.
 const NEAR: f64 = 6.0;
 const MOST_PORTS: usize = 3;
 
-/// Where something unknown closes the balances of everything else, in words; nothing where it does so nowhere.
+/// The places where an unknown signal closes all balances, in words; empty if there are none.
 fn place(location: &Location) -> String {
     let near: Vec<&Balance> =
         location.balances.iter().filter(|b| b.closes && b.behind < NEAR).take(MOST_PORTS).collect();
@@ -63,10 +63,10 @@ fn place(location: &Location) -> String {
     format!(" (something unknown at {} leaves no other balance open)", ports.join(" or "))
 }
 
-/// Probability from which laws at other ports are worth a word.
+/// Probability from which laws at other ports are mentioned.
 const WORTH_A_WORD: f64 = 0.05;
 
-/// Laws at other ports, where an effect and its rivals leave them a probability, in words.
+/// Mentions laws at other ports if an effect and its alternatives leave them a probability.
 fn or_laws(d: &Diagnosis) -> &'static str {
     let is_rival = |e: &NamedEffect, own: &NamedEffect| own.rivals.contains(&title(e));
     let named = |own: &NamedEffect| -> f64 {
@@ -77,7 +77,7 @@ fn or_laws(d: &Diagnosis) -> &'static str {
     if is_open { ", or a law elsewhere (see forms)" } else { "" }
 }
 
-/// What comes nearest, and what hypothesis takes it further.
+/// The closest known effect, and the law that explains more.
 fn unknown(d: &Diagnosis, closed: &str) -> String {
     if let [only] = &d.effects[..]
         && let Some(number) = mere_number(only)
@@ -108,7 +108,7 @@ fn unknown(d: &Diagnosis, closed: &str) -> String {
     }
 }
 
-/// What explains the open runs and is not put into the scene.
+/// The withheld answer.
 fn withheld(effects: &[NamedEffect]) -> String {
     let one = |e: &NamedEffect| if e.hypothetical { law(e) } else { format!("{} in {}", e.name, e.element) };
     let all: Vec<String> = effects.iter().map(one).collect();

@@ -1,4 +1,4 @@
-//! What is tried at each port, and laws as something that a model can hold.
+//! Actions tried at each port, and laws as effects of a model.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::diagnose::fit::Placed;
 use crate::effects::{Element, EntryId, Fitted, Range};
 use crate::laws::{Acts, Carrier, Law, LawTable, ParameterTable, Port, Surroundings};
 
-/// What is tried at each port: whether it adds or scales, and a size that is plain to see.
+/// Action tried at each port: adding or scaling, and a clearly visible size.
 pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
     use Acts::{Adds, Scales};
     Some(match port {
@@ -25,14 +25,14 @@ pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
     })
 }
 
-/// How laws act that are tried at a place.
+/// Action of laws at one place.
 #[derive(Clone, Debug)]
 pub struct Action {
     pub acts: Acts,
     pub unit: String,
-    /// The size that is plain to see.
+    /// A clearly visible size.
     pub typical: f64,
-    /// What such a law may know.
+    /// Quantities available to such a law.
     pub around: Surroundings,
 }
 
@@ -43,7 +43,7 @@ impl Action {
     }
 }
 
-/// A law at a port whose only number is what acts there.
+/// A constant law at a port.
 pub fn injected(case: &Case, address: &str, action: &Action) -> Option<Placed> {
     let Action { acts, unit, typical, around } = action;
     let (adds, scales) = does(*acts, "u".to_owned());
@@ -61,7 +61,7 @@ pub fn injected(case: &Case, address: &str, action: &Action) -> Option<Placed> {
     Some(written(case, &table, &law, &[Fitted { typical: *typical, range, is_fitted: true }], 0))
 }
 
-/// A law as something that a model can hold.
+/// A law as an effect of a model.
 pub fn written(case: &Case, table: &LawTable, law: &Law, parameters: &[Fitted], size: usize) -> Placed {
     let entry = EntryId::write(table, law, size, parameters);
     let number = law.address.number;

@@ -1,4 +1,4 @@
-//! Laws that may be tried: at which ports, over which variables, in which shapes, as variants that a fit can hold.
+//! The grammar of laws: ports, variables and shapes, as variants for a fit.
 //!
 //! May import `fit` and `case`.
 

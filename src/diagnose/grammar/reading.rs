@@ -1,32 +1,32 @@
-//! What a law's shape is over: a variable, what is remembered of it, its product with another.
+//! Arguments of a law's shape: a variable, its memory, or a product with another variable.
 
 use std::collections::BTreeMap;
 
 use crate::laws::{ParameterTable, QUANTITIES, Quantity, StateTable};
 
-/// What stands in the place of the variable.
+/// The argument of the shape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reading {
     /// The variable itself.
     Plain,
     /// Its product with another variable over its scale.
     Times(Quantity, f64),
-    /// The variable behind by a lag, s, and how far it is ahead of that.
+    /// The variable after a first-order lag, s, and its lead over that.
     Behind(f64),
     Ahead(f64),
     /// The greatest magnitude so far.
     Greatest,
     /// The variable while it rises, by the sign of its rate.
     Rising(Quantity),
-    /// How far the variable is ahead of a play of this width.
+    /// The variable's lead over a play of this width.
     Play(f64),
-    /// What dry friction remembers: it follows the variable (whose rate stands beside it) and slips at this distance.
+    /// State of dry friction: follows the variable (whose rate is given beside it) and slips at this distance.
     Slip(Quantity, f64),
 }
 
-/// Lags that are tried, s.
+/// Lags tried, s.
 const LAGS_S: [f64; 3] = [0.5, 5.0, 50.0];
-/// Widths and distances that are tried, in scales of the variable.
+/// Widths and distances tried, in scales of the variable.
 const WIDTHS: [f64; 2] = [0.1, 0.4];
 
 /// The rate of a variable, where the rig has it as one.
@@ -39,13 +39,13 @@ fn rate(of: Quantity) -> Option<Quantity> {
     }
 }
 
-/// Whether anything of it can be remembered that it does not tell itself. A rate behind by a lag is how far its quantity is ahead of that;
-/// the flow's is none of the variables.
+/// Whether memory of the variable adds information. The lag of a rate equals the lead of its quantity; for the flow,
+/// that quantity is not among the variables.
 fn has_past(of: Quantity) -> bool {
     !matches!(of, Quantity::Time | Quantity::Speed | Quantity::AngularSpeed | Quantity::PlungerSpeed | Quantity::Flow)
 }
 
-/// Everything but the variable itself, for variable `own` of these, whose scales stand beside them.
+/// All arguments with memory or products for the variable `own`; all variables are given with their scales.
 pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
     let scale = all.iter().find(|(q, _)| *q == own).map_or(1.0, |(_, scale)| *scale);
     // Each product once.
@@ -81,7 +81,7 @@ impl Reading {
         }
     }
 
-    /// Whether it is the same but for its scale: that of a variable is another on each element.
+    /// Whether it differs only in scale, which varies between elements.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Times(a, _), Self::Times(b, _)) => a == b,
@@ -99,12 +99,12 @@ impl Reading {
         }
     }
 
-    /// Whether it depends on what the variable was.
+    /// Whether it depends on the variable's past.
     pub fn remembers(&self) -> bool {
         !matches!(self, Self::Plain | Self::Times(..) | Self::Rising(_))
     }
 
-    /// Whether it depends on how fast the variable went.
+    /// Whether it depends on the variable's rate.
     pub fn needs_clock(&self) -> bool {
         match self {
             Self::Behind(_) | Self::Ahead(_) => true,
@@ -114,7 +114,7 @@ impl Reading {
         }
     }
 
-    /// What the shape is over in a run: from the variable, the other one, and their times.
+    /// Values of the argument in a run, from the variable, the other one, and their times.
     pub fn series(&self, own: &[f64], other: &[f64], times_s: &[f64]) -> Vec<f64> {
         match self {
             Self::Plain => own.to_vec(),
@@ -136,7 +136,7 @@ impl Reading {
         }
     }
 
-    /// What the shape is over as text: `(NAME/SCALE)`.
+    /// The argument as text: `(NAME/SCALE)`.
     pub fn text(&self, variable: &str, scale: &str) -> String {
         match self {
             Self::Plain => format!("({variable}/{scale})"),
@@ -201,7 +201,7 @@ fn width(variable: &str) -> String {
     format!("width{}", of.map_or(String::new(), ending))
 }
 
-/// What follows a series with a dead zone of so much to each side; it starts where the series does.
+/// A series after a dead zone of this half width; it starts where the series does.
 fn followed(series: &[f64], half: f64) -> Vec<f64> {
     let mut state = series.first().copied().unwrap_or(0.0);
     let follow = |x: &f64| {
@@ -211,7 +211,7 @@ fn followed(series: &[f64], half: f64) -> Vec<f64> {
     series.iter().map(follow).collect()
 }
 
-/// What goes with a series and slips at a distance: `ds = dx - |dx| s/distance`, exact along straight ways.
+/// The state that follows a series and slips at a distance: `ds = dx - |dx| s/distance`, exact along straight segments.
 fn slipping(series: &[f64], distance: f64) -> Vec<f64> {
     let mut state = 0.0;
     let mut before = series.first().copied().unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! Laws of the grammar with their parameters: a slot's in a shape or as a curve, and one that the scene proposes.
+//! Laws of the grammar with parameters: a slot with a shape or a curve, and laws proposed by the scene.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::effects::{Fitted, Range};
 use crate::laws::{LawTable, ParameterTable, Port, QUANTITIES};
 use crate::scene::Candidate;
 
-/// The law of a slot in a shape, its scale so many times the slot's; none where the port cannot have it.
+/// The law of a slot with a shape at a multiple of the slot's scale; `None` if the port cannot have it.
 pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
     let (acts, typical) = (*acts, *typical);
@@ -60,7 +60,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     Some(Variant { placed, values })
 }
 
-/// A slot's law as a curve: the sum of the shapes of its basis, each with a size of its own, at the slot's scale.
+/// A slot's law as a curve: the sum of its basis shapes, each with its own size, at the slot's scale.
 pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
     let (acts, typical) = (*acts, *typical);
@@ -98,12 +98,12 @@ fn unit_of_scale<'a>(slot: &'a Slot, ending: &str) -> Option<&'a str> {
 /// Sizes of a curve's shapes.
 const SIZES: [&str; 5] = ["a", "b", "c", "d", "e"];
 
-/// A number that may be fifty times as great or as small.
+/// A parameter that may be fifty times larger or smaller.
 fn around(typical: f64, is_fitted: bool) -> Fitted {
     Fitted { typical, range: Range { min: 0.02 * typical, max: 50.0 * typical }, is_fitted }
 }
 
-/// A law that the scene proposes, tried from its own parameters. A parameter without a range has that of its scale.
+/// A law proposed by the scene, starting from its own values. A parameter without a range gets one from its scale.
 pub fn candidate(case: &Case, own: &Candidate) -> Variant {
     let number = |(i, p): (usize, &crate::laws::Parameter)| {
         let scale = p.value.abs().max(f64::MIN_POSITIVE);

@@ -1,4 +1,4 @@
-//! Shapes that a law nobody listed may have over its variable.
+//! Shapes of unlisted laws over their variable.
 
 use crate::effects::Range;
 
@@ -8,11 +8,11 @@ pub struct Shape {
     pub text: &'static str,
     /// The same as a function.
     pub at: fn(f64) -> f64,
-    /// Whether its scale bends it: if not, a size and a scale are one number.
+    /// Whether its scale changes the shape; otherwise size and scale are one parameter.
     pub has_scale: bool,
-    /// Whether it is one of those of which curves are made up when slots are screened.
+    /// Whether it is one of the basis shapes of curves.
     pub is_basis: bool,
-    /// Whether a number `p` in it is fitted as well.
+    /// Whether it has a fitted exponent or place `p`.
     pub has_number: bool,
 }
 
@@ -24,7 +24,7 @@ const fn with_number(text: &'static str, at: fn(f64) -> f64, has_scale: bool) ->
     Shape { text, at, has_scale, is_basis: true, has_number: true }
 }
 
-/// What a law is in that depends on nothing: a number of the rig that is another than the scene says.
+/// The shape of a constant: a parameter of the rig that differs from the scene.
 pub const CONSTANT: Shape = shape("1", |_| 1.0, false, false);
 
 /// Shapes over a variable, the simplest first.
@@ -45,16 +45,15 @@ pub const SHAPES: [Shape; 14] = [
     shape("(x > 1)", |x| f64::from(u8::from(x > 1.0)), true, false),
 ];
 
-/// Shapes that are tried over a variable where none of the others leaves only noise. `p` is a number that is fitted; the function
-/// has it as it begins, [`P`].
+/// Shapes tried if no other leaves only noise. `p` is fitted; the function has its start value [`P`].
 pub const MORE_SHAPES: [Shape; 4] = [
     with_number("abs(x)^p", |x| x.abs().powf(P), false),
     with_number("x*abs(x)^p", |x| x * x.abs().powf(P), false),
     shape("sin(x)", f64::sin, true, true),
     with_number("exp(-(x - p)^2)", |x| (-(x - P).powi(2)).exp(), true),
 ];
-/// Of these, what goes one way from a run's beginning on: what ages, warms up or softens. Something that comes and goes with the
-/// clock is an event of one run, and no law.
+/// Those that are monotonic from a run's beginning: ageing, warming, softening. Something that comes and goes with the
+/// clock is an event of one run, not a law.
 pub const MORE_SHAPES_OF_TIME: [Shape; 1] = [MORE_SHAPES[0]];
 pub const P: f64 = 1.5;
 /// What `p` may be.

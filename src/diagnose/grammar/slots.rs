@@ -1,4 +1,4 @@
-//! Laws that nobody listed: every port of the scene, every variable that it can depend on, in shapes that a law may have.
+//! Slots: every port of the scene combined with every variable its law may depend on.
 
 use super::acting::{Action, action, injected};
 use super::reading::{Reading, readings};
@@ -11,18 +11,18 @@ use crate::laws::{
 use crate::recording::parse_column;
 use crate::scene::on_channel;
 
-/// How far the grammar reaches.
+/// Extent of the grammar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// A shape over a variable.
     Plain,
-    /// More shapes, products of two variables, and what is remembered of one.
+    /// More shapes, products of two variables, and memory.
     Wide,
-    /// What channels show, bent: a shape over the reading.
+    /// Nonlinear sensors: a shape over the reading.
     Channels,
 }
 
-/// Variables that are tried at a port without a number in the name.
+/// Variables tried at a port without a number in the name.
 fn variables(spec: &PortSpec) -> &'static [Quantity] {
     use Quantity as Q;
     match spec.carrier {
@@ -35,37 +35,37 @@ fn variables(spec: &PortSpec) -> &'static [Quantity] {
     }
 }
 
-/// A law of the grammar before it has a shape: where it acts, and on what it depends.
+/// A law before it has a shape: where it acts, and on what it depends.
 #[derive(Clone, Debug)]
 pub struct Slot {
     pub address: String,
     pub port: Port,
-    /// Empty where the law depends on nothing.
+    /// Empty for constants.
     pub variable: String,
-    /// What of the variable the shape is over.
+    /// Argument of the shape.
     pub reading: Reading,
     shapes: &'static [Shape],
-    /// Unit scale of the variable: half of the greatest that it reaches.
+    /// Scale of the variable: half of its greatest magnitude.
     pub scale: f64,
     /// The variable in each open run.
     pub series: Vec<Vec<f64>>,
     pub action: Action,
-    /// A law whose only number is what acts at the port.
+    /// A constant law at the port.
     pub injected: Placed,
 }
 
 impl Slot {
-    /// Whether its law depends on nothing.
+    /// Whether its law is a constant.
     pub fn is_constant(&self) -> bool {
         self.variable.is_empty()
     }
 
-    /// The shapes that its law may have.
+    /// Shapes of its law.
     pub fn shapes(&self) -> &'static [Shape] {
         self.shapes
     }
 
-    /// The same slot, whose law may have the shapes that are tried where the simple ones leave something.
+    /// The same slot with the wider shapes, for when simple ones leave a misfit.
     pub fn bent(&self) -> Self {
         Self { shapes: self.more_shapes(), ..self.clone() }
     }
@@ -75,7 +75,7 @@ impl Slot {
         if is_time { &MORE_SHAPES_OF_TIME } else { &MORE_SHAPES }
     }
 
-    /// Those of which its curve is made up when slots are screened.
+    /// Basis shapes of its curve.
     pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
         let is_constant = self.is_constant();
         // What is remembered is many: a straight line and a parabola must do.
@@ -83,7 +83,7 @@ impl Slot {
         self.shapes().iter().filter(move |s| s.is_basis || is_constant).take(most)
     }
 
-    /// Whether its law goes by rate or by time, which a count of rows does not tell.
+    /// Whether its law needs a clock: it depends on a rate or on time.
     fn needs_clock(&self) -> bool {
         let of_rate = QUANTITIES.iter().any(|q| q.quantity.is_rate() && q.name() == self.variable);
         of_rate || self.port.is_of_rate() || self.reading.needs_clock()
@@ -106,7 +106,7 @@ impl PartialEq for Slot {
 pub struct Place {
     pub address: String,
     pub port: Port,
-    /// A law whose only number is what acts there, and a size of that which is plain to see.
+    /// A constant law there, and a clearly visible size of it.
     pub injected: Placed,
     pub typical: f64,
 }
@@ -129,7 +129,7 @@ pub fn places(case: &Case) -> Vec<Place> {
     PORTS.iter().flat_map(|spec| addresses(case, spec).into_iter().filter_map(|a| place(spec.port, a))).collect()
 }
 
-/// All slots of a case's scene within reach: those whose variable moves in its open runs, and those that depend on nothing.
+/// All slots of a case's scene within reach: variables that move in the open runs, and constants.
 pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
     let mut slots = match reach {
         Reach::Plain => [over_variables(case, from), constants(case)].concat(),
@@ -145,7 +145,7 @@ pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
     slots
 }
 
-/// Slots at the place of one over a variable: its products, and what is remembered of it.
+/// Slots with products or memory at the place of a plain one.
 fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
     let quantity = |slot: &Slot| Some(QUANTITIES.iter().find(|q| q.name() == slot.variable)?.quantity);
     let here: Vec<&Slot> = all.iter().filter(|slot| slot.address == own.address).collect();
@@ -163,8 +163,8 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
     readings(variable, &known).into_iter().filter_map(slot).collect()
 }
 
-/// Slots of laws that depend on nothing. What acts in the fluid as it did before adds no number of its own: a steady flow or pressure
-/// is physics, not a number.
+/// Slots of constants. Constants that add to the fluid are left out: a steady flow or pressure is physics, not a
+/// parameter.
 fn constants(case: &Case) -> Vec<Slot> {
     let open = || case.runs.iter().filter(|run| !run.is_held_out);
     let is_number = |spec: &&PortSpec| {
@@ -183,10 +183,10 @@ fn constants(case: &Case) -> Vec<Slot> {
     each.filter_map(slot).collect()
 }
 
-/// Share of the greatest reading that is plain to see.
+/// A clearly visible share of the greatest reading.
 const PLAIN_ON_A_CHANNEL: f64 = 0.02;
 
-/// Slots on what each channel shows. A straight line is a gain, which the catalogue has.
+/// Slots on sensors. A straight line is a gain, which the catalogue has.
 fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
     let open = case.runs.iter().filter(|run| !run.is_held_out);
     let shown = open.map(|run| run.rom.simulate(&run.drive, &from.model.setting(case, run, &from.x)));
@@ -249,7 +249,7 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
     asked.into_iter().enumerate().filter_map(slot).collect()
 }
 
-/// A port of every element that there is by itself, and of all at once where there are several.
+/// The port of every single element, and of all at once if there are several.
 fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
     let file = &case.scene.file;
     let (count, together) = match spec.carrier {

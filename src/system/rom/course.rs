@@ -1,4 +1,4 @@
-//! A run of the reduced-order model under way.
+//! A run of the reduced-order model in progress.
 
 use super::RomRun;
 use crate::scalar::Scalar;
@@ -26,7 +26,7 @@ impl<D: Scalar> Course<D> {
         Self { stepper: Stepper::new(plant, &state), state, spans }
     }
 
-    /// Over the interval that ends at the run's sample `k`, in so many steps.
+    /// Advances over the interval that ends at sample `k`, in `steps` steps.
     pub fn advance(&mut self, plant: &mut Plant<D>, run: &RomRun, k: usize, steps: u16) {
         let (from, to) = (run.times_s[k - 1], run.times_s[k]);
         let h = (to - from) / f64::from(steps);
@@ -48,7 +48,7 @@ impl<D: Scalar> Course<D> {
         }
     }
 
-    /// Whether it has not diverged, and no law has left the range in which it means anything.
+    /// Whether it has not diverged, and all laws are in their domain.
     pub fn is_sound(&self, plant: &Plant<D>) -> bool {
         let is_lawful = || plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, &self.state, &self.spans));
         self.state.y().iter().all(|y| y.is_finite()) && is_lawful()

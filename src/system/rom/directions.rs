@@ -1,4 +1,5 @@
-//! The reduced-order model between two samples, as a matrix: what small changes of its state, and of what acts at its ports, come to.
+//! Linearisation of the reduced-order model between two samples: derivatives with respect to its state and to signals
+//! at ports.
 
 use std::ops::Range;
 
@@ -10,20 +11,20 @@ use crate::system::plant::Plant;
 use super::course::Course;
 use super::{Rom, RomRun, RomSetting};
 
-/// Directions that one run follows, and the number that carries the derivatives along them.
+/// Directions per run, and the number type that carries the derivatives.
 pub(super) const TOGETHER: usize = 8;
 pub(super) type D = Jet<TOGETHER>;
 
-/// What is changed at the beginning of every interval.
+/// Direction of the derivative, set at the beginning of every interval.
 #[derive(Clone, Debug)]
 enum Along {
     /// Numbers of the state, by their places.
     State(Vec<usize>),
-    /// What acts at so many ports, over the whole interval.
+    /// Signals at this many ports, constant over the interval.
     Ports(usize),
 }
 
-/// A run that carries derivatives along a few directions, begun anew with every interval.
+/// A run that carries derivatives along a few directions, restarted with every interval.
 pub(super) struct Directions<'a> {
     rom: &'a Rom,
     run: &'a RomRun,
@@ -36,7 +37,7 @@ pub(super) struct Directions<'a> {
     pub is_sound: bool,
 }
 
-/// Derivatives over some intervals: of each interval and direction the states at its end, then the outputs there.
+/// Derivatives over some intervals: by interval and direction, the states at its end, then the outputs.
 pub(super) struct Columns {
     values: Vec<f64>,
     directions: usize,
@@ -57,7 +58,7 @@ impl Columns {
 }
 
 impl<'a> Directions<'a> {
-    /// Runs along every one of the state's `numbers`, several at a time. `memory`: laws that give the state some of them.
+    /// Runs along every one of `states`, several at a time. `memory`: laws that add states.
     pub fn of_state(
         rom: &'a Rom,
         run: &'a RomRun,
@@ -70,7 +71,7 @@ impl<'a> Directions<'a> {
         states.chunks(TOGETHER).map(new).collect()
     }
 
-    /// Runs along what acts at ports, several at a time: laws whose only number is what acts.
+    /// Runs along signals at ports, several at a time.
     pub fn of_ports(
         rom: &'a Rom,
         run: &'a RomRun,
@@ -146,7 +147,7 @@ impl<'a> Directions<'a> {
         (0..self.count()).for_each(|d| values.extend(here.iter().map(|x| x.slopes[d])));
     }
 
-    /// Leaves behind what earlier intervals made of the directions.
+    /// Resets the directions for the next interval.
     fn begin(&mut self) {
         for number in self.course.state.numbers_mut() {
             *number = D::constant(number.value());

@@ -1,4 +1,4 @@
-//! Small signals at ports of the reduced-order model: what they change of its outputs.
+//! Responses of the reduced-order model to small signals at ports.
 //!
 //! A signal costs a product of a small matrix and a vector for each sample, whatever the model ([`Linear`]).
 
@@ -11,24 +11,24 @@ use super::linear::{Block, Linear};
 use super::output::Sensors;
 use super::{Rom, RomRun, RomSetting};
 
-/// Signals that go through it together.
+/// Signals per batch.
 const SIGNALS: usize = 8;
 type Eight = Lanes<SIGNALS>;
 
-/// What acts at a port: a law whose only number it is, and its values, one for each sample of the run.
+/// Signals at a port: a constant law, and its values at each sample of the run.
 #[derive(Clone, Debug)]
 pub struct Signals<'a> {
     pub at: &'a Effect<f64>,
     pub values: Vec<Vec<f64>>,
 }
 
-/// What a signal changes of every output, in the unit of its column, by output and sample.
+/// Response of every output, in the unit of its column, by output and sample.
 pub type Change = Vec<Vec<f64>>;
 
 impl Rom {
-    /// What each signal changes, per unit, by port and signal; none where the model diverges.
+    /// Response to each signal per unit, by port and signal; `None` if the model diverges.
     ///
-    /// Branches are those of the run without signals: what comes out is the response along them.
+    /// Branches are those of the run without signals: the response is linear along that run.
     pub fn injected(&self, run: &RomRun, setting: &RomSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
         let at: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
         let linear = self.linear(run, setting, &at);
@@ -45,7 +45,7 @@ impl Rom {
         super::many::without_sensors(setting) != *setting || self.outputs.iter().any(|o| !o.laws.is_empty())
     }
 
-    /// What sensors make of a change, which they see on top of what the model shows.
+    /// Applies the sensors to a response.
     fn shown_by_sensors(&self, run: &RomRun, setting: &RomSetting<f64>) -> impl Fn(Change) -> Change {
         let without = super::many::without_sensors(setting);
         let base =
@@ -67,7 +67,7 @@ fn is_finite(change: &Change) -> bool {
     change.iter().flatten().all(|x| x.is_finite())
 }
 
-/// What the signals at the ports of a linear model change, one after the other; nothing where it diverges.
+/// Responses to the signals at all ports of a linear model; `None` if it diverges.
 fn through(mut linear: Linear, signals: &[Signals]) -> Option<impl Iterator<Item = Change>> {
     let each = signals.iter().enumerate();
     let mut waves: Vec<Wave> = each

@@ -1,6 +1,6 @@
-//! The reduced-order model along a run, as what is small sees it.
+//! The reduced-order model linearised along a run.
 //!
-//! From sample to sample it is linear there:
+//! From sample to sample:
 //!
 //! ```text
 //! dx[k] = A[k] dx[k-1] + b[k] u[k]        dy[k] = C[k] dx[k-1] + d[k] u[k]
@@ -17,10 +17,10 @@ use crate::laws::Port;
 use super::directions::{Columns, Directions, TOGETHER};
 use super::{Rom, RomRun, RomSetting};
 
-/// Intervals that are gone through at a time.
+/// Intervals per batch.
 const BLOCK: usize = 256;
 
-/// The linear model of a run under way, with ports at which something acts.
+/// The linear model of a run in progress, with signals at some ports.
 pub struct Linear<'a> {
     rom: &'a Rom,
     /// Places of the states that may change.
@@ -50,7 +50,7 @@ impl Block {
 }
 
 impl Rom {
-    /// The linear model along a run, for ports at which laws act whose only number is what acts. None of a model that is not integrated.
+    /// The linear model along a run, for constant laws at ports. `None` for models that are not integrated.
     pub fn linear<'a>(
         &'a self,
         run: &'a RomRun,
@@ -79,7 +79,7 @@ impl Rom {
 }
 
 impl Linear<'_> {
-    /// What acts at one of its ports at the first sample, before any interval, comes to this: of the states, then of the outputs.
+    /// Initial response to a signal at one of its ports: of the states, then of the outputs.
     pub fn start(&self, port: usize) -> &[f64] {
         column(&self.start, 0, port)
     }
@@ -99,7 +99,7 @@ impl Linear<'_> {
         Some(Block { first, matrices, columns })
     }
 
-    /// Whether all that has been gone through was finite, and no law has left the range in which it means anything.
+    /// Whether everything so far was finite and all laws were in their domain.
     pub fn is_sound(&self) -> bool {
         self.of_state.iter().chain(&self.of_ports).all(|some| some.is_sound)
     }
@@ -118,7 +118,7 @@ fn port(at: &Effect<f64>) -> Option<Port> {
     Some(at.entry.unlisted()?.law.address.port)
 }
 
-/// What acts at a port comes to this by the end of an interval.
+/// Response at the end of an interval to a signal at a port.
 fn column(ports: &[Columns], interval: usize, port: usize) -> &[f64] {
     ports[port / TOGETHER].column(interval, port % TOGETHER)
 }

@@ -1,8 +1,8 @@
-//! Several settings of the reduced-order model over one run, side by side.
+//! Several settings of the reduced-order model in a SIMD batch.
 //!
-//! What differs between the settings stands in [`Lanes`]; an instruction then works for several of them. From one sample to
-//! the next the model needs nothing but the state, so an interval in which the settings would not all take the same
-//! branch is taken back and done for each by itself: results are those of [`Rom::simulate`] to the last bit.
+//! The settings are the lanes of [`Lanes`]. Between samples the model depends only on its state, so an interval in
+//! which the lanes would take different branches is repeated for each setting alone: results equal those of
+//! [`Rom::simulate`] to the last bit.
 
 use rayon::prelude::*;
 
@@ -21,14 +21,15 @@ const TOGETHER: usize = 8;
 /// And where there are no more than these.
 const FEW: usize = TOGETHER / 2;
 
-/// After lanes have disagreed they are kept apart for a while, at most so many intervals: they often do so again at once.
+/// After lanes have disagreed, they are simulated separately for up to this many intervals, because they often disagree
+/// again.
 const LONGEST_APART: u32 = 16;
 
 type Outputs = Option<Vec<Vec<f64>>>;
 
 impl Rom {
-    /// Simulates every setting as [`Rom::simulate`] would, but together what can be: settings that differ in their sensors
-    /// alone are simulated once, those that differ in numbers side by side, groups on all threads.
+    /// Simulates every setting as [`Rom::simulate`] would: settings that differ only in sensors once, those that differ
+    /// only in values in batches, groups on all threads.
     pub fn simulate_many(&self, run: &RomRun, settings: &[RomSetting<f64>]) -> Vec<Outputs> {
         if self.standalone.is_some() {
             return settings.par_iter().map(|setting| self.simulate(run, setting)).collect();

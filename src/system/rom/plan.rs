@@ -1,4 +1,4 @@
-//! How many steps the reduced-order model takes between two samples: as many as what is looked at needs.
+//! Plans the number of steps between samples from the required accuracy.
 
 use std::sync::Arc;
 
@@ -10,12 +10,13 @@ use super::{Rom, RomRun, RomSetting};
 /// Steps in each interval of a [`RomRun`]; the first entry is that of the first interval.
 pub type StepPlan = Arc<[u16]>;
 
-/// Longest step, s: at rest longer ones flutter about zero speed, and what is held by friction creeps.
+/// Longest step, s: longer ones flutter about zero speed at rest, and friction creeps.
 const LONGEST_S: f64 = 2.5e-3;
-/// Where nothing rubs, nothing does.
+/// Longest step without friction, s.
 const LONGEST_SMOOTH_S: f64 = 2.0e-2;
 
-/// And for so long after a corner of an input, s, so much shorter: where friction stops a motion is decided there.
+/// For this time after a corner of an input, s, steps are shorter by this factor: friction decides there when motion
+/// stops.
 const CORNER_S: f64 = 0.3;
 const CORNER_STEPS: f64 = 4.0;
 /// A corner: the slope of an input changes by this share of the greatest slope it ever has.

@@ -1,19 +1,19 @@
-//! When a joint is held by next to nothing: it has no spring, and the cables on it do not pull against each other.
+//! Slack joints: joints without a spring whose cables do not pull against each other.
 
 use super::output::RomOutput;
 use super::{Rom, RomRun, RomSetting};
 use crate::system::PlantState;
 use crate::system::plant::{InputSpan, Plant};
 
-/// A pull from one side alone holds a joint that does not give way to less: this share of the greatest tension of the run. Below it
-/// the joint hangs after whichever cable happens to touch it.
+/// A one-sided pull below this share of the run's greatest tension does not hold a joint: it follows whichever cable
+/// happens to be taut.
 const FIRM: f64 = 0.01;
 
 impl Rom {
-    /// By output, the samples of a run at which what it shows depends on a joint that next to nothing holds.
+    /// By output, the samples of a run at which it shows a slack joint.
     ///
-    /// Such a joint lies where its last swing left it, or follows one cable through the other's slack: the smallest difference decides
-    /// which, and no model can predict it. `None` when the simulation diverges.
+    /// Such a joint rests where its last swing left it, or follows one cable through the other's slack. The smallest
+    /// difference decides, and no model can predict it. `None` if the simulation diverges.
     pub fn slack_joints(&self, run: &RomRun, setting: &RomSetting<f64>) -> Option<Vec<Vec<bool>>> {
         if self.standalone.is_some() {
             return Some(vec![vec![false; run.times_s.len()]; self.outputs.len()]);
@@ -35,7 +35,7 @@ fn tensions(plant: &Plant<f64>, state: &PlantState<f64>, spans: &[InputSpan]) ->
     (0..plant.cables.len()).map(|c| plant.cable(c, state, spans, 0.0).2).collect()
 }
 
-/// The tension that keeps a joint where it is, N: without end where it has a spring, no cable, or taut ones on both sides.
+/// The tension that holds a joint, N: infinite with a spring, without cables, or with taut cables on both sides.
 fn hold(plant: &Plant<f64>, tensions_n: &[f64], joint: usize) -> f64 {
     let strongest = |sign: f64| {
         let pulls = plant.cables.iter().zip(tensions_n).filter(|(c, _)| sign * c.jacobian[joint] > 0.0);

@@ -1,4 +1,4 @@
-//! What something small and steady at ports changes of the reduced-order model's outputs, by derivatives along its run.
+//! Responses to constant signals at ports, by derivatives along a run.
 
 use crate::effects::Effect;
 use crate::scalar::{Scalar, blended_at_rest};
@@ -8,8 +8,7 @@ use super::inject::Change;
 use super::{Rom, RomRun, RomSetting};
 
 impl Rom {
-    /// What each of a few steady signals changes, per unit; none where the model diverges. At each port stands a law whose only number is
-    /// what acts there. Only the first eight ports are asked.
+    /// Response per unit to a constant signal at each port; `None` if the model diverges. At most eight ports.
     pub(crate) fn steadily(
         &self,
         run: &RomRun,
