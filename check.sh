@@ -24,7 +24,7 @@ cargo fmt --check
 
 say "lints"
 if command -v shellcheck >/dev/null; then
-    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh docs/*.sh docs/examples/*.sh proof/*.sh fuzz/*.sh
+    shellcheck check.sh .ci/run cluster/*.sh cluster/*/*.sh python/*.sh docs/*.sh docs/examples/*.sh proof/*.sh proof/benchmark/*.sh fuzz/*.sh
 else
     echo "skipped: shellcheck is not installed"
 fi
@@ -146,6 +146,15 @@ fi
 
 say "the Python wheel"
 where_it_can SMAM_REQUIRE_PYTHON python/test.sh
+
+say "the benchmark for other tools: written, answered by a toy, scored"
+python3 -B -m unittest discover proof/benchmark
+pandas=$(find "$target" -maxdepth 3 -path "$target/python-maturin-*/bin/python" | head -n 1)
+if [ -n "$pandas" ]; then
+    proof/benchmark/check.sh "$target/release/examples/benchmark" "$pandas" "${SMAM_PEER_PYTHON:-}"
+else
+    echo "skipped: the toy needs pandas, which comes with the wheel's tests"
+fi
 
 say "other people's URDFs"
 where_it_can SMAM_REQUIRE_URDFS python3 tests/public_urdfs/check.py --smam "$smam"

@@ -224,6 +224,7 @@ fn from_unit(problem: &Problem<'_>, place: &[f64]) -> Vec<f64> {
 fn descend(problem: &Problem<'_>, start: &[f64], until: LmOptions) -> Option<Found> {
     let bounds: Vec<Bounds> = problem.free().iter().map(|s| Bounds { min: s.min, max: s.max }).collect();
     let (residuals, jacobian) = (|x: &[f64]| problem.residuals(x), |x: &[f64]| problem.jacobian(x));
-    let LmResult { parameters, cost, evaluations } = minimise_with_jacobian(&residuals, &jacobian, start, &bounds, until)?;
+    let LmResult { parameters, cost, evaluations } =
+        minimise_with_jacobian(&residuals, &jacobian, start, &bounds, until)?;
     Some(Found { parameters, mean_square_mm2: cost / problem.counted() as f64, evaluations })
 }
