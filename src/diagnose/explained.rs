@@ -69,7 +69,12 @@ impl Search<'_> {
         noise: Vec<Noise>,
         tried: Tried,
     ) -> Result<Explained, DiagnoseError> {
+        let one = begun.found();
         let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
+        let tried = match hypothesis::one_law_from_effect(case, &noise, (&one, &begun.found()), tried, self.say) {
+            OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
+            OneLaw::Part(tried) => *tried,
+        };
         let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
             Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
             Pair::Listed(two, tried) => {

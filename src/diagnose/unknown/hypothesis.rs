@@ -53,6 +53,8 @@ pub(in crate::diagnose) struct Tried {
     pub law: Option<Fit>,
     /// The law that replaces or accompanies the best single effect, whatever it leaves.
     pub instead: Option<Lawful>,
+    /// Whether single laws were tried and none explains everything.
+    is_open: bool,
 }
 
 impl Known {
@@ -70,30 +72,54 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
         return nothing;
     }
     let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return nothing };
-    let is_all = |lawful: &Lawful| !leaves_something(&open, &lawful.best);
-    // One that leaves much neither ends a search nor bounds it.
-    let is_better = |lawful: &Lawful| {
-        (is_all(lawful) || !leaves_much(&open, &found.baseline, &lawful.best))
-            && is_clearly_better(&open, found, &lawful.best)
-    };
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
         .map(|(best, forms)| Lawful { best, forms })
-        .filter(is_better);
-    let instead = match alone.as_ref().is_some_and(is_all) {
-        true => None,
-        false => instead(&open, found, say),
-    };
-    // What needs an effect beside it may stand for a second effect: it waits until the catalogue has tried that.
-    let better = instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1).filter(is_better);
-    let best = alone.into_iter().chain(better).min_by(|a, b| a.best.cost.total_cmp(&b.best.cost));
-    let law = best.as_ref().map(|lawful| lawful.best.clone());
+        .filter(|lawful| may_end_search(&open, found, &lawful.best));
     let known = Known { plain: Some(proposals), ..Known::default() };
-    let part = OneLaw::Part(Box::new(Tried { known, law, instead }));
-    let Some(lawful) = best.filter(is_all) else { return part };
+    let is_all = alone.as_ref().is_some_and(|lawful| !leaves_something(&open, &lawful.best));
+    let law = alone.as_ref().map(|lawful| lawful.best.clone());
+    let part = OneLaw::Part(Box::new(Tried { known, law, instead: None, is_open: !is_all }));
+    let Some(lawful) = alone.filter(|_| is_all) else { return part };
     match renewed(case, noise, lawful.beside(found), say) {
         Some((found, noise)) => OneLaw::All(Box::new(found), noise),
         None => part,
     }
+}
+
+/// Searches again for one law, from the best single effect (`one`), unless two effects of the catalogue leave nothing above
+/// noise (`two`). A law that is out of reach from the calibration leaves a large misfit, and no two listed effects explain
+/// all of that.
+pub(in crate::diagnose) fn one_law_from_effect(
+    case: &mut Case,
+    noise: &[Noise],
+    (one, two): (&Found, &Found),
+    mut tried: Tried,
+    say: &dyn Fn(String),
+) -> OneLaw {
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    let is_listed = two.best.model.effects.len() > 1 && !leaves_something(&open, &two.best);
+    if !tried.is_open || is_listed {
+        return OneLaw::Part(Box::new(tried));
+    }
+    tried.instead = instead(&open, one, say);
+    // What needs an effect beside it may stand for a second effect: it waits until the catalogue has tried that.
+    let alone = tried.instead.clone().filter(|lawful| lawful.best.model.effects.len() == 1);
+    let alone = alone.filter(|lawful| may_end_search(&open, one, &lawful.best));
+    let alone = alone.filter(|lawful| tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost));
+    let Some(lawful) = alone else { return OneLaw::Part(Box::new(tried)) };
+    tried.law = Some(lawful.best.clone());
+    let is_all = !leaves_something(&open, &lawful.best);
+    match is_all.then(|| renewed(case, noise, lawful.beside(one), say)).flatten() {
+        Some((found, noise)) => OneLaw::All(Box::new(found), noise),
+        None => OneLaw::Part(Box::new(tried)),
+    }
+}
+
+/// Whether a law may end the search for several effects, or bound it: it leaves little, and is clearly better than the best
+/// single effect.
+fn may_end_search(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+    let leaves_little = !leaves_something(open, lawful) || !leaves_much(open, &found.baseline, lawful);
+    leaves_little && is_clearly_better(open, found, lawful)
 }
 
 /// Refits a complete explanation with renewed weights and steps. `None` if it then leaves more than noise.
