@@ -495,7 +495,9 @@ fn every_command_has_a_manual_page() {
     let here = folder();
     assert!(smam(&["man", "--out", "man/man1"], here.path()).status.success());
     let pages = here.path().join("man/man1");
-    for (file, word) in [("smam.1", "smam\\-diagnose(1)"), ("smam-diagnose.1", "Find the physics"), ("smam-man.1", "man1")] {
+    for (file, word) in
+        [("smam.1", "smam\\-diagnose(1)"), ("smam-diagnose.1", "Find the physics"), ("smam-man.1", "man1")]
+    {
         let page = std::fs::read_to_string(pages.join(file)).expect("a page");
         assert!(page.contains(".TH") && page.contains(word), "{file}: {page}");
     }

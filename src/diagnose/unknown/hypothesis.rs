@@ -54,7 +54,7 @@ pub(in crate::diagnose) struct Tried {
     /// The law that replaces or accompanies the best single effect, whatever it leaves.
     pub instead: Option<Lawful>,
     /// Whether single laws were tried and none explains everything.
-    is_open: bool,
+    pub is_open: bool,
 }
 
 impl Known {
