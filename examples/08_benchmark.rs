@@ -1,8 +1,8 @@
-//! Writes the benchmark for other tools: recordings that hide something, the calibrated scene's simulation beside them, and the truth
-//! (docs/benchmark.md).
+//! Writes the benchmark for other tools: recordings that hide something, the calibrated scene with its simulation of them, and the
+//! truth (docs/benchmark.md).
 //!
 //! ```text
-//! cargo run --release --example benchmark -- OUT [RIG]
+//! cargo run --release --example benchmark -- OUT [CASE..]      all twelve, or some by name
 //! ```
 
 use std::error::Error;
@@ -11,9 +11,9 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use smam::conceal::{Drawn, Hiding, Rig, Secret, draw, write_case};
-use smam::identify::{RecordedRun, fit_rig_parameters, load_runs, replay};
+use smam::diagnose::{Case, Options, diagnose};
+use smam::identify::{RecordedRun, load_runs, replay};
 use smam::recording::{Recording, RecordingSet, Run, RunUse};
-use smam::scene::Override;
 
 /// Seed of the first case; the others count on from it, rig by rig.
 const FIRST_SEED: u64 = 20_261_201;
@@ -21,12 +21,12 @@ const HIDDEN: [Hiding; 4] = [Hiding::Nothing, Hiding::One, Hiding::Several, Hidi
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let out = Path::new(words.first().ok_or("where to? benchmark OUT [RIG]")?);
+    let (out, wanted) = words.split_first().ok_or("where to? benchmark OUT [CASE..]")?;
     let all = Rig::ALL.iter().flat_map(|rig| HIDDEN.map(|hiding| (*rig, hiding)));
     for ((rig, hiding), seed) in all.zip(FIRST_SEED..) {
-        if words.get(1).is_none_or(|only| only == rig.scene()) {
-            let name = format!("case_{seed}");
-            write(&draw(&name, rig, hiding, seed)?, out)?;
+        let name = format!("case_{seed}");
+        if wanted.is_empty() || wanted.contains(&name) {
+            write(&draw(&name, rig, hiding, seed)?, Path::new(out))?;
             println!("{name}: {}", rig.scene());
         }
     }
@@ -50,13 +50,17 @@ fn write(drawn: &Drawn, out: &Path) -> Result<(), Box<dyn Error>> {
     }
     let set = RecordingSet::load(&own)?;
     let runs = load_runs(&set, &set.runs, &mut |_| {})?;
-    let calibration = fit_rig_parameters(&set, rig.scene(), &[], &runs)?.overrides();
+    // The scene that a diagnosis compares its own answer with.
+    let outcome = diagnose(Case::load(&[&own], None, &[])?, Options { seed: 1 }, &|_| {})?;
+    let scene = own.join("calibrated/scene.toml");
+    fs::write(&scene, outcome.baseline_text().ok_or("these recordings cannot be diagnosed")??)?;
+    let simulate = |run: &RecordedRun| simulate(rig, &scene, run);
     for run in &runs {
-        simulate(rig, &calibration, run)?.write_csv(&own.join("calibrated").join(&run.run.file))?;
+        simulate(run)?.write_csv(&own.join("calibrated").join(&run.run.file))?;
     }
     let next = Run { file: "next.csv".to_owned(), run_use: Some(RunUse::Holdout), ..Run::default() };
     let next = RecordedRun { run: next, recording: drawn.holdout.clone() };
-    simulate(rig, &calibration, &next)?.write_csv(&own.join("next/calibrated.csv"))?;
+    simulate(&next)?.write_csv(&own.join("next/calibrated.csv"))?;
     let inputs = |column: &str| rig.inputs().contains(&column);
     columns(&drawn.holdout, inputs)?.write_csv(&own.join("next/inputs.csv"))?;
     columns(&drawn.holdout, |column| !inputs(column))?.write_csv(&truth.join(format!("{name}.csv")))?;
@@ -64,8 +68,8 @@ fn write(drawn: &Drawn, out: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn simulate(rig: Rig, calibration: &[Override], run: &RecordedRun) -> Result<Recording, Box<dyn Error>> {
-    let simulated = replay(rig.scene(), calibration, run, 1)?;
+fn simulate(rig: Rig, scene: &Path, run: &RecordedRun) -> Result<Recording, Box<dyn Error>> {
+    let simulated = replay(&scene.display().to_string(), &[], run, 1)?;
     columns(&simulated, |column| rig.outputs().iter().any(|o| o.column == column))
 }
 
@@ -84,9 +88,9 @@ fn told(drawn: &Drawn) -> Value {
         "format": 1,
         "case": truth.name,
         "rig": truth.rig.scene(),
-        "causes": causes,
         "noise_sd": noise.collect::<serde_json::Map<_, _>>(),
-        "excess_chi2_per_sample": truth.wanted_excess,
+        "excess_chi2_per_sample": (!causes.is_empty()).then_some(truth.wanted_excess),
+        "causes": causes,
     })
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the four cases of the bench, answers them with the toy, holds the answers against the schema and scores them.
+# Writes two cases of the bench, answers them with the toy, holds the answers against the schema and scores them.
 #     check.sh EXAMPLE PYTHON [PEER]
 # EXAMPLE: the built example `benchmark`; PYTHON: one with numpy and pandas; PEER: one with jsonschema, may be left out.
 set -euo pipefail
@@ -10,7 +10,7 @@ example=$1 python=$2 peer=${3:-}
 
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-"$example" "$out" muscle_bench
+"$example" "$out" case_20261201 case_20261202
 "$python" -B "$top/examples/python/benchmark_toy.py" "$out" "$out/answers"
 if [ -n "$peer" ]; then
     "$peer" -B - "$here/answer.schema.json" "$out"/answers/*.json <<'P'
@@ -24,5 +24,6 @@ P
 fi
 rows=$(python3 -B "$here/score.py" "$out" "$out/answers")
 echo "$rows"
-[ "$(grep -c '| muscle_bench |' <<<"$rows")" -eq 4 ] || { echo "four cases were to be scored" >&2; exit 1; }
-grep -q 'worse than calibrated 0$' <<<"$rows" || { echo "the toy predicts worse than the calibrated scene" >&2; exit 1; }
+# One hides nothing, the other a sensor's lag, which the toy knows.
+grep -q 'detected 1 of 1, false alarms 0 of 1; of 1 causes the element 1, named first 1' <<<"$rows" || { echo "the toy failed" >&2; exit 1; }
+grep -q 'worse than calibrated 0$' <<<"$rows" || { echo "it predicts worse than the calibrated scene" >&2; exit 1; }

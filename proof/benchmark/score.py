@@ -117,14 +117,14 @@ def score_case(benchmark: Path, answers: Path, truth: dict) -> dict:
         "first": sum(any(says_the_same(true, cause) for cause in said) for true in hidden),
         "in_set": sum(any(says_the_same(true, each) for each in in_sets) for true in hidden),
         "certain_and_wrong": len(wrong),
-        "gap_closed": gap_closed(benchmark, answers, truth),
+        "gap_closed": gap_closed(benchmark, answers, truth) if hidden else None,
         "seconds": answer.get("seconds"),
     }
 
 
 def totals(rows: list[dict]) -> dict:
     hidden = sum(row["hidden"] for row in rows)
-    gaps = sorted(row["gap_closed"] for row in rows if row["hidden"] and row["gap_closed"] is not None)
+    gaps = sorted(row["gap_closed"] for row in rows if row["gap_closed"] is not None)
     return {
         "cases": len(rows),
         "detected": sum(row["detected"] for row in rows if row["hidden"]),
