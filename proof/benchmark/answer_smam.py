@@ -23,10 +23,10 @@ ELEMENTS = {"joint": "mechanism", "plunger": "syringe"}
 
 def cause(effect: dict) -> dict:
     """A named effect, in the words of an answer."""
+    place = {"element": effect.get("channel") or effect["element"]}
     if effect.get("hypothetical"):
-        words = {"effect": None, "port": effect["port"], "variables": effect["variables"], "law": effect["law"]}
-        return {"element": effect["element"], **words}
-    return {"element": effect.get("channel") or effect["element"], "effect": effect["name"]}
+        return {**place, "effect": None, **{key: effect[key] for key in ("port", "variables", "law")}}
+    return {**place, "effect": effect["name"]}
 
 
 def form(own: dict) -> dict:
