@@ -79,6 +79,38 @@ fn feedforward() {
     assert!(number_before(&text, " times less") > 3.0, "{text}");
 }
 
+/// A case that hides nothing: the calibrated scene leaves noise, and the same program writes the same bytes.
+#[test]
+fn benchmark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |place: &str| {
+        let out = folder.path().join(place);
+        let text = printed("benchmark", &[out.to_str().expect("UTF-8"), "case_20261201"]);
+        assert_eq!(text, "case_20261201: muscle_bench\n");
+        let read = |file: &str| std::fs::read_to_string(out.join(file)).unwrap_or_else(|e| panic!("{file}: {e}"));
+        let case = "cases/case_20261201";
+        let files =
+            ["recordings.toml", "steps.csv", "calibrated/scene.toml", "calibrated/steps.csv", "next/inputs.csv"];
+        let files = files.map(|file| read(&format!("{case}/{file}")));
+        let kept_back = ["truth/case_20261201.json", "truth/case_20261201.csv"].map(read);
+        (files, kept_back, read(&format!("{case}/next/calibrated.csv")))
+    };
+    let (files, [truth, measured], predicted) = write("once");
+    let truth: serde_json::Value = serde_json::from_str(&truth).expect("JSON");
+    assert_eq!(truth["causes"], serde_json::json!([]));
+    assert_eq!(measured.lines().count(), predicted.lines().count());
+    let elongations_mm = |csv: &str| -> Vec<f64> {
+        csv.lines().skip(1).map(|row| row.split(',').nth(1).and_then(|x| x.parse().ok()).unwrap_or(f64::NAN)).collect()
+    };
+    let noise_mm = truth["noise_sd"]["elongation_mm"].as_f64().expect("a number");
+    let (measured, predicted) = (elongations_mm(&measured), elongations_mm(&predicted));
+    let left = measured.iter().zip(&predicted).map(|(m, p)| (m - p) / noise_mm).filter(|r| r.is_finite());
+    let squares: Vec<f64> = left.map(|r| r * r).collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    assert!((0.8..1.3).contains(&mean), "{mean} noise variances of what was kept back");
+    assert_eq!(write("again").0, files);
+}
+
 /// Every file in `examples/` with a number is started here.
 #[test]
 fn none_is_forgotten() {
