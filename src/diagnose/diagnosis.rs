@@ -54,7 +54,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Step 2: is there more than noise?
+/// Is there more than noise?
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Detection {
     /// Misfit of the refitted baseline, in units of the noise's variance.
@@ -70,7 +70,7 @@ pub struct Detection {
     pub smallest_detectable: BTreeMap<String, f64>,
 }
 
-/// Step 3: where.
+/// Where.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Location {
     pub element: Option<String>,
@@ -98,7 +98,7 @@ pub struct Balance {
     pub closes: bool,
 }
 
-/// Step 4 and 5: what.
+/// What.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NamedEffect {
     pub name: String,
@@ -203,7 +203,7 @@ pub struct Estimate {
     pub ci95: [f64; 2],
 }
 
-/// Step 7: how much better on held-out runs.
+/// How much better on held-out runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Proof {
     pub holdout: Vec<String>,
@@ -240,7 +240,7 @@ pub struct ChannelProof {
     pub noise_sd: f64,
 }
 
-/// Step 8: what to record next.
+/// What to record next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NextExperiment {
     pub why: String,

@@ -1,4 +1,4 @@
-//! Step 3: where in time and state the baseline's misfit is.
+//! Where in time and state the baseline's misfit is.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Step 8 for an ambiguous answer: the input trajectory, and the sensor if needed, that would decide.
+//! For an ambiguous answer: the input trajectory, and the sensor if needed, that would decide.
 
 use super::design::{
     Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,

@@ -1,4 +1,4 @@
-//! Step 8: the input trajectory that discriminates best between open alternatives, within recorded strokes and speeds.
+//! The input trajectory that discriminates best between open alternatives, within recorded strokes and speeds.
 
 use rayon::prelude::*;
 

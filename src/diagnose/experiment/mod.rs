@@ -1,4 +1,4 @@
-//! Step 8: the next experiment, which would best discriminate between open alternatives.
+//! The next experiment, which would best discriminate between open alternatives.
 //!
 //! May import `verdict`, `fit`, `case` and `diagnosis`.
 

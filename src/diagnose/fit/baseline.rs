@@ -1,4 +1,4 @@
-//! Step 1: refits the scene's own calibration and estimates the noise from its residual.
+//! Refits the scene's own calibration and estimates the noise from its residual.
 
 use super::model::Model;
 use super::problem::{Fit, Problem};

@@ -1,4 +1,4 @@
-//! Steps 3 and 4: effects of the catalogue are screened, refitted and exchanged until nothing explains the open runs
+//! Effects of the catalogue are screened, refitted and exchanged until nothing explains the open runs
 //! better.
 //!
 //! May import `grammar`, for laws that the scene proposes, `fit` and `case`.

@@ -1,4 +1,4 @@
-//! Step 6: what the catalogue does not explain, as laws of the grammar.
+//! What the catalogue does not explain, as laws of the grammar.
 //!
 //! May import `verdict`, `search`, `latent`, `grammar`, `fit`, `case` and `diagnosis`.
 

@@ -1,4 +1,4 @@
-//! Step 7, consequences: withdraws what fails on held-out runs, and compares with the full scene.
+//! Consequences: withdraws what fails on held-out runs, and compares with the full scene.
 
 use super::{consistency, prove};
 use crate::diagnose::case::Step;

@@ -1,4 +1,4 @@
-//! Step 7, consistency between runs: does every run alone give the same size?
+//! Consistency between runs: does every run alone give the same size?
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Steps 0 and 7: whether the recordings can be diagnosed, and whether the answer can be trusted: on held-out runs,
+//! Whether the recordings can be diagnosed, and whether the answer can be trusted: on held-out runs,
 //! between runs, on the full scene.
 //!
 //! May import `unknown`, `verdict`, `search`, `grammar`, `full`, `fit`, `case`, `diagnosis` and `error`.

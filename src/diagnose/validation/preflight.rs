@@ -1,4 +1,4 @@
-//! Step 0: whether the recordings can be diagnosed.
+//! Whether the recordings can be diagnosed.
 
 use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::{Model, Problem};

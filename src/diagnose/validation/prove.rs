@@ -1,4 +1,4 @@
-//! Step 7: gain of the effects on runs that took no part in finding and fitting them.
+//! Gain of the effects on runs that took no part in finding and fitting them.
 
 use std::collections::BTreeMap;
 

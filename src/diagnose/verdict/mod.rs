@@ -1,4 +1,4 @@
-//! Step 5: which effects are named, with what probability and in which words, and whether more than noise is left.
+//! Which effects are named, with what probability and in which words, and whether more than noise is left.
 //!
 //! May import `search`, `fit`, `case` and `diagnosis`.
 

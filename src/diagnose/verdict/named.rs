@@ -1,4 +1,4 @@
-//! Steps 4 to 6: which effects are named, with what probability, and when none is.
+//! Which effects are named, with what probability, and when none is.
 
 use std::collections::BTreeMap;
 
