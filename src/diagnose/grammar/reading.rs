@@ -9,7 +9,7 @@ use crate::laws::{ParameterTable, QUANTITIES, Quantity, StateTable};
 pub enum Reading {
     /// The variable itself.
     Plain,
-    /// Its product with another variable over its scale.
+    /// The variable, and the shape times another variable over that one's scale: a coefficient of the other variable that depends on this one.
     Times(Quantity, f64),
     /// The variable after a first-order lag, s, and its lead over that.
     Behind(f64),
@@ -48,9 +48,8 @@ fn has_past(of: Quantity) -> bool {
 /// All arguments with memory or products for the variable `own`; all variables are given with their scales.
 pub fn readings(own: Quantity, all: &[(Quantity, f64)]) -> Vec<Reading> {
     let scale = all.iter().find(|(q, _)| *q == own).map_or(1.0, |(_, scale)| *scale);
-    // Each product once.
-    let later = all.iter().skip_while(|(q, _)| *q != own).skip(1);
-    let mut found: Vec<Reading> = later.map(|(q, scale)| Reading::Times(*q, *scale)).collect();
+    let others = all.iter().filter(|(q, _)| *q != own);
+    let mut found: Vec<Reading> = others.map(|(q, scale)| Reading::Times(*q, *scale)).collect();
     if has_past(own) || own == Quantity::Flow {
         found.extend(LAGS_S.map(Reading::Behind));
     }
@@ -117,8 +116,7 @@ impl Reading {
     /// Values of the argument in a run, from the variable, the other one, and their times.
     pub fn series(&self, own: &[f64], other: &[f64], times_s: &[f64]) -> Vec<f64> {
         match self {
-            Self::Plain => own.to_vec(),
-            Self::Times(_, scale) => own.iter().zip(other).map(|(x, y)| x * y / scale).collect(),
+            Self::Plain | Self::Times(..) => own.to_vec(),
             Self::Behind(lag_s) => behind(own, times_s, *lag_s),
             Self::Ahead(lag_s) => own.iter().zip(behind(own, times_s, *lag_s)).map(|(x, s)| x - s).collect(),
             Self::Greatest => {
@@ -139,11 +137,24 @@ impl Reading {
     /// The argument as text: `(NAME/SCALE)`.
     pub fn text(&self, variable: &str, scale: &str) -> String {
         match self {
-            Self::Plain => format!("({variable}/{scale})"),
-            Self::Times(q, _) => format!("({variable}/{scale}*({}/other{}))", q.spec().name(), ending(*q)),
+            Self::Plain | Self::Times(..) => format!("({variable}/{scale})"),
             Self::Behind(_) | Self::Greatest | Self::Slip(..) => format!("(s/{scale})"),
             Self::Ahead(_) | Self::Play(_) => format!("(({variable} - s)/{scale})"),
             Self::Rising(q) => format!("({variable}/{scale}*({} > 0))", q.spec().name()),
+        }
+    }
+
+    /// What the shape is multiplied by in each sample of a run, if anything; `other` as in [`Reading::series`].
+    pub fn factor(&self, other: &[f64]) -> Option<Vec<f64>> {
+        let Self::Times(_, scale) = self else { return None };
+        Some(other.iter().map(|y| y / scale).collect())
+    }
+
+    /// A shape's text with what it is multiplied by.
+    pub fn times(&self, shape: String) -> String {
+        match self {
+            Self::Times(q, _) => format!("{shape} * ({}/other{})", q.spec().name(), ending(*q)),
+            _ => shape,
         }
     }
 
@@ -274,11 +285,14 @@ mod tests {
     }
 
     #[test]
-    fn products_stand_once_and_time_has_no_past() {
+    fn each_variable_is_a_coefficient_of_the_others_and_time_has_no_past() {
         let all = [(Quantity::Elongation, 0.01), (Quantity::Speed, 0.1), (Quantity::Time, 10.0)];
         let of = |q: Quantity| readings(q, &all);
-        assert_eq!(of(Quantity::Time), Vec::new());
-        assert_eq!(of(Quantity::Speed), [Reading::Times(Quantity::Time, 10.0)]);
+        let by = [Reading::Times(Quantity::Elongation, 0.01), Reading::Times(Quantity::Speed, 0.1)];
+        assert_eq!(of(Quantity::Time), by);
+        assert_eq!(of(Quantity::Speed), [by[0].clone(), Reading::Times(Quantity::Time, 10.0)]);
+        assert_eq!(by[1].factor(&[0.2]), Some(vec![2.0]));
+        assert_eq!(by[1].times("x^2".to_owned()), "x^2 * (speed_m_s/other_m_s)");
         assert!(of(Quantity::Elongation).contains(&Reading::Rising(Quantity::Speed)));
     }
 }

@@ -15,14 +15,14 @@ use crate::scene::Candidate;
 pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
     let (acts, typical) = (*acts, *typical);
-    let (scale, ending) = (slot.scale * scales, ending(&slot.variable));
-    let name = format!("scale{ending}");
+    let (scale, name) = (slot.scale * scales, slot.scale_name());
     let x = slot.reading.text(&slot.variable, &name);
-    let own = if slot.is_constant() { "a".to_owned() } else { format!("a * {}", spelled(shape.text, &x)) };
+    let shaped = || slot.reading.times(spelled(shape.text, &x));
+    let own = if slot.is_constant() { "a".to_owned() } else { format!("a * {}", shaped()) };
     let mut parameter = BTreeMap::new();
     parameter.insert("a".to_owned(), number(typical, Some(unit)));
     if !slot.is_constant() {
-        parameter.insert(name.clone(), number(scale, unit_of_scale(slot, ending)));
+        parameter.insert(name.clone(), number(scale, unit_of_scale(slot)));
     }
     if shape.has_number {
         parameter.insert("p".to_owned(), number(P, Some("1")));
@@ -64,13 +64,12 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
 pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
     let (acts, typical) = (*acts, *typical);
-    let ending = ending(&slot.variable);
-    let scale = format!("scale{ending}");
+    let scale = slot.scale_name();
     let x = slot.reading.text(&slot.variable, &scale);
     let terms: Vec<String> = slot.basis().zip(SIZES).map(|(s, a)| format!("{a} * {}", spelled(s.text, &x))).collect();
     let mut parameter: BTreeMap<String, ParameterTable> =
         SIZES.iter().take(terms.len()).map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
-    parameter.insert(scale, number(slot.scale, unit_of_scale(slot, ending)));
+    parameter.insert(scale, number(slot.scale, unit_of_scale(slot)));
     let sum = terms.join(" + ");
     let (adds, scales) = does(acts, sum);
     let port = slot.address.clone();
@@ -90,9 +89,9 @@ fn number(value: f64, unit: Option<&str>) -> ParameterTable {
 }
 
 /// Unit of the scale of a slot's variable, where its name does not say it: that of what a channel shows is the channel's.
-fn unit_of_scale<'a>(slot: &'a Slot, ending: &str) -> Option<&'a str> {
+fn unit_of_scale(slot: &Slot) -> Option<&str> {
     let plain = if slot.port == Port::Sensor { slot.action.unit.as_str() } else { "1" };
-    ending.is_empty().then_some(plain)
+    ending(&slot.variable).is_empty().then_some(plain)
 }
 
 /// Sizes of a curve's shapes.
@@ -119,7 +118,7 @@ pub fn candidate(case: &Case, own: &Candidate) -> Variant {
 }
 
 /// Ending of a variable's name with its unit: `_m_s`; empty for a plain number.
-fn ending(variable: &str) -> &str {
+pub(super) fn ending(variable: &str) -> &str {
     let spec = QUANTITIES.iter().find(|q| q.name() == variable);
     let own = spec.map_or(0, |q| q.ending.len());
     if own == 0 { "" } else { &variable[variable.len() - own - 1..] }

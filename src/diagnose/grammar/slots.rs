@@ -2,6 +2,7 @@
 
 use super::acting::{Action, action, injected};
 use super::reading::{Reading, readings};
+use super::shaped::ending;
 use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
 use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
@@ -47,8 +48,9 @@ pub struct Slot {
     shapes: &'static [Shape],
     /// Scale of the variable: half of its greatest magnitude.
     pub scale: f64,
-    /// The variable in each open run.
-    pub series: Vec<Vec<f64>>,
+    /// Argument of the shape in each open run, and what the shape is multiplied by there.
+    series: Vec<Vec<f64>>,
+    factors: Option<Vec<Vec<f64>>>,
     pub action: Action,
     /// A constant law at the port.
     pub injected: Placed,
@@ -70,15 +72,24 @@ impl Slot {
         Self { shapes: self.more_shapes(), ..self.clone() }
     }
 
+    /// The law's signal in an open run for a shape at this scale, without its size.
+    pub fn signal(&self, run: usize, shape: &Shape, scale: f64) -> Vec<f64> {
+        let mut signal: Vec<f64> = self.series[run].iter().map(|x| (shape.at)(x / scale)).collect();
+        if let Some(factors) = &self.factors {
+            signal.iter_mut().zip(&factors[run]).for_each(|(y, factor)| *y *= factor);
+        }
+        signal
+    }
+
     fn more_shapes(&self) -> &'static [Shape] {
-        let is_time = self.variable == Quantity::Time.spec().name() && self.reading == Reading::Plain;
+        let is_time = self.variable == Quantity::Time.spec().name();
         if is_time { &MORE_SHAPES_OF_TIME } else { &MORE_SHAPES }
     }
 
     /// Basis shapes of its curve.
     pub fn basis(&self) -> impl Iterator<Item = &'static Shape> {
         let is_constant = self.is_constant();
-        // What is remembered is many: a straight line and a parabola must do.
+        // Arguments with memory and products are many: a straight line and a parabola must do.
         let most = if self.reading == Reading::Plain { usize::MAX } else { 2 };
         self.shapes().iter().filter(move |s| s.is_basis || is_constant).take(most)
     }
@@ -87,6 +98,11 @@ impl Slot {
     fn needs_clock(&self) -> bool {
         let of_rate = QUANTITIES.iter().any(|q| q.quantity.is_rate() && q.name() == self.variable);
         of_rate || self.port.is_of_rate() || self.reading.needs_clock()
+    }
+
+    /// Name of the parameter that scales its variable.
+    pub fn scale_name(&self) -> String {
+        format!("scale{}", ending(&self.variable))
     }
 
     /// Name of its law.
@@ -157,8 +173,16 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
         let series: Vec<Vec<f64>> = runs
             .map(|(r, run)| reading.series(&own.series[r], other.map_or(&[][..], |o| &o.series[r]), &run.drive.times_s))
             .collect();
+        let factors = other.and_then(|o| o.series.iter().map(|series| reading.factor(series)).collect());
         let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        (greatest > 0.0).then(|| Slot { reading, series, scale: 0.5 * greatest, shapes: &SHAPES, ..own.clone() })
+        (greatest > 0.0).then(|| Slot {
+            reading,
+            series,
+            factors,
+            scale: 0.5 * greatest,
+            shapes: &SHAPES,
+            ..own.clone()
+        })
     };
     readings(variable, &known).into_iter().filter_map(slot).collect()
 }
@@ -178,7 +202,8 @@ fn constants(case: &Case) -> Vec<Slot> {
         let series = open().map(|run| vec![1.0; run.drive.times_s.len()]).collect();
         let shapes = std::slice::from_ref(&CONSTANT);
         let (variable, reading) = (String::new(), Reading::Plain);
-        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, action, injected })
+        let factors = None;
+        Some(Slot { address, port, variable, reading, shapes, scale: 1.0, series, factors, action, injected })
     };
     each.filter_map(slot).collect()
 }
@@ -204,7 +229,19 @@ fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
         let injected = injected(case, &address, &action)?;
         let (port, variable) = (Port::Sensor, Quantity::Reading.spec().name());
         let (reading, shapes, scale) = (Reading::Plain, &SHAPES[1..], 0.5 * greatest);
-        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, action, injected })
+        let factors = None;
+        (greatest > 0.0).then_some(Slot {
+            address,
+            port,
+            variable,
+            reading,
+            shapes,
+            scale,
+            series,
+            factors,
+            action,
+            injected,
+        })
     };
     case.channels.iter().filter_map(slot).collect()
 }
@@ -244,7 +281,19 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
         let action = Action::at(port)?;
         let injected = injected(case, &address, &action)?;
         let (reading, shapes, scale) = (Reading::Plain, &SHAPES[..], 0.5 * greatest);
-        (greatest > 0.0).then_some(Slot { address, port, variable, reading, shapes, scale, series, action, injected })
+        let factors = None;
+        (greatest > 0.0).then_some(Slot {
+            address,
+            port,
+            variable,
+            reading,
+            shapes,
+            scale,
+            series,
+            factors,
+            action,
+            injected,
+        })
     };
     asked.into_iter().enumerate().filter_map(slot).collect()
 }

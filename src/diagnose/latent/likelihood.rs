@@ -21,6 +21,8 @@ pub struct Likelihood {
     pub cost: f64,
     /// By run, the innovations' sum of squares above that of noise, in standard errors.
     pub left_sigma: Vec<f64>,
+    /// The same of all runs, in units of chi².
+    pub left: f64,
 }
 
 /// Normalised innovations of one run.
@@ -35,7 +37,7 @@ struct Innovations {
 impl Likelihood {
     pub fn of(runs: &[Condensed], walk: &Walk) -> Self {
         let runs: Vec<Innovations> = runs.iter().map(|run| filtered(run, walk).without_own(run.shared)).collect();
-        let Some(first) = runs.first() else { return Self { cost: 0.0, left_sigma: Vec::new() } };
+        let Some(first) = runs.first() else { return Self { cost: 0.0, left_sigma: Vec::new(), left: 0.0 } };
         let all = runs.iter().skip(1).fold(first.products.clone(), |sum, run| sum + &run.products);
         // Residual less Jacobian times parameters.
         let direction = DVector::from_iterator(all.nrows(), std::iter::once(1.0).chain(sizes(&all).iter().map(|x| -x)));
@@ -44,6 +46,7 @@ impl Likelihood {
         Self {
             cost: runs.iter().map(|run| square(run) + run.spread).sum(),
             left_sigma: runs.iter().map(sigma).collect(),
+            left: runs.iter().map(|run| (square(run) - run.count).max(0.0)).sum(),
         }
     }
 }

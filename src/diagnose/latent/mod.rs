@@ -34,7 +34,7 @@ const HALVINGS: i32 = 2;
 const SENSOR: &str = "sensor";
 
 /// A place is likely if it falls behind the most likely one by at most this share of the log odds (the model is only
-/// linear) or by chance.
+/// linear), by what that one leaves, or by chance.
 const SHARE_OF_ODDS: f64 = 0.05;
 const CHANCE: f64 = 20.0;
 
@@ -51,6 +51,8 @@ pub struct Latent {
     pub log_odds: f64,
     /// What is left of each open run, in standard errors of noise.
     pub left_sigma: Vec<f64>,
+    /// The same of all runs, in units of chi².
+    left: f64,
 }
 
 impl Latent {
@@ -78,7 +80,7 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
         let at = |pace: f64| Likelihood::of(&runs, &Walk { ports: &ports, variance_s: pace * pace / longest_s });
         let best = likeliest(&at);
         let element = Address::parse(&address).map_or_else(|_| SENSOR.to_owned(), |a| a.element());
-        Latent { address, element, log_odds: none.cost - best.cost, left_sigma: best.left_sigma }
+        Latent { address, element, log_odds: none.cost - best.cost, left_sigma: best.left_sigma, left: best.left }
     };
     let of_one = single.iter().enumerate().map(|(i, place)| (place.address.clone(), vec![i]));
     let members = |place: &Place| (0..single.len()).filter(|&i| single[i].port == place.port).collect();
@@ -106,7 +108,7 @@ pub fn is_behind(latents: &[Latent], address: &str) -> bool {
 }
 
 fn least(latents: &[Latent]) -> f64 {
-    latents.first().map_or(0.0, |best| (1.0 - SHARE_OF_ODDS) * best.log_odds - CHANCE)
+    latents.first().map_or(0.0, |best| best.log_odds - f64::max(SHARE_OF_ODDS * best.log_odds, best.left) - CHANCE)
 }
 
 /// The likelihood at its maximum over the pace: smooth over the logarithm, with one peak.

@@ -1,4 +1,4 @@
-//! Step 6: explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
+//! Explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
 
 use rayon::prelude::*;
 
@@ -15,8 +15,9 @@ use crate::diagnose::verdict::{self, Confirmed, Excess};
 
 /// Maximum number of laws in one answer.
 const MOST_LAWS: usize = 2;
-/// Share of the misfit below which no further law is looked for.
+/// Shares of the misfit and of the noise below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
+const EXPLAINED_OF_NOISE: f64 = 0.3;
 /// An answer with a law replaces one of the catalogue if its criterion is lower by this much.
 pub(super) const CLEARLY: f64 = 20.0;
 /// A model with a law, and the equally good alternatives.
@@ -55,6 +56,22 @@ pub(in crate::diagnose) struct Tried {
     pub instead: Option<Lawful>,
     /// Whether single laws were tried and none explains everything.
     pub is_open: bool,
+}
+
+impl Tried {
+    /// Keeps laws that leave less than those known before; the search for several effects is bounded by them if they are clearly better than
+    /// the best effects.
+    pub(super) fn takes(&mut self, lawful: Lawful, is_better: bool) {
+        let leaves_less = |other: &Fit| lawful.best.cost < other.cost;
+        if !self.instead.as_ref().is_none_or(|other| leaves_less(&other.best)) {
+            return;
+        }
+        // However many listed effects, they must leave less than this.
+        if is_better && self.law.as_ref().is_none_or(leaves_less) {
+            self.law = Some(lawful.best.clone());
+        }
+        self.instead = Some(lawful);
+    }
 }
 
 impl Known {
@@ -240,9 +257,10 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
 }
 
 /// Whether a fit leaves too little of the misfit to search for another law.
-fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
+pub(super) fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     let noise = open.noise_cost();
-    fit.cost - noise < EXPLAINED * (baseline.cost - noise)
+    let little = f64::min(EXPLAINED * (baseline.cost - noise), EXPLAINED_OF_NOISE * noise);
+    fit.cost - noise < little
 }
 
 /// Searches for laws that replace the answer, or accompany it if it leaves more than noise (`is_open`).

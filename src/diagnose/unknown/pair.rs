@@ -1,7 +1,7 @@
 //! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
 use super::forms::{equally_good, leaves_something};
-use super::hypothesis::{Lawful, Tried, is_clearly_better, renewed, without_idle};
+use super::hypothesis::{Lawful, Tried, is_clearly_better, is_explained, renewed, without_idle};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
@@ -44,12 +44,22 @@ pub(in crate::diagnose) fn pair(
     let bent =
         || propose(&open, &found.baseline, Reach::Channels, say).and_then(|bent| explains_all(&open, found, &bent));
     let single = tried.known.wide.as_ref().and_then(|wide| explains_all(&open, found, wide)).or_else(bent);
+    let nearest = tried.known.wide.iter().flat_map(|wide| wide.fits.first()).chain([&law]).min_by(cheaper).cloned();
+    let single = single.or_else(|| one_from_another(&open, found, &nearest?, say));
     if let Some(lawful) = single
         && let Some((found, noise)) = renewed(case, noise, lawful.beside(found), say)
     {
         return Pair::All(Box::new(found), noise);
     }
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    // What one law leaves may be too little for a second one, which would take the first one's place.
+    if let Some(one) = tried.known.wide.as_ref().and_then(|wide| nearly_all(&open, found, wide)) {
+        let is_enough = is_explained(&open, &found.baseline, &one.best);
+        tried.takes(one, is_enough);
+        if is_enough {
+            return Pair::Part(Box::new(tried));
+        }
+    }
     let second = propose(&open, &law, Reach::Plain, say);
     let lawful = with_partner(&open, (&found.baseline, &law), (second.as_ref(), variants), say);
     tried.known.second = second.map(|second| (law.model.effects.clone(), second));
@@ -60,17 +70,25 @@ pub(in crate::diagnose) fn pair(
     }
     let is_better = is_clearly_better(&open, found, &lawful.best);
     let is_all = is_better && !leaves_something(&open, &lawful.best);
-    let is_nearer = tried.instead.as_ref().is_none_or(|other| lawful.best.cost < other.best.cost);
     if is_all && let Some((found, noise)) = renewed(case, noise, lawful.clone().beside(found), say) {
         return Pair::All(Box::new(found), noise);
     }
-    if is_nearer {
-        // However many listed effects, they must leave less than this.
-        let is_bound = is_better && tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost);
-        tried.law = if is_bound { Some(lawful.best.clone()) } else { tried.law };
-        tried.instead = Some(lawful);
-    }
+    tried.takes(lawful, is_better);
     Pair::Part(Box::new(tried))
+}
+
+/// One law that explains all, found beside one that does not and needless with it: where the scene is far off, derivatives tell little, and
+/// a law that is not quite right has brought the model near.
+fn one_from_another(open: &Problem, found: &Found, near: &Fit, say: &dyn Fn(String)) -> Option<Lawful> {
+    let wide = propose(open, near, Reach::Wide, say)?;
+    let (best, forms) = equally_good(open, &wide.fits, near.cost)?;
+    let (best, forms) = without_idle(open, best, forms);
+    let is_one = best.model.effects.len() == 1 && !leaves_something(open, &best);
+    (is_one && is_clearly_better(open, found, &best)).then_some(Lawful { best, forms })
+}
+
+fn cheaper(a: &&Fit, b: &&Fit) -> std::cmp::Ordering {
+    a.cost.total_cmp(&b.cost)
 }
 
 /// The best proposal, if it leaves nothing above noise and is clearly better than the answer.
@@ -78,6 +96,13 @@ fn explains_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<
     let (best, forms) = equally_good(open, &proposals.fits, found.baseline.cost)?;
     let is_all = !leaves_something(open, &best) && is_clearly_better(open, found, &best);
     is_all.then_some(Lawful { best, forms })
+}
+
+/// The best proposal, if it leaves little and is clearly better than the answer.
+fn nearly_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<Lawful> {
+    let (best, forms) = equally_good(open, &proposals.fits, found.baseline.cost)?;
+    let is_nearly = !leaves_much(open, &found.baseline, &best) && is_clearly_better(open, found, &best);
+    is_nearly.then_some(Lawful { best, forms })
 }
 
 /// Replaces one of two laws by an effect of the catalogue if that leaves little. The effect is fitted where the law has

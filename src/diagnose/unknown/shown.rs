@@ -1,6 +1,8 @@
 //! Injects small signals at the ports of a fitted model: how much of the misfit could a law at each port explain,
 //! whatever its shape?
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -16,10 +18,18 @@ use crate::system::{Change, Signals};
 
 /// Scales tried for a shape, relative to the slot's.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+/// Sizes to start with are made smaller by this share, at most so many times, if they leave so many times what was there without the law.
+const SHORTEN: f64 = 0.25;
+const SHORTER: usize = 4;
+const FAR_OFF: f64 = 30.0;
 /// Steps of every refit; number of refits that continue, and their further steps.
 const FIRST_STEPS: usize = 4;
 const GOING_ON: usize = 8;
 const MORE_STEPS: usize = 20;
+
+/// The shape that a slot's law has before any other, and the share of the most promising one's gain that it must promise.
+const SIMPLEST: &str = "x";
+const NEARLY: f64 = 0.5;
 
 /// A slot, and how much a curve over its variable could explain.
 #[derive(Clone, Debug)]
@@ -27,6 +37,15 @@ pub(in crate::diagnose) struct Located {
     pub slot: Slot,
     /// Predicted reduction of chi².
     pub gain: f64,
+    /// The part of the misfit that it would explain.
+    part: DVector<f64>,
+}
+
+impl Located {
+    /// Whether another slot would explain the same part of the misfit, but for this share.
+    pub fn is_like(&self, other: &Self, share: f64) -> bool {
+        (&self.part - &other.part).norm_squared() < share * self.gain.max(other.gain)
+    }
 }
 
 /// A requested signature: slot, shape, and scale of the variable.
@@ -52,10 +71,11 @@ fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
 }
 
-/// A model with one law more, and its start values.
+/// A model with one law more, its start values, and where among them the sizes of its shapes are.
 struct Candidate {
     model: Model,
     x: Vec<f64>,
+    sizes: Range<usize>,
 }
 
 /// The misfit to be explained along the runs of a fitted model.
@@ -84,7 +104,9 @@ impl<'a> Shown<'a> {
     /// fitted.
     pub fn last_effect(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
         let last = fit.model.effects.len().checked_sub(1)?;
-        let without = Fit { x: problem.start_without(fit, last), model: fit.model.without(last), ..fit.clone() };
+        let (model, x) = (fit.model.without(last), problem.start_without(fit, last));
+        let cost = problem.cost_at(&model, &x).unwrap_or(f64::INFINITY);
+        let without = Fit { model, x, cost, ..fit.clone() };
         let size = problem.case.parameters.len() + fit.model.places().iter().position(|p| *p == (last, 0))?;
         let known = problem.rows_of(fit)?;
         let scale = problem.parameters(&fit.model)[size].scale;
@@ -103,13 +125,16 @@ impl<'a> Shown<'a> {
         Self { problem, along, from, jacobian, linear, basis, left }
     }
 
+    pub fn problem(&self) -> &Problem<'a> {
+        self.problem
+    }
+
     /// Keeps the part of the misfit that curves over a slot's variable can explain. Finite effects contain more than
     /// linear signals do: different bounces where cables go slack, and what a law does between samples.
     pub fn keep(&mut self, all: &[Slot], own: &Slot, more: More) {
         let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &of_curve(own, more)).into_iter().collect();
         let Some(signatures) = signatures else { return };
-        let sizes = sizes(&signatures, &self.left);
-        self.left = signatures.iter().zip(sizes).fold(DVector::zeros(self.left.len()), |sum, (s, size)| sum + s * size);
+        self.left = explained(&signatures, &self.left);
     }
 
     /// Sum of squares of the misfit.
@@ -137,17 +162,30 @@ impl<'a> Shown<'a> {
                 let sizes = sizes(&own, &self.left);
                 let mut own = curve(self.problem.case, slot)?;
                 own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.action.typical);
-                Some(self.with(&own))
+                Some(self.with(&own, sizes.len()))
             })
             .collect();
         self.refitted(&candidates, 0)
+    }
+
+    /// Start values at which the model is something like itself: derivatives may promise sizes at which it is not. A law may well leave more at
+    /// first than there was without it, because the calibration has yet to follow.
+    fn within_reach(&self, candidate: &Candidate) -> Vec<f64> {
+        let mut x = candidate.x.clone();
+        for _ in 0..SHORTER {
+            if self.problem.cost_at(&candidate.model, &x).is_some_and(|cost| cost < FAR_OFF * self.from.cost) {
+                break;
+            }
+            x[candidate.sizes.clone()].iter_mut().for_each(|size| *size *= SHORTEN);
+        }
+        x
     }
 
     /// Rough fits; the best `going_on` of them continue.
     fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
         let problem = self.problem;
         let begin = |candidate: &Candidate| {
-            let (model, start, known) = (&candidate.model, &candidate.x, self.from.x.len());
+            let (model, start, known) = (&candidate.model, &self.within_reach(candidate), self.from.x.len());
             let own = problem.rows(model, start, known..start.len(), Sides::One)?;
             let mut jacobian = self.jacobian.clone().resize_horizontally(start.len(), 0.0);
             jacobian.columns_mut(known, own.jacobian.ncols()).copy_from(&own.jacobian);
@@ -171,15 +209,17 @@ impl<'a> Shown<'a> {
         let mut signatures = signatures.iter();
         let gains = some.iter().zip(&wanted).map(|(slot, own)| {
             let own: Vec<&Option<DVector<f64>>> = signatures.by_ref().take(own.len()).collect();
-            let own: Vec<&DVector<f64>> = own.into_iter().flatten().collect();
-            Located { slot: slot.clone(), gain: explained(&own, &self.left) }
+            let own: Vec<DVector<f64>> = own.into_iter().flatten().cloned().collect();
+            let part = explained(&own, &self.left);
+            Located { slot: slot.clone(), gain: part.norm_squared(), part }
         });
         let mut located: Vec<Located> = gains.collect();
         located.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         located
     }
 
-    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit.
+    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit. The simplest one is among them if it
+    /// promises nearly as much: a shape that is steeper by its extremes may promise more, and leave the model in another valley.
     fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
         let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
         let wanted: Vec<Wanted> = best
@@ -199,12 +239,14 @@ impl<'a> Shown<'a> {
             })
             .collect();
         promised.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let top = |slot: &Slot| promised.iter().find(|(.., w)| w.slot == slot).map_or(0.0, |(gain, ..)| *gain);
+        let is_simplest = |gain: f64, w: &Wanted| w.shape.text == SIMPLEST && gain > NEARLY * top(w.slot);
         let mut taken: Vec<Wanted> = Vec::new();
         let mut candidates = Vec::new();
-        for (_, size, w) in promised {
+        for &(gain, size, w) in &promised {
             let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
             let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
-            if taken.iter().any(|t| is_same(&t)) || of_slot >= most {
+            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_simplest(gain, &w)) {
                 continue;
             }
             taken.push(w);
@@ -217,15 +259,16 @@ impl<'a> Shown<'a> {
         let mut own = variant(self.problem.case, w.slot, w.shape, w.scale / w.slot.scale)?;
         let range = own.placed.spec().parameters[0].range;
         own.values[0] = size.clamp(range.min, range.max);
-        Some(self.with(&own))
+        Some(self.with(&own, 1))
     }
 
-    /// A law added to the model.
-    fn with(&self, own: &Variant) -> Candidate {
+    /// A law added to the model; its first fitted parameters are so many sizes.
+    fn with(&self, own: &Variant, sizes: usize) -> Candidate {
         let model = self.from.model.plus(&own.placed, &own.values);
         let mut x = self.from.x.clone();
         x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));
-        Candidate { model, x }
+        let first = self.from.x.len();
+        Candidate { model, x, sizes: first..first + sizes }
     }
 
     /// Derivatives of all measured channels with respect to the size of each law at zero, without what the calibration
@@ -271,7 +314,7 @@ impl<'a> Shown<'a> {
         let setting = self.along.model.setting(self.problem.case, run, &self.along.x);
         let mut ports: Vec<(&Slot, Vec<usize>)> = Vec::new();
         let mut found: Vec<Option<Vec<f64>>> = vec![None; wanted.len()];
-        let signal = |w: &Wanted| -> Vec<f64> { w.slot.series[r].iter().map(|x| (w.shape.at)(x / w.scale)).collect() };
+        let signal = |w: &Wanted| w.slot.signal(r, w.shape, w.scale);
         for (i, w) in wanted.iter().enumerate() {
             if w.slot.port == Port::Sensor {
                 found[i] = Some(self.on_channel(run, w.slot, signal(w)));

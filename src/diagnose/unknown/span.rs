@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, DVector};
 /// Directions with less than this share of the largest eigenvalue are dropped.
 const FAINT: f64 = 1e-6;
 
-/// Reduction of the sum of squares by all signatures together.
-pub fn explained(signatures: &[&DVector<f64>], left: &DVector<f64>) -> f64 {
-    directions(signatures, left).iter().map(|d| d.along * d.along / d.length).sum()
+/// The part of the residual that all signatures together explain.
+pub fn explained(signatures: &[DVector<f64>], left: &DVector<f64>) -> DVector<f64> {
+    let sizes = sizes(signatures, left);
+    signatures.iter().zip(sizes).fold(DVector::zeros(left.len()), |sum, (s, size)| sum + s * size)
 }
 
 /// Amplitudes of the signatures that together fit the residual best.

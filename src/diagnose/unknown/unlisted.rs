@@ -9,16 +9,21 @@ use rayon::prelude::*;
 use super::forms::{finished, leaves_something};
 use super::shown::{Located, Shown};
 use crate::diagnose::fit::{Fit, Problem};
-use crate::diagnose::grammar::{Reach, Slot, slots};
+use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
 use crate::diagnose::latent::{Latent, latents, likely};
 
-/// Slots whose best shape is refitted: at most so many in all, and at ports of one kind. All shapes are tried around
-/// the best [`WIDENED`].
-const SLOTS: usize = 12;
-const SLOTS_OF_PORT: usize = 3;
-/// Of these, slots at the places where an unknown signal is most likely: in all, and at one place.
+/// Maximum number of slots whose best shape is refitted. All shapes are tried around the best [`WIDENED`].
+const SLOTS: usize = 14;
+/// Of these, slots at the places where an unknown signal is most likely come first: in all, at ports of one kind, and at one place.
 const SLOTS_BY_PLACE: usize = 8;
+const SLOTS_OF_PORT: usize = 3;
 const SLOTS_OF_PLACE: usize = 2;
+/// Slots are alike if they explain the same part of the misfit but for this share.
+const ALIKE: f64 = 0.03;
+/// Slots that promise less than this share of the best are skipped.
+const WORTH: f64 = 0.1;
+/// Number of the best slots that are compared with each other.
+const COMPARED: usize = 60;
 const WIDENED: usize = 4;
 /// Constant laws that are refitted beside them.
 const NUMBERS: usize = 4;
@@ -74,7 +79,7 @@ pub(in crate::diagnose) fn propose(
     // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.
     let is_explained = fits.first().is_some_and(|fit| !leaves_something(problem, fit));
     let curves = if is_explained { Vec::new() } else { shown.curves(&all, &best) };
-    let wide = worth_widening(&best, fits.iter().chain(&curves));
+    let wide: Vec<&Slot> = worth_widening(&best, fits.iter().chain(&curves));
     say(format!(
         "shapes of {} at {}",
         wide.first().map_or("", |s| &s.variable),
@@ -85,13 +90,25 @@ pub(in crate::diagnose) fn propose(
     let more: Vec<&Slot> = wide.iter().copied().chain(parameters).collect();
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    if reach == Reach::Wide {
+        fits.extend(bent(&shown, &all, &wide, &fits));
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
     Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
 }
 
+/// Refits with further shapes at the slot of the best law, if that leaves something and the slot has had the simple ones alone.
+fn bent(shown: &Shown, all: &[Slot], wide: &[&Slot], fits: &[Fit]) -> Vec<Fit> {
+    let first = fits.first().filter(|fit| leaves_something(shown.problem(), fit));
+    let own = first.and_then(|fit| wide.iter().find(|slot| is_law_of(fit, slot)));
+    let own = own.filter(|slot| slot.reading != Reading::Plain).map(|slot| slot.bent());
+    own.map_or_else(Vec::new, |own| shown.refits(all, &[&own], SHAPES_OF_SLOT))
+}
+
 /// The slots whose law or curve leaves least.
-fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) -> Vec<&'a Slot> {
-    let mut fits: Vec<&Fit> = fits.collect();
+fn worth_widening<'a, 'f>(best: &[&'a Slot], fits: impl Iterator<Item = &'f Fit>) -> Vec<&'a Slot> {
+    let mut fits: Vec<&'f Fit> = fits.collect();
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut wide: Vec<&Slot> = Vec::new();
     for fit in fits {
@@ -102,26 +119,32 @@ fn worth_widening<'a>(best: &[&'a Slot], fits: impl Iterator<Item = &'a Fit>) ->
     wide
 }
 
-/// The best slots, few at ports of one kind, and the best constants; slots at the most likely places first.
-fn several_ports<'a>(located: &'a [Located], latents: &[Latent]) -> Vec<&'a Slot> {
-    let mut best: Vec<&Slot> = Vec::new();
-    for latent in latents {
-        let here = located.iter().map(|l| &l.slot).filter(|s| !s.is_constant() && s.address == latent.address);
-        for slot in here.take(SLOTS_OF_PLACE) {
-            let of_port = best.iter().filter(|b| b.port == slot.port).count();
-            if of_port < SLOTS_OF_PORT && best.len() < SLOTS_BY_PLACE {
-                best.push(slot);
-            }
+/// The best slots and the best constants: some at the most likely places, then such as are unlike these. What derivatives promise is little to
+/// go by where the scene is far off, and slots that are alike then fail together.
+fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -> Vec<&'a Slot> {
+    let least = WORTH * located.first().map_or(0.0, |best| best.gain);
+    let over_variables = || located.iter().filter(|l| !l.slot.is_constant() && l.gain > least);
+    let of_place =
+        |latent: &'a Latent| over_variables().filter(move |l| l.slot.address == latent.address).take(SLOTS_OF_PLACE);
+    let mut best: Vec<&Located> = Vec::new();
+    let mut others: Vec<(usize, &Located)> = Vec::new();
+    for own in latents.iter().flat_map(of_place).chain(over_variables().take(COMPARED)) {
+        let mut known = best.iter().copied().chain(others.iter().map(|(_, other)| *other));
+        if known.any(|other| other.slot == own.slot) {
+            continue;
+        }
+        let of_port = best.iter().filter(|b| b.slot.port == own.slot.port).count();
+        if of_port < SLOTS_OF_PORT && best.len() < SLOTS_BY_PLACE {
+            best.push(own);
+        } else {
+            let before = others.iter().map(|(_, other)| *other).chain(best.iter().copied());
+            others.push((before.filter(|other| own.is_like(other, ALIKE)).count(), own));
         }
     }
-    for Located { slot, .. } in located.iter().filter(|l| !l.slot.is_constant()) {
-        let of_port = best.iter().filter(|b| b.port == slot.port).count();
-        if of_port < SLOTS_OF_PORT && best.len() < SLOTS && !best.contains(&slot) {
-            best.push(slot);
-        }
-    }
-    best.extend(located.iter().map(|l| &l.slot).filter(|slot| slot.is_constant()).take(NUMBERS));
-    best
+    others.sort_by_key(|(alike, _)| *alike);
+    let numbers = located.iter().map(|l| &l.slot).filter(|slot| slot.is_constant()).take(NUMBERS);
+    let slots = best.into_iter().chain(others.into_iter().map(|(_, other)| other)).map(|l| &l.slot);
+    slots.take(SLOTS).chain(numbers).collect()
 }
 
 /// Whether the last effect of a fit is a law at this slot.
@@ -133,7 +156,9 @@ pub(super) fn is_law_of(fit: &Fit, slot: &Slot) -> bool {
         true => variables.is_empty(),
         false => variables.iter().any(|v| v.name() == slot.variable),
     };
-    law.name == slot.name() && is_over
+    // Of a product, the variable that has the shape.
+    let has_scale = slot.is_constant() || law.parameter(&slot.scale_name()).is_some();
+    law.name == slot.name() && is_over && has_scale
 }
 
 fn address(located: &[Located]) -> &str {
