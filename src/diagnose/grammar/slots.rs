@@ -57,6 +57,28 @@ pub struct Slot {
 }
 
 impl Slot {
+    /// A slot whose shape is over a variable itself; `None` if the variable stays at zero.
+    fn plain(
+        (address, port, injected): (String, Port, Placed),
+        (variable, series): (String, Vec<Vec<f64>>),
+        (shapes, action): (&'static [Shape], Action),
+    ) -> Option<Self> {
+        let scale = 0.5 * greatest(&series);
+        let (reading, factors) = (Reading::Plain, None);
+        (scale > 0.0).then_some(Self {
+            address,
+            port,
+            variable,
+            reading,
+            shapes,
+            scale,
+            series,
+            factors,
+            action,
+            injected,
+        })
+    }
+
     /// Whether its law is a constant.
     pub fn is_constant(&self) -> bool {
         self.variable.is_empty()
@@ -174,15 +196,8 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
             .map(|(r, run)| reading.series(&own.series[r], other.map_or(&[][..], |o| &o.series[r]), &run.drive.times_s))
             .collect();
         let factors = other.and_then(|o| o.series.iter().map(|series| reading.factor(series)).collect());
-        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        (greatest > 0.0).then(|| Slot {
-            reading,
-            series,
-            factors,
-            scale: 0.5 * greatest,
-            shapes: &SHAPES,
-            ..own.clone()
-        })
+        let scale = 0.5 * greatest(&series);
+        (scale > 0.0).then(|| Slot { reading, series, factors, scale, shapes: &SHAPES, ..own.clone() })
     };
     readings(variable, &known).into_iter().filter_map(slot).collect()
 }
@@ -220,28 +235,14 @@ fn on_channels(case: &Case, from: &Fit) -> Vec<Slot> {
         let unit = parse_column(&channel.column).ok()?.unit;
         let series: Vec<Vec<f64>> =
             shown.iter().map(|run| run[channel.output].iter().map(|x| unit.to_si(*x)).collect()).collect();
-        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let around = on_channel(&channel.column);
         let own = around.channel.filter(|d| *d != Dimension::NONE);
         let unit = own.map_or_else(|| "1".to_owned(), |d| d.to_string());
-        let action = Action { acts: Acts::Adds, unit, typical: PLAIN_ON_A_CHANNEL * greatest, around };
+        let action = Action { acts: Acts::Adds, unit, typical: PLAIN_ON_A_CHANNEL * greatest(&series), around };
         let address = format!("sensor.{}", channel.column);
         let injected = injected(case, &address, &action)?;
-        let (port, variable) = (Port::Sensor, Quantity::Reading.spec().name());
-        let (reading, shapes, scale) = (Reading::Plain, &SHAPES[1..], 0.5 * greatest);
-        let factors = None;
-        (greatest > 0.0).then_some(Slot {
-            address,
-            port,
-            variable,
-            reading,
-            shapes,
-            scale,
-            series,
-            factors,
-            action,
-            injected,
-        })
+        let variable = Quantity::Reading.spec().name();
+        Slot::plain((address, Port::Sensor, injected), (variable, series), (&SHAPES[1..], action))
     };
     case.channels.iter().filter_map(slot).collect()
 }
@@ -277,25 +278,16 @@ fn over_variables(case: &Case, from: &Fit) -> Vec<Slot> {
     };
     let slot = |(i, (_, address, port, variable)): (usize, (Law, String, Port, String))| {
         let series: Vec<Vec<f64>> = visited.iter().map(|run| run[i].clone()).collect();
-        let greatest = series.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let action = Action::at(port)?;
         let injected = injected(case, &address, &action)?;
-        let (reading, shapes, scale) = (Reading::Plain, &SHAPES[..], 0.5 * greatest);
-        let factors = None;
-        (greatest > 0.0).then_some(Slot {
-            address,
-            port,
-            variable,
-            reading,
-            shapes,
-            scale,
-            series,
-            factors,
-            action,
-            injected,
-        })
+        Slot::plain((address, port, injected), (variable, series), (&SHAPES, action))
     };
     asked.into_iter().enumerate().filter_map(slot).collect()
+}
+
+/// Greatest magnitude of a variable in all runs.
+fn greatest(series: &[Vec<f64>]) -> f64 {
+    series.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// The port of every single element, and of all at once if there are several.

@@ -79,7 +79,7 @@ pub(in crate::diagnose) fn propose(
     // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.
     let is_explained = fits.first().is_some_and(|fit| !leaves_something(problem, fit));
     let curves = if is_explained { Vec::new() } else { shown.curves(&all, &best) };
-    let wide: Vec<&Slot> = worth_widening(&best, fits.iter().chain(&curves));
+    let wide = worth_widening(&best, fits.iter().chain(&curves));
     say(format!(
         "shapes of {} at {}",
         wide.first().map_or("", |s| &s.variable),
