@@ -44,8 +44,6 @@ pub(in crate::diagnose) fn pair(
     let bent =
         || propose(&open, &found.baseline, Reach::Channels, say).and_then(|bent| explains_all(&open, found, &bent));
     let single = tried.known.wide.as_ref().and_then(|wide| explains_all(&open, found, wide)).or_else(bent);
-    let nearest = tried.known.wide.iter().flat_map(|wide| wide.fits.first()).chain([&law]).min_by(cheaper).cloned();
-    let single = single.or_else(|| one_from_another(&open, found, &nearest?, say));
     if let Some(lawful) = single
         && let Some((found, noise)) = renewed(case, noise, lawful.beside(found), say)
     {
@@ -75,20 +73,6 @@ pub(in crate::diagnose) fn pair(
     }
     tried.takes(lawful, is_better);
     Pair::Part(Box::new(tried))
-}
-
-/// One law that explains all, found beside one that does not and needless with it: where the scene is far off, derivatives tell little, and
-/// a law that is not quite right has brought the model near.
-fn one_from_another(open: &Problem, found: &Found, near: &Fit, say: &dyn Fn(String)) -> Option<Lawful> {
-    let wide = propose(open, near, Reach::Wide, say)?;
-    let (best, forms) = equally_good(open, &wide.fits, near.cost)?;
-    let (best, forms) = without_idle(open, best, forms);
-    let is_one = best.model.effects.len() == 1 && !leaves_something(open, &best);
-    (is_one && is_clearly_better(open, found, &best)).then_some(Lawful { best, forms })
-}
-
-fn cheaper(a: &&Fit, b: &&Fit) -> std::cmp::Ordering {
-    a.cost.total_cmp(&b.cost)
 }
 
 /// The best proposal, if it leaves nothing above noise and is clearly better than the answer.
