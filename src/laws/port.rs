@@ -287,6 +287,19 @@ impl Port {
                 | Self::JointDamping
         )
     }
+
+    /// Where a law that scales this coefficient can be written as a product: the port of the term, and the variable that the coefficient
+    /// multiplies there.
+    pub(crate) fn as_product(self) -> Option<(Self, Quantity)> {
+        match self {
+            Self::Resistance => Some((Self::PressureDrop, Q::Flow)),
+            Self::Damping => Some((Self::Pull, Q::Speed)),
+            Self::Coil => Some((Self::Pull, Q::Elongation)),
+            Self::JointStiffness => Some((Self::Torque, Q::Angle)),
+            Self::JointDamping => Some((Self::Torque, Q::AngularSpeed)),
+            _ => None,
+        }
+    }
 }
 
 impl PortSpec {

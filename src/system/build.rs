@@ -7,11 +7,12 @@ use crate::recording::parse_column;
 use crate::scene::{CableSpec, MuscleSpec, MusclesSpec, Scene, TubeSpec, WallSpec};
 
 use super::SystemError;
+use super::coordinates::{CoordinateStop, Coordinates};
 use super::elastic::Elastic;
 use super::extras::{MechanismExtras, MuscleExtras};
 use super::install::{Site, install, install_laws, settle_memory};
 use super::laws::Wrong;
-use super::plant::{CablePlant, CoordinateStop, Coordinates, Drive, InputSpan, MusclePlant, Plant};
+use super::plant::{CablePlant, Drive, InputSpan, MusclePlant, Plant};
 use super::state::PlantState;
 
 /// A plant with its starting state, and how its parts hang on the mechanism.

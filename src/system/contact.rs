@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::plant::ContactSpring;
+use super::coordinates::ContactSpring;
 
 /// Stiffness of the foreseen contact over `M_eff/h²`. Stiffer would move less under a change of the force, but must
 /// stay below what a fine step can meet unforeseen (a jaw that bounces and comes back within one engine step).

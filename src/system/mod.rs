@@ -24,6 +24,7 @@ mod arc;
 mod build;
 mod channels;
 mod contact;
+mod coordinates;
 mod effect_energy;
 mod elastic;
 mod energy;
@@ -67,6 +68,7 @@ pub use simulation::Simulation;
 // The program's own: not part of what the documentation offers.
 #[doc(hidden)]
 pub use {
+    coordinates::{ContactSpring, CoordinateStop, Coordinates},
     elastic::{Elastic, ElasticPoint},
     events::ConcernsS,
     extras::{AngleWall, CableFriction, ConstantLoad, Coupling, JointFriction, MechanismExtras, MuscleExtras},
@@ -74,9 +76,7 @@ pub use {
     influence::{Influence, Influenced, influence},
     laws::PlantLaws,
     measured_pose::measured_poses,
-    plant::{
-        CablePlant, ContactSpring, CoordinateStop, Coordinates, Drive, InputSpan, MuscleForces, MusclePlant, Plant,
-    },
+    plant::{CablePlant, Drive, InputSpan, MuscleForces, MusclePlant, Plant},
     posed::Posed,
     rom::{Block, Change, Linear, MuscleNumber, Rom, RomParameter, RomRun, RomSetting, Signals, StepPlan},
     rosenbrock::Stepper,

@@ -9,75 +9,12 @@ use crate::hydraulics::{Chain, Port};
 use crate::muscle::{Friction, Stop};
 use crate::scalar::Scalar;
 
+use super::coordinates::Coordinates;
 use super::elastic::{Elastic, ElasticPoint};
 use super::extras::{CableFriction, MechanismExtras, MuscleExtras};
 use super::laws::{Acts, PlantLaws};
 use super::posed::{Lean, Posed};
 use super::state::{Parts, PlantState, sized, sized_mut};
-
-/// The mechanism as the plant sees it over one step: `M y'' + D y' + K (y - rest) = ...`.
-#[derive(Clone, Debug)]
-pub struct Coordinates<D> {
-    /// Inertia matrix, row by row, kg or kg m²; symmetric, positive definite.
-    pub inertia: Vec<D>,
-    /// Viscous damping of each coordinate, N s/m or N m s/rad.
-    pub damping: Vec<D>,
-    /// Spring of each coordinate, N/m or N m/rad, and where it rests.
-    pub stiffness: Vec<D>,
-    pub rest: Vec<f64>,
-    /// Constant generalised force over the step: weights, loads, contact reactions.
-    pub force: Vec<D>,
-    pub stops: Vec<CoordinateStop>,
-    /// What the mechanism touched at the end of the last engine step.
-    pub contact: Option<ContactSpring>,
-}
-
-/// A contact as the plant foresees it over one engine step: a stiff spring where it was touched last.
-///
-/// The engine owns contacts; without this the plant would, for one step, drive a gripping jaw through what it holds
-/// and take its tension away. Reaction `n max(0, f + k (offset - n . y) - c n . y')`, `f` that of the last step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactSpring {
-    /// Direction of the reaction in the coordinates, of unit length.
-    pub direction: Vec<f64>,
-    pub preload: f64,
-    pub offset: f64,
-    pub stiffness: f64,
-    pub damping: f64,
-}
-
-impl ContactSpring {
-    /// Push along the direction, never negative.
-    pub(super) fn push<D: Scalar>(&self, y: &[D], w: &[D]) -> D {
-        let depth = -dot::<_, 0>(&self.direction, y) + self.offset;
-        let push = depth * self.stiffness - dot::<_, 0>(&self.direction, w) * self.damping + self.preload;
-        let zero = D::constant(0.0);
-        push.select_above(zero, push, zero)
-    }
-}
-
-/// A one-sided spring on a coordinate: a closed jaw, a closed notch, a coil on its turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoordinateStop {
-    pub coordinate: usize,
-    pub position: f64,
-    /// +1: acts below `position`; -1: acts above it.
-    pub side: f64,
-    pub stiffness: f64,
-    pub damping: f64,
-}
-
-impl CoordinateStop {
-    /// Depth into the stop, and the force it answers with along the coordinate.
-    pub(super) fn force<D: Scalar>(&self, y: D, w: D) -> (D, D) {
-        let depth = (-y + self.position) * self.side;
-        if !depth.is_above(0.0) {
-            return (depth, D::constant(0.0));
-        }
-        let push = depth * self.stiffness - w * (self.side * self.damping);
-        if push.is_above(0.0) { (depth, push * self.side) } else { (depth, D::constant(0.0)) }
-    }
-}
 
 /// What sets the pressure in a muscle.
 #[derive(Clone, Debug)]
@@ -363,9 +300,7 @@ impl<D: Scalar> Plant<D> {
         room: &mut Option<Acts<D>>,
     ) -> MuscleForces<D> {
         let Some(laws) = &self.laws else { return self.stock_forces(muscle, now) };
-        let acts = room.get_or_insert_with(|| laws.room(self));
-        laws.act(self, now, acts);
-        self.forces_seen(muscle, now, Some(acts))
+        self.forces_seen(muscle, now, Some(laws.acting(self, now, room)))
     }
 
     /// The same where what laws do at the instant is known.
@@ -401,13 +336,14 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
-    pub(super) fn pulling<const N: usize>(&self, now: &Instant<D, N>) -> u64 {
+    /// `room` is for what laws do, and may be kept for the next instant.
+    pub(super) fn pulling<const N: usize>(&self, now: &Instant<D, N>, room: &mut Option<Acts<D>>) -> u64 {
         let (y, w) = (now.at.y(), now.at.w());
         let mut bits = 0;
         let mut note = |acts: bool| bits = bits << 1 | u64::from(acts);
         match self.laws.as_ref().filter(|laws| laws.on_cables()) {
             None => self.cables.iter().for_each(|c| note(c.pull(now).2.is_above(0.0))),
-            Some(laws) => laws.tensions(self, now).iter().for_each(|tension| note(tension.is_above(0.0))),
+            Some(laws) => laws.tensions(self, now, room).iter().for_each(|tension| note(tension.is_above(0.0))),
         }
         self.coordinates.stops.iter().for_each(|s| note(s.force(y[s.coordinate], w[s.coordinate]).0.is_above(0.0)));
         for muscle in self.muscles.iter().filter(|m| m.stop.is_some()) {
@@ -422,9 +358,13 @@ impl<D: Scalar> Plant<D> {
 
     /// Stretch, stretching rate and tension of a cable; the tension is never negative and zero when slack.
     pub fn cable(&self, cable: usize, state: &PlantState<D>, inputs: &[InputSpan], elapsed_s: f64) -> (D, D, D) {
-        let now: Instant<D> = Instant::of(state, inputs, elapsed_s);
-        let Some(laws) = &self.laws else { return self.cables[cable].pull(&now) };
-        let pull = laws.cable(cable, self, &now, &laws.afresh(self, &now));
+        self.cable_in(cable, &Instant::of(state, inputs, elapsed_s), &mut None)
+    }
+
+    /// The same with room for what laws do, kept from one instant to the next.
+    pub(super) fn cable_in(&self, cable: usize, now: &Instant<D>, room: &mut Option<Acts<D>>) -> (D, D, D) {
+        let Some(laws) = &self.laws else { return self.cables[cable].pull(now) };
+        let pull = laws.cable(cable, self, now, laws.acting(self, now, room));
         (pull.stretch_m, pull.rate_m_s, pull.tension_n)
     }
 

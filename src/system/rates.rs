@@ -4,8 +4,9 @@ use crate::hydraulics::Chain;
 use crate::laws::Port;
 use crate::scalar::Scalar;
 
+use super::coordinates::CoordinateStop;
 use super::laws::{Acts, MuscleActs, line_drop};
-use super::plant::{CoordinateStop, Drive, Instant, MuscleForces, Plant, add_scaled, dot};
+use super::plant::{Drive, Instant, MuscleForces, Plant, add_scaled, dot};
 use super::state::{PartsMut, sized};
 
 /// Which of the plant's one-sided elements act, as one number (a collision only delays new tangents).

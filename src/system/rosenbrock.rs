@@ -17,6 +17,7 @@
 
 use crate::scalar::Scalar;
 
+use super::laws::Acts;
 use super::plant::{Drive, InputSpan, Instant, Plant, add_scaled, dot};
 use super::rates::{Seen, Switches, rates};
 use super::state::{Layout, PlantState, sized, sized_mut};
@@ -47,6 +48,8 @@ pub struct Stepper<D> {
     /// How far laws of the plunger move each piston in the step beyond what their rates tell, m.
     piston_lead_m: Vec<D>,
     seen: Seen<D>,
+    /// For what laws do where a step ends.
+    pub(super) room: Option<Acts<D>>,
     tangents: Tangents<D>,
     /// Everything one-sided where the tangents were taken, and how many steps ago and for which step that was.
     switches: Switches,
@@ -68,6 +71,7 @@ impl<D: Scalar> Stepper<D> {
             piston_ahead_m: vec![D::constant(0.0); muscles.len()],
             piston_lead_m: vec![D::constant(0.0); muscles.len()],
             seen: Seen::new(plant),
+            room: None,
             tangents: Tangents::new(plant, state.segments(), state.parts().joint_z().len(), state.parts().slow().len()),
             switches: Switches::default(),
             age: KEEP,
@@ -135,13 +139,14 @@ impl<D: Scalar> Stepper<D> {
 
     /// What would pull at the end of the step that was taken last ([`Plant::pulling`]).
     pub(super) fn pulling_ahead(
-        &self,
+        &mut self,
         plant: &Plant<D>,
         state: &PlantState<D>,
         inputs: &[InputSpan],
         elapsed_s: f64,
     ) -> u64 {
-        plant.pulling::<0>(&Instant { state, at: state.layout.parts(&self.ahead), inputs, elapsed_s })
+        let now = Instant { state, at: state.layout.parts(&self.ahead), inputs, elapsed_s };
+        plant.pulling::<0>(&now, &mut self.room)
     }
 
     /// Moves `state` to the end of the step of `h` seconds that was taken from it; `inputs` are still those of its beginning.

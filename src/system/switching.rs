@@ -43,7 +43,7 @@ impl<D: Scalar> Stepper<D> {
             return;
         }
         self.advance_in_parts(plant, state, inputs, h, watch);
-        *pulling = plant.pulling::<0>(&Instant::of(state, inputs, 0.0));
+        *pulling = plant.pulling::<0>(&Instant::of(state, inputs, 0.0), &mut self.room);
     }
 
     #[cold]

@@ -78,7 +78,8 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
     Some((shape, values[scale]))
 }
 
-/// Candidate slots: all plain ones, and those with the same kind of memory or product as the last effect. For effects
+/// Candidate slots: all plain ones, those with the same kind of memory or product as the last effect, and for a law of a coefficient the
+/// product that says the same. For effects
 /// of the catalogue only their own variables and constants, since a law has a low prior beside them; for those with
 /// memory, any law with memory over their variables.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
@@ -94,13 +95,19 @@ fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
         return plain;
     };
     let variables: Vec<String> = own.law.variables().iter().map(|v| v.name()).collect();
-    if own.law.states.is_empty() && variables.len() < 2 {
+    let product = own.law.address.port.as_product().filter(|_| !variables.is_empty());
+    if own.law.states.is_empty() && variables.len() < 2 && product.is_none() {
         return plain;
     }
     let mut wide = slots(problem.case, fit, Reach::Wide);
     let own: Vec<Reading> = wide.iter().filter(|slot| is_law_of(fit, slot)).map(|slot| slot.reading.clone()).collect();
     let is_read_so = |slot: &Slot| own.iter().any(|reading| reading.is_like(&slot.reading));
-    wide.retain(|slot| slot.reading != Reading::Plain && variables.contains(&slot.variable) && is_read_so(slot));
+    // The same law in other words: a resistance over time is a pressure drop over time and flow.
+    let is_product = |slot: &Slot| {
+        product.is_some_and(|(port, by)| slot.port == port && matches!(slot.reading, Reading::Times(q, _) if q == by))
+    };
+    let is_alike = |slot: &Slot| is_read_so(slot) || is_product(slot);
+    wide.retain(|slot| slot.reading != Reading::Plain && variables.contains(&slot.variable) && is_alike(slot));
     plain.extend(wide);
     plain
 }
@@ -111,6 +118,7 @@ mod tests {
     use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::Model;
     use crate::effects::{Element, find};
+    use crate::laws::Quantity;
     use crate::scene::Override;
 
     /// A softer syringe, answered by a factor of the line's compliance: the syringe's compliance is an alternative,
@@ -156,5 +164,36 @@ mod tests {
         let of_softening = remembered("mullins_softening");
         assert!(of_softening.len() > 10 && of_softening.iter().all(|v| v == "elongation_m"), "{of_softening:?}");
         assert!(remembered("leak").is_empty());
+    }
+    /// A resistance that grows with time is a pressure drop over time and flow.
+    #[test]
+    fn a_law_of_a_coefficient_has_the_product_that_says_the_same() {
+        let channels = ["elongation_mm", "pressure_kpa"];
+        let mut case = made::recorded("muscle_bench", &[], &["plunger_mm"], &channels);
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let baseline = Model::baseline();
+        let fit = problem.fit(&baseline, &problem.start(&baseline, None)).expect("it does not diverge");
+        let all = slots(&case, &fit, Reach::Plain);
+        let of_line = all.iter().find(|slot| slot.variable == "time_s" && slot.address == "line.resistance");
+        let of_line = of_line.expect("a slot");
+        let own = variant(&case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
+        let model = Model::baseline().plus(&own.placed, &own.values);
+        let x = problem.start(&model, None);
+        let answered = Fit { model, x, cost: 0.0, ..fit };
+        let products = alike(&problem, &answered).into_iter().filter(|slot| slot.reading != Reading::Plain);
+        let products: Vec<(String, String, Reading)> =
+            products.map(|slot| (slot.address, slot.variable, slot.reading)).collect();
+        assert!(
+            matches!(&products[..], [(at, over, Reading::Times(Quantity::Flow, _))] if at == "line.pressure_drop" && over == "time_s"),
+            "{products:?}"
+        );
+        let others = elsewhere(&problem, &answered, 6.0);
+        let is_product = |fit: &Fit| {
+            let law = fit.model.effects.last().and_then(|e| e.spec().unlisted());
+            law.is_some_and(|own| own.law.name == "line_pressure_drop_product")
+        };
+        assert!(others.iter().any(is_product), "{} others", others.len());
     }
 }

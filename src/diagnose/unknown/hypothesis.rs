@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
 use super::stand_ins::other_places;
+use super::tried::{Known, Lawful, Tried};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
-use crate::diagnose::fit::{Fit, Placed, Problem};
+use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{
     Found, MOST_EFFECTS, cross_validates, cross_validates_runs, least_gain, leaves_much, reweight,
@@ -20,12 +21,6 @@ const EXPLAINED: f64 = 0.02;
 const EXPLAINED_OF_NOISE: f64 = 0.3;
 /// An answer with a law replaces one of the catalogue if its criterion is lower by this much.
 pub(super) const CLEARLY: f64 = 20.0;
-/// A model with a law, and the equally good alternatives.
-#[derive(Clone)]
-pub(in crate::diagnose) struct Lawful {
-    pub best: Fit,
-    pub forms: Vec<Fit>,
-}
 
 /// Result of trying one law before several effects of the catalogue.
 pub(in crate::diagnose) enum OneLaw {
@@ -34,51 +29,6 @@ pub(in crate::diagnose) enum OneLaw {
     All(Box<Found>, Vec<Noise>),
     /// It does not, or the step was left out.
     Part(Box<Tried>),
-}
-
-/// Laws proposed on top of the calibration.
-#[derive(Default)]
-pub(in crate::diagnose) struct Known {
-    pub plain: Option<Proposals>,
-    /// Single laws with memory, with products of variables, or of wider shapes.
-    pub wide: Option<Proposals>,
-    /// Second laws, and the first law that they accompany.
-    pub second: Option<(Vec<Placed>, Proposals)>,
-}
-
-/// Results for one law, kept for later.
-#[derive(Default)]
-pub(in crate::diagnose) struct Tried {
-    pub known: Known,
-    /// The best law that is clearly better than any single effect.
-    pub law: Option<Fit>,
-    /// The law that replaces or accompanies the best single effect, whatever it leaves.
-    pub instead: Option<Lawful>,
-    /// Whether single laws were tried and none explains everything.
-    pub is_open: bool,
-}
-
-impl Tried {
-    /// Keeps laws that leave less than those known before; the search for several effects is bounded by them if they are clearly better than
-    /// the best effects.
-    pub(super) fn takes(&mut self, lawful: Lawful, is_better: bool) {
-        let leaves_less = |other: &Fit| lawful.best.cost < other.cost;
-        if !self.instead.as_ref().is_none_or(|other| leaves_less(&other.best)) {
-            return;
-        }
-        // However many listed effects, they must leave less than this.
-        if is_better && self.law.as_ref().is_none_or(leaves_less) {
-            self.law = Some(lawful.best.clone());
-        }
-        self.instead = Some(lawful);
-    }
-}
-
-impl Known {
-    /// Proposals to accompany this law.
-    fn beside(&mut self, law: &Fit) -> Option<Proposals> {
-        self.second.take_if(|(own, _)| *own == law.model.effects).map(|(_, proposals)| proposals)
-    }
 }
 
 /// Searches for one law to replace the best single effect, if that effect leaves more than noise.

@@ -4,7 +4,8 @@
 //! makes that misfit far more likely than a signal at the effect's own place, and more likely than the effect does.
 
 use super::forms::{Criterion, equally_good};
-use super::hypothesis::{CLEARLY, Lawful, without_idle};
+use super::hypothesis::{CLEARLY, without_idle};
+use super::tried::Lawful;
 use super::unlisted::propose;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};

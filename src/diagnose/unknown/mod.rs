@@ -9,9 +9,11 @@ pub(super) mod hypothesis;
 mod linear_range;
 pub(super) mod misplaced;
 pub(super) mod pair;
+mod shape_refits;
 mod shown;
 mod span;
 pub(super) mod stand_ins;
+pub(super) mod tried;
 mod unlisted;
 
 pub(super) use forms::{SAME, equally_good};

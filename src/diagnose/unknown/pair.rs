@@ -1,7 +1,8 @@
 //! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
 use super::forms::{equally_good, leaves_something};
-use super::hypothesis::{Lawful, Tried, is_clearly_better, is_explained, renewed, without_idle};
+use super::hypothesis::{is_clearly_better, is_explained, renewed, without_idle};
+use super::tried::{Lawful, Tried};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};

@@ -1,35 +1,18 @@
 //! Injects small signals at the ports of a fitted model: how much of the misfit could a law at each port explain,
 //! whatever its shape?
 
-use std::ops::Range;
-
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::linear_range::{basis, linear_rows, where_linear};
-use super::span::{explained, sizes};
+use super::span::explained;
 use crate::diagnose::case::CaseRun;
-use crate::diagnose::fit::{Fit, FitParameter, Model, Problem, Rows, Sides, Underway, Variant, orthogonal};
-use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
+use crate::diagnose::fit::{Fit, FitParameter, Problem, Rows, orthogonal};
+use crate::diagnose::grammar::{Shape, Slot};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
 use crate::recording::parse_column;
 use crate::system::{Change, Signals};
-
-/// Scales tried for a shape, relative to the slot's.
-const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
-/// Sizes to start with are made smaller by this share, at most so many times, if they leave so many times what was there without the law.
-const SHORTEN: f64 = 0.25;
-const SHORTER: usize = 4;
-const FAR_OFF: f64 = 30.0;
-/// Steps of every refit; number of refits that continue, and their further steps.
-const FIRST_STEPS: usize = 4;
-const GOING_ON: usize = 8;
-const MORE_STEPS: usize = 20;
-
-/// The shape that a slot's law has before any other, and the share of the most promising one's gain that it must promise.
-const SIMPLEST: &str = "x";
-const NEARLY: f64 = 0.5;
 
 /// A slot, and how much a curve over its variable could explain.
 #[derive(Clone, Debug)]
@@ -50,10 +33,10 @@ impl Located {
 
 /// A requested signature: slot, shape, and scale of the variable.
 #[derive(Clone, Copy, Debug)]
-struct Wanted<'a> {
-    slot: &'a Slot,
-    shape: &'a Shape,
-    scale: f64,
+pub(super) struct Wanted<'a> {
+    pub slot: &'a Slot,
+    pub shape: &'a Shape,
+    pub scale: f64,
 }
 
 impl PartialEq for Wanted<'_> {
@@ -66,32 +49,25 @@ impl PartialEq for Wanted<'_> {
 pub(super) type More = Option<(&'static Shape, f64)>;
 
 /// Signatures that make up the curve of a slot.
-fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
+pub(super) fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
     slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
 }
 
-/// A model with one law more, its start values, and where among them the sizes of its shapes are.
-struct Candidate {
-    model: Model,
-    x: Vec<f64>,
-    sizes: Range<usize>,
-}
-
 /// The misfit to be explained along the runs of a fitted model.
 pub(super) struct Shown<'a> {
-    problem: &'a Problem<'a>,
+    pub(super) problem: &'a Problem<'a>,
     /// The model along whose runs signals are injected, and the model that laws are added to.
     along: &'a Fit,
     /// The model that laws are added to.
-    from: Fit,
+    pub(super) from: Fit,
     /// Jacobian of `from`.
-    jacobian: DMatrix<f64>,
+    pub(super) jacobian: DMatrix<f64>,
     /// Rows in the linear range; basis of what calibration and free zeros can imitate there.
     linear: Vec<bool>,
     basis: DMatrix<f64>,
     /// Misfit in the linear range, without what these can imitate.
-    left: DVector<f64>,
+    pub(super) left: DVector<f64>,
 }
 
 impl<'a> Shown<'a> {
@@ -125,10 +101,6 @@ impl<'a> Shown<'a> {
         Self { problem, along, from, jacobian, linear, basis, left }
     }
 
-    pub fn problem(&self) -> &Problem<'a> {
-        self.problem
-    }
-
     /// Keeps the part of the misfit that curves over a slot's variable can explain. Finite effects contain more than
     /// linear signals do: different bounces where cables go slack, and what a law does between samples.
     pub fn keep(&mut self, all: &[Slot], own: &Slot, more: More) {
@@ -140,66 +112,6 @@ impl<'a> Shown<'a> {
     /// Sum of squares of the misfit.
     pub fn whole(&self) -> f64 {
         self.left.norm_squared()
-    }
-
-    /// Joint rough refits with a law at each slot in its most promising shapes, at most so many per slot; cheapest
-    /// first.
-    pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
-        self.refitted(&self.shapes(all, best, most), GOING_ON)
-    }
-
-    /// The same with a free curve at each slot. None is converged, because a curve is not an answer.
-    pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
-        let plain: Vec<&Slot> =
-            best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
-        let wanted: Vec<Wanted> = plain.iter().flat_map(|slot| of_curve(slot, None)).collect();
-        let mut signatures = self.signatures(all, &wanted).into_iter();
-        let candidates: Vec<Candidate> = plain
-            .iter()
-            .filter_map(|slot| {
-                let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(slot.basis().count()).collect();
-                let own: Vec<DVector<f64>> = own.into_iter().collect::<Option<_>>()?;
-                let sizes = sizes(&own, &self.left);
-                let mut own = curve(self.problem.case, slot)?;
-                own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.action.typical);
-                Some(self.with(&own, sizes.len()))
-            })
-            .collect();
-        self.refitted(&candidates, 0)
-    }
-
-    /// Start values at which the model is something like itself: derivatives may promise sizes at which it is not. A law may well leave more at
-    /// first than there was without it, because the calibration has yet to follow.
-    fn within_reach(&self, candidate: &Candidate) -> Vec<f64> {
-        let mut x = candidate.x.clone();
-        for _ in 0..SHORTER {
-            if self.problem.cost_at(&candidate.model, &x).is_some_and(|cost| cost < FAR_OFF * self.from.cost) {
-                break;
-            }
-            x[candidate.sizes.clone()].iter_mut().for_each(|size| *size *= SHORTEN);
-        }
-        x
-    }
-
-    /// Rough fits; the best `going_on` of them continue.
-    fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
-        let problem = self.problem;
-        let begin = |candidate: &Candidate| {
-            let (model, start, known) = (&candidate.model, &self.within_reach(candidate), self.from.x.len());
-            let own = problem.rows(model, start, known..start.len(), Sides::One)?;
-            let mut jacobian = self.jacobian.clone().resize_horizontally(start.len(), 0.0);
-            jacobian.columns_mut(known, own.jacobian.ncols()).copy_from(&own.jacobian);
-            let rows = Rows { residual: own.residual, jacobian };
-            Some(problem.go_on(problem.begin(model, start.clone(), rows), FIRST_STEPS))
-        };
-        let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
-        underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-        let finish = |(place, fit): (usize, Underway)| {
-            problem.end(if place < going_on { problem.go_on(fit, MORE_STEPS) } else { fit })
-        };
-        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
-        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        fits
     }
 
     /// How much a curve over the variable of each slot could explain; with one additional shape if given. Best first.
@@ -218,62 +130,9 @@ impl<'a> Shown<'a> {
         located
     }
 
-    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit. The simplest one is among them if it
-    /// promises nearly as much: a shape that is steeper by its extremes may promise more, and leave the model in another valley.
-    fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
-        let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
-        let wanted: Vec<Wanted> = best
-            .iter()
-            .flat_map(|&slot| slot.shapes().iter().map(move |shape| (slot, shape)))
-            .flat_map(|(slot, shape)| scales(shape).iter().map(move |s| Wanted { slot, shape, scale: s * slot.scale }))
-            .collect();
-        let signatures = self.signatures(all, &wanted);
-        let mut promised: Vec<(f64, f64, Wanted)> = wanted
-            .iter()
-            .zip(signatures)
-            .filter_map(|(w, signature)| {
-                let signature = signature?;
-                let length = signature.norm().max(f64::MIN_POSITIVE);
-                let amplitude = signature.dot(&self.left) / length;
-                Some((amplitude * amplitude, amplitude / length * w.slot.action.typical, *w))
-            })
-            .collect();
-        promised.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let top = |slot: &Slot| promised.iter().find(|(.., w)| w.slot == slot).map_or(0.0, |(gain, ..)| *gain);
-        let is_simplest = |gain: f64, w: &Wanted| w.shape.text == SIMPLEST && gain > NEARLY * top(w.slot);
-        let mut taken: Vec<Wanted> = Vec::new();
-        let mut candidates = Vec::new();
-        for &(gain, size, w) in &promised {
-            let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
-            let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
-            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_simplest(gain, &w)) {
-                continue;
-            }
-            taken.push(w);
-            candidates.extend(self.candidate(&w, size));
-        }
-        candidates
-    }
-
-    fn candidate(&self, w: &Wanted, size: f64) -> Option<Candidate> {
-        let mut own = variant(self.problem.case, w.slot, w.shape, w.scale / w.slot.scale)?;
-        let range = own.placed.spec().parameters[0].range;
-        own.values[0] = size.clamp(range.min, range.max);
-        Some(self.with(&own, 1))
-    }
-
-    /// A law added to the model; its first fitted parameters are so many sizes.
-    fn with(&self, own: &Variant, sizes: usize) -> Candidate {
-        let model = self.from.model.plus(&own.placed, &own.values);
-        let mut x = self.from.x.clone();
-        x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));
-        let first = self.from.x.len();
-        Candidate { model, x, sizes: first..first + sizes }
-    }
-
     /// Derivatives of all measured channels with respect to the size of each law at zero, without what the calibration
     /// imitates. For a law on several equal elements, the sum over the elements.
-    fn signatures(&self, all: &[Slot], wanted: &[Wanted]) -> Vec<Option<DVector<f64>>> {
+    pub(super) fn signatures(&self, all: &[Slot], wanted: &[Wanted]) -> Vec<Option<DVector<f64>>> {
         let mut single: Vec<Wanted> = Vec::new();
         let members: Vec<Vec<usize>> = wanted
             .iter()

@@ -100,7 +100,7 @@ pub(in crate::diagnose) fn propose(
 
 /// Refits with further shapes at the slot of the best law, if that leaves something and the slot has had the simple ones alone.
 fn bent(shown: &Shown, all: &[Slot], wide: &[&Slot], fits: &[Fit]) -> Vec<Fit> {
-    let first = fits.first().filter(|fit| leaves_something(shown.problem(), fit));
+    let first = fits.first().filter(|fit| leaves_something(shown.problem, fit));
     let own = first.and_then(|fit| wide.iter().find(|slot| is_law_of(fit, slot)));
     let own = own.filter(|slot| slot.reading != Reading::Plain).map(|slot| slot.bent());
     own.map_or_else(Vec::new, |own| shown.refits(all, &[&own], SHAPES_OF_SLOT))

@@ -1,8 +1,9 @@
 //! The terms of the energy balance at one state: powers, and what is stored.
 
+use crate::system::coordinates::CoordinateStop;
 use crate::system::effect_energy::restriction_w;
 use crate::system::elastic::Elastic;
-use crate::system::plant::{CoordinateStop, Drive, InputSpan, Instant, Plant, dot};
+use crate::system::plant::{Drive, InputSpan, Instant, Plant, dot};
 use crate::system::rates::pressure_rates;
 use crate::system::state::PlantState;
 

@@ -17,7 +17,13 @@ pub struct LawFault {
 
 impl<D: Scalar> PlantLaws<D> {
     /// Whether every law can be followed at a state.
-    pub fn is_sound(&self, plant: &Plant<D>, state: &PlantState<D>, inputs: &[InputSpan]) -> bool {
+    pub fn is_sound(
+        &self,
+        plant: &Plant<D>,
+        state: &PlantState<D>,
+        inputs: &[InputSpan],
+        room: &mut Option<Acts<D>>,
+    ) -> bool {
         if !state.parts().law_states().iter().all(|s| s.is_finite()) {
             return false;
         }
@@ -25,9 +31,9 @@ impl<D: Scalar> PlantLaws<D> {
         if !self.instances.iter().any(|i| must_stay_positive(i.port)) {
             return true;
         }
-        let acts = self.afresh(plant, &Instant::<D>::of(state, inputs, 0.0));
+        let acts = self.acting(plant, &Instant::<D>::of(state, inputs, 0.0), room);
         let is_positive =
-            |port: Port, at: usize| self.coefficient(plant, &acts, port, at).is_none_or(|c| c.is_above(0.0));
+            |port: Port, at: usize| self.coefficient(plant, acts, port, at).is_none_or(|c| c.is_above(0.0));
         self.instances.iter().all(|i| is_positive(i.port, i.at))
     }
 

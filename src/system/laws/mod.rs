@@ -209,14 +209,31 @@ impl<D: Scalar> PlantLaws<D> {
     /// Tensions of all cables under their laws. Kept apart: a stock scene has none.
     #[cold]
     #[inline(never)]
-    pub(super) fn tensions<const N: usize>(&self, plant: &Plant<D>, now: &Instant<D, N>) -> Vec<D> {
-        self.afresh(plant, now).tension_n
+    pub(super) fn tensions<'a, const N: usize>(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        room: &'a mut Option<Acts<D>>,
+    ) -> &'a [D] {
+        &self.acting(plant, now, room).tension_n
     }
 
     /// Whether a law makes forces of speeds: its slope can turn within a step, and tangents must not be kept.
     #[inline]
     pub(super) fn rubs(&self) -> bool {
         self.rubs
+    }
+
+    /// What laws do to the plant at an instant, in a room that is made if there is none.
+    pub(super) fn acting<'a, const N: usize>(
+        &self,
+        plant: &Plant<D>,
+        now: &Instant<D, N>,
+        room: &'a mut Option<Acts<D>>,
+    ) -> &'a Acts<D> {
+        let acts = room.get_or_insert_with(|| self.room(plant));
+        self.act(plant, now, acts);
+        acts
     }
 
     /// What laws do to the state's plant, evaluated afresh.

@@ -4,7 +4,7 @@ use super::RomRun;
 use crate::scalar::Scalar;
 use crate::system::PlantState;
 use crate::system::Stepper;
-use crate::system::laws::PlantLaws;
+use crate::system::laws::{Acts, PlantLaws};
 use crate::system::plant::{InputSpan, Instant, Plant};
 use crate::system::posed;
 
@@ -14,6 +14,8 @@ pub(super) struct Course<D> {
     pub state: PlantState<D>,
     pub spans: Vec<InputSpan>,
     stepper: Stepper<D>,
+    /// For what laws do where a sample is.
+    room: Option<Acts<D>>,
 }
 
 impl<D: Scalar> Course<D> {
@@ -23,7 +25,7 @@ impl<D: Scalar> Course<D> {
         let spans: Vec<InputSpan> = run.inputs.iter().map(|x| InputSpan { value: x[0], slope: 0.0 }).collect();
         PlantLaws::begin(plant, &mut state, &spans);
         posed::renew(plant, &state, &spans);
-        Self { stepper: Stepper::new(plant, &state), state, spans }
+        Self { stepper: Stepper::new(plant, &state), state, spans, room: None }
     }
 
     /// Advances over the interval that ends at sample `k`, in `steps` steps.
@@ -36,7 +38,7 @@ impl<D: Scalar> Course<D> {
         self.stepper.plant_changed();
         self.state.time_s = from;
         posed::renew(plant, &self.state, &self.spans);
-        let mut pulling = plant.pulling::<0>(&Instant::of(&self.state, &self.spans, 0.0));
+        let mut pulling = plant.pulling::<0>(&Instant::of(&self.state, &self.spans, 0.0), &mut self.room);
         for _ in 0..steps {
             self.stepper.advance(plant, &mut self.state, &mut self.spans, h, &mut pulling, &mut ());
             if posed::renew(plant, &self.state, &self.spans) {
@@ -49,8 +51,9 @@ impl<D: Scalar> Course<D> {
     }
 
     /// Whether it has not diverged, and all laws are in their domain.
-    pub fn is_sound(&self, plant: &Plant<D>) -> bool {
-        let is_lawful = || plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, &self.state, &self.spans));
-        self.state.y().iter().all(|y| y.is_finite()) && is_lawful()
+    pub fn is_sound(&mut self, plant: &Plant<D>) -> bool {
+        let (state, spans, room) = (&self.state, &self.spans, &mut self.room);
+        let mut is_lawful = || plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, state, spans, room));
+        state.y().iter().all(|y| y.is_finite()) && is_lawful()
     }
 }

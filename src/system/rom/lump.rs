@@ -9,7 +9,8 @@ use crate::scene::Scene;
 use crate::system::PlantState;
 use crate::system::SystemError;
 use crate::system::build::{Built, slides};
-use crate::system::plant::{CoordinateStop, Coordinates, Plant};
+use crate::system::coordinates::{CoordinateStop, Coordinates};
+use crate::system::plant::Plant;
 use crate::system::posed::{Posed, Posture};
 
 /// A plant on few coordinates.

@@ -69,7 +69,7 @@ impl RomOutput {
                 Drive::Hydraulic { .. } => state.line(*m).pressure_pa[0],
                 Drive::Pressure { .. } => plant.muscle_pressure(*m, state, inputs, 0.0),
             },
-            Reader::Tension(c) => plant.cable(*c, state, inputs, 0.0).2,
+            Reader::Tension(c) => plant.cable_in(*c, &Instant::of(state, inputs, 0.0), room).2,
             Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y()[*i] * *share).sum(),
             Reader::Link { posture, link, axis, frame } => {
                 let here = posture.positions(state.y());

@@ -43,13 +43,13 @@ impl Simulation {
 
     fn laws_are_sound(&self) -> bool {
         let Built { plant, state, .. } = &self.built;
-        plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, state, &self.spans))
+        plant.laws.as_ref().is_none_or(|laws| laws.is_sound(plant, state, &self.spans, &mut None))
     }
 
     /// `pulling`: what pulls at the beginning, if that is known.
     fn fine_step(&mut self, h: f64, pulling: &mut Option<u64>) {
         let Built { plant, state, .. } = &mut self.built;
-        let mut now = pulling.unwrap_or_else(|| plant.pulling::<0>(&Instant::of(state, &self.spans, 0.0)));
+        let mut now = pulling.unwrap_or_else(|| plant.pulling::<0>(&Instant::of(state, &self.spans, 0.0), &mut None));
         let mut balances = Balances { energy: self.energy.as_mut(), contact_impulse: &mut self.contact_impulse };
         self.stepper.advance(plant, state, &mut self.spans, h, &mut now, &mut balances);
         *pulling = Some(now);

@@ -1,0 +1,149 @@
+//! Refits a model with a law more, at slots that were shown to explain some of the misfit.
+
+use std::ops::Range;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::shown::{Shown, Wanted, of_curve};
+use super::span::sizes;
+use crate::diagnose::fit::{Fit, Model, Rows, Sides, Underway, Variant};
+use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
+
+/// Scales tried for a shape, relative to the slot's.
+const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+/// Sizes to start with are made smaller by this share, at most so many times, if they leave so many times what was there without the law.
+const SHORTEN: f64 = 0.25;
+const SHORTER: usize = 4;
+const FAR_OFF: f64 = 30.0;
+/// Steps of every refit; number of refits that continue, and their further steps.
+const FIRST_STEPS: usize = 4;
+const GOING_ON: usize = 8;
+const MORE_STEPS: usize = 20;
+
+/// The shape that a slot's law has before any other, and the share of the most promising one's gain that it must promise.
+const SIMPLEST: &str = "x";
+const NEARLY: f64 = 0.5;
+
+/// A model with one law more, its start values, and where among them the sizes of its shapes are.
+struct Candidate {
+    model: Model,
+    x: Vec<f64>,
+    sizes: Range<usize>,
+}
+
+impl Shown<'_> {
+    /// Joint rough refits with a law at each slot in its most promising shapes, at most so many per slot; cheapest
+    /// first.
+    pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
+        self.refitted(&self.shapes(all, best, most), GOING_ON)
+    }
+
+    /// The same with a free curve at each slot. None is converged, because a curve is not an answer.
+    pub fn curves(&self, all: &[Slot], best: &[&Slot]) -> Vec<Fit> {
+        let plain: Vec<&Slot> =
+            best.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain).collect();
+        let wanted: Vec<Wanted> = plain.iter().flat_map(|slot| of_curve(slot, None)).collect();
+        let mut signatures = self.signatures(all, &wanted).into_iter();
+        let candidates: Vec<Candidate> = plain
+            .iter()
+            .filter_map(|slot| {
+                let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(slot.basis().count()).collect();
+                let own: Vec<DVector<f64>> = own.into_iter().collect::<Option<_>>()?;
+                let sizes = sizes(&own, &self.left);
+                let mut own = curve(self.problem.case, slot)?;
+                own.values.iter_mut().zip(&sizes).for_each(|(value, size)| *value = size * slot.action.typical);
+                Some(self.with(&own, sizes.len()))
+            })
+            .collect();
+        self.refitted(&candidates, 0)
+    }
+
+    /// A refit begun at start values at which the model is something like itself: derivatives may promise sizes at which it is not. A law may
+    /// well leave more at first than there was without it, because the calibration has yet to follow.
+    fn begin(&self, candidate: &Candidate) -> Option<Underway> {
+        let (model, known) = (&candidate.model, self.from.x.len());
+        let rows = |x: &[f64]| self.problem.rows(model, x, known..x.len(), Sides::One);
+        let is_far_off = |own: &Rows| own.residual.norm_squared() >= FAR_OFF * self.from.cost;
+        let mut x = candidate.x.clone();
+        let mut own = rows(&x);
+        for _ in 0..SHORTER {
+            if own.as_ref().is_some_and(|own| !is_far_off(own)) {
+                break;
+            }
+            x[candidate.sizes.clone()].iter_mut().for_each(|size| *size *= SHORTEN);
+            own = rows(&x);
+        }
+        let own = own?;
+        let mut jacobian = self.jacobian.clone().resize_horizontally(x.len(), 0.0);
+        jacobian.columns_mut(known, own.jacobian.ncols()).copy_from(&own.jacobian);
+        Some(self.problem.begin(model, x, Rows { residual: own.residual, jacobian }))
+    }
+
+    /// Rough fits; the best `going_on` of them continue.
+    fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
+        let problem = self.problem;
+        let begin = |candidate: &Candidate| Some(problem.go_on(self.begin(candidate)?, FIRST_STEPS));
+        let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
+        underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let finish = |(place, fit): (usize, Underway)| {
+            problem.end(if place < going_on { problem.go_on(fit, MORE_STEPS) } else { fit })
+        };
+        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        fits
+    }
+
+    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit. The simplest one is among them if it
+    /// promises nearly as much: a shape that is steeper by its extremes may promise more, and leave the model in another valley.
+    fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
+        let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
+        let wanted: Vec<Wanted> = best
+            .iter()
+            .flat_map(|&slot| slot.shapes().iter().map(move |shape| (slot, shape)))
+            .flat_map(|(slot, shape)| scales(shape).iter().map(move |s| Wanted { slot, shape, scale: s * slot.scale }))
+            .collect();
+        let signatures = self.signatures(all, &wanted);
+        let mut promised: Vec<(f64, f64, Wanted)> = wanted
+            .iter()
+            .zip(signatures)
+            .filter_map(|(w, signature)| {
+                let signature = signature?;
+                let length = signature.norm().max(f64::MIN_POSITIVE);
+                let amplitude = signature.dot(&self.left) / length;
+                Some((amplitude * amplitude, amplitude / length * w.slot.action.typical, *w))
+            })
+            .collect();
+        promised.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let top = |slot: &Slot| promised.iter().find(|(.., w)| w.slot == slot).map_or(0.0, |(gain, ..)| *gain);
+        let is_simplest = |gain: f64, w: &Wanted| w.shape.text == SIMPLEST && gain > NEARLY * top(w.slot);
+        let mut taken: Vec<Wanted> = Vec::new();
+        let mut candidates = Vec::new();
+        for &(gain, size, w) in &promised {
+            let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
+            let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
+            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_simplest(gain, &w)) {
+                continue;
+            }
+            taken.push(w);
+            candidates.extend(self.candidate(&w, size));
+        }
+        candidates
+    }
+
+    fn candidate(&self, w: &Wanted, size: f64) -> Option<Candidate> {
+        let mut own = variant(self.problem.case, w.slot, w.shape, w.scale / w.slot.scale)?;
+        let range = own.placed.spec().parameters[0].range;
+        own.values[0] = size.clamp(range.min, range.max);
+        Some(self.with(&own, 1))
+    }
+
+    /// A law added to the model; its first fitted parameters are so many sizes.
+    fn with(&self, own: &Variant, sizes: usize) -> Candidate {
+        let model = self.from.model.plus(&own.placed, &own.values);
+        let mut x = self.from.x.clone();
+        x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));
+        let first = self.from.x.len();
+        Candidate { model, x, sizes: first..first + sizes }
+    }
+}

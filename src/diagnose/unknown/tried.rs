@@ -1,0 +1,56 @@
+//! Laws found so far, kept for the stages that follow.
+
+use super::unlisted::Proposals;
+use crate::diagnose::fit::{Fit, Placed};
+
+/// A model with a law, and the equally good alternatives.
+#[derive(Clone)]
+pub(in crate::diagnose) struct Lawful {
+    pub best: Fit,
+    pub forms: Vec<Fit>,
+}
+
+/// Laws proposed on top of the calibration.
+#[derive(Default)]
+pub(in crate::diagnose) struct Known {
+    pub plain: Option<Proposals>,
+    /// Single laws with memory, with products of variables, or of wider shapes.
+    pub wide: Option<Proposals>,
+    /// Second laws, and the first law that they accompany.
+    pub second: Option<(Vec<Placed>, Proposals)>,
+}
+
+/// Results for one law, kept for later.
+#[derive(Default)]
+pub(in crate::diagnose) struct Tried {
+    pub known: Known,
+    /// The best law that is clearly better than any single effect.
+    pub law: Option<Fit>,
+    /// The law that replaces or accompanies the best single effect, whatever it leaves.
+    pub instead: Option<Lawful>,
+    /// Whether single laws were tried and none explains everything.
+    pub is_open: bool,
+}
+
+impl Tried {
+    /// Keeps laws that leave less than those known before; the search for several effects is bounded by them if they are clearly better than
+    /// the best effects.
+    pub(super) fn takes(&mut self, lawful: Lawful, is_better: bool) {
+        let leaves_less = |other: &Fit| lawful.best.cost < other.cost;
+        if !self.instead.as_ref().is_none_or(|other| leaves_less(&other.best)) {
+            return;
+        }
+        // However many listed effects, they must leave less than this.
+        if is_better && self.law.as_ref().is_none_or(leaves_less) {
+            self.law = Some(lawful.best.clone());
+        }
+        self.instead = Some(lawful);
+    }
+}
+
+impl Known {
+    /// Proposals to accompany this law.
+    pub(super) fn beside(&mut self, law: &Fit) -> Option<Proposals> {
+        self.second.take_if(|(own, _)| *own == law.model.effects).map(|(_, proposals)| proposals)
+    }
+}
