@@ -60,7 +60,40 @@ fn stand_ins(open: &Problem, fit: &Fit, before: f64) -> (Option<Fit>, Vec<Fit>) 
     let mut fits = with_elsewhere(open, fit.clone(), before);
     fits.retain(is_elsewhere);
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let tie = tie(open, fit, before);
-    let forms = other_forms(fit, fits.iter().filter(|f| f.cost <= fit.cost + tie));
+    let most = least_of(fit, &fits) + tie(open, fit, before);
+    let forms = other_forms(fit, fits.iter().take_while(|f| f.cost <= most));
     (fits.into_iter().next(), forms)
+}
+
+/// The cost that alternatives are held against. A law that fits better than an effect that stands alone rules out those that fit as well as that
+/// effect. Beside others it may have taken up what those, idealised, leave.
+fn least_of(fit: &Fit, others: &[Fit]) -> f64 {
+    let is_alone = fit.model.effects.len() == 1;
+    others.first().filter(|_| is_alone).map_or(fit.cost, |other| other.cost.min(fit.cost))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::diagnose::fit::{Model, Placed};
+    use crate::effects::{Element, ElementKind, find};
+
+    fn fit(ids: &[&str], cost: f64) -> Fit {
+        let placed = |id: &str| {
+            let entry = find(id).expect("of the catalogue");
+            (Placed { entry, element: Element::of(ElementKind::Muscle, 0, 1), channel: None }, entry.typical())
+        };
+        let model = ids.iter().map(|id| placed(id)).fold(Model::baseline(), |m, (placed, own)| m.plus(&placed, &own));
+        Fit { model, x: Vec::new(), cost, covariance: DMatrix::zeros(0, 0), on_bound: Vec::new() }
+    }
+
+    #[test]
+    fn alternatives_to_an_effect_alone_are_held_against_the_best_of_them() {
+        let (alone, beside) = (fit(&["coil_preload"], 100.0), fit(&["leak", "coil_preload"], 100.0));
+        let laws = [fit(&["hypothetical_force"], 60.0), fit(&["hypothetical_flow"], 103.0)];
+        assert_eq!((least_of(&alone, &laws), least_of(&beside, &laws)), (60.0, 100.0));
+        assert_eq!((least_of(&alone, &laws[1..]), least_of(&alone, &[])), (100.0, 100.0));
+    }
 }
