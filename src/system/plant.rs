@@ -336,6 +336,7 @@ impl<D: Scalar> Plant<D> {
     }
 
     /// Which cables pull and which stops of the mechanism and the coils are met, one bit each.
+    ///
     /// `room` is for what laws do, and may be kept for the next instant.
     pub(super) fn pulling<const N: usize>(&self, now: &Instant<D, N>, room: &mut Option<Acts<D>>) -> u64 {
         let (y, w) = (now.at.y(), now.at.w());

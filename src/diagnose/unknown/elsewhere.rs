@@ -78,10 +78,9 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
     Some((shape, values[scale]))
 }
 
-/// Candidate slots: all plain ones, those with the same kind of memory or product as the last effect, and for a law of a coefficient the
-/// product that says the same. For effects
-/// of the catalogue only their own variables and constants, since a law has a low prior beside them; for those with
-/// memory, any law with memory over their variables.
+/// Candidate slots: all plain ones, those with the same kind of memory or product as the last effect, and for a law of
+/// a coefficient the product that says the same. For effects of the catalogue only their own variables and constants,
+/// since a law has a low prior beside them; for those with memory, any law with memory over their variables.
 fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
     let mut plain = slots(problem.case, fit, Reach::Plain);
     let Some(last) = fit.model.effects.last() else { return Vec::new() };
@@ -165,6 +164,7 @@ mod tests {
         assert!(of_softening.len() > 10 && of_softening.iter().all(|v| v == "elongation_m"), "{of_softening:?}");
         assert!(remembered("leak").is_empty());
     }
+
     /// A resistance that grows with time is a pressure drop over time and flow.
     #[test]
     fn a_law_of_a_coefficient_has_the_product_that_says_the_same() {

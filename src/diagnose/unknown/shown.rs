@@ -57,7 +57,7 @@ pub(super) fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
 /// The misfit to be explained along the runs of a fitted model.
 pub(super) struct Shown<'a> {
     pub(super) problem: &'a Problem<'a>,
-    /// The model along whose runs signals are injected, and the model that laws are added to.
+    /// The model along whose runs signals are injected.
     along: &'a Fit,
     /// The model that laws are added to.
     pub(super) from: Fit,
