@@ -1,12 +1,15 @@
 //! `smam diagnose`.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
-use smam::diagnose::{Case, Diagnosis, Options, Outcome, Step, Verdict, diagnose as run_diagnosis, write_answer_with};
+use smam::diagnose::{
+    Case, Diagnosis, Estimate, Options, Outcome, Step, Verdict, diagnose as run_diagnosis, write_answer_with,
+};
 use smam::report::{FIGURES, diagnosis_page};
 
 use super::CliError;
@@ -160,17 +163,29 @@ pub fn use_threads(threads: Option<usize>) -> Result<(), CliError> {
     })
 }
 
+fn print_parameters(parameters: &BTreeMap<String, Estimate>) {
+    for (key, p) in parameters {
+        match p.ci95 {
+            [low, high] if low == high => say!("           {key} = {:.4e}  (not fitted)", p.value),
+            [low, high] => say!("           {key} = {:.4e}  [{low:.4e}, {high:.4e}]", p.value),
+        }
+    }
+}
+
 fn print_diagnosis(d: &Diagnosis) {
     say!("{}", d.summary);
     for e in &d.effects {
         let on = e.channel.as_ref().map_or(String::new(), |c| format!(" ({c})"));
         say!("  {:.3}  {} in {}{on}: {}", e.probability, e.name, e.element, e.law);
-        for (key, p) in &e.parameters {
-            match p.ci95 {
-                [low, high] if low == high => say!("           {key} = {:.4e}  (not fitted)", p.value),
-                [low, high] => say!("           {key} = {:.4e}  [{low:.4e}, {high:.4e}]", p.value),
-            }
-        }
+        print_parameters(&e.parameters);
+    }
+    if !d.discrepancy.is_empty() {
+        say!("  what that leaves is described in scene.toml by");
+    }
+    for term in &d.discrepancy {
+        let on = term.channel.as_ref().map_or(String::new(), |c| format!(" ({c})"));
+        say!("         {} in {}{on}: {}", term.name, term.element, term.law);
+        print_parameters(&term.parameters);
     }
     say!(
         "  misfit per sample {:.4} -> {:.4} of the noise's variance",

@@ -26,6 +26,9 @@ pub struct Diagnosis {
     /// scene diverges.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub withheld: Vec<NamedEffect>,
+    /// Further effects in scene.toml that describe what the named ones leave; that they are there is not claimed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub discrepancy: Vec<DiscrepancyTerm>,
     /// Values of the calibrated parameters with the effects in place, SI.
     pub calibration: BTreeMap<String, Estimate>,
     /// Where runs of several specimens are diagnosed together: the calibrated parameters of each.
@@ -131,6 +134,18 @@ pub struct NamedEffect {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<Curve>,
     pub hypothetical: bool,
+}
+
+/// An effect that describes what the named ones leave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DiscrepancyTerm {
+    pub name: String,
+    pub element: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<String>,
+    /// Fitted together with the named effects, as scene.toml has them.
+    pub parameters: BTreeMap<String, Estimate>,
+    pub law: String,
 }
 
 /// Another law that the recordings cannot tell from the one named.

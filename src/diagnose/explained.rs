@@ -1,11 +1,11 @@
 //! Explains the recordings by the calibration, by effects of the catalogue and by unlisted laws, and evaluates the
 //! result on the held-out runs.
 
-use super::case::{Case, Noise, RunSet};
+use super::case::{Case, Noise, RunSet, Step};
 use super::diagnosis::Proof;
 use super::error::DiagnoseError;
 use super::fit::{Problem, Variant, baseline};
-use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, reweight};
+use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, discrepancy, reweight};
 use super::unknown::hypothesis::{self, OneLaw};
 use super::unknown::pair::{self, Pair};
 use super::unknown::tried::Tried;
@@ -48,9 +48,12 @@ pub(super) fn explain(
         OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
     };
     let explained = without_misplaced(case, explained, seed, say)?;
-    let explained = at_better_places(case, explained, seed)?;
-    let warnings = [warnings, base.warnings, case.notes()].concat();
-    Ok(hold_against_full_scene(case, Explained { warnings, ..explained }, seed, say))
+    let mut explained = at_better_places(case, explained, seed)?;
+    explained.warnings = [warnings, base.warnings, case.notes()].concat();
+    withhold_harm(case, &mut explained, seed, say);
+    describe_discrepancy(case, &mut explained, &variants, seed, say);
+    hold_against_full_scene(case, &mut explained, seed, say);
+    Ok(explained)
 }
 
 /// Searches for several effects and several laws.
@@ -215,17 +218,42 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings, of_found })
 }
 
-/// Withdraws what does harm, and compares the rest with the full scene.
-fn hold_against_full_scene(case: &Case, explained: Explained, seed: u64, say: &dyn Fn(String)) -> Explained {
-    let Explained { found, mut proof, noise, mut of_found, .. } = explained;
-    let mut found = harm::without(case, &noise, found, &mut proof, seed, (&mut of_found, say));
-    say("full scene".to_owned());
-    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &noise };
-    proof.placebo_gap_closed = confirm::placebos(&held_out, &found, seed);
-    if !confirm::check_on_full_scene(&held_out, &found, &mut proof, seed, &mut of_found) {
-        harm::without_unplayable(case, &noise, &mut found, &mut proof, &mut of_found);
+/// Withdraws what predicts held-out runs worse than the calibration.
+fn withhold_harm(case: &Case, explained: &mut Explained, seed: u64, say: &dyn Fn(String)) {
+    let Explained { found, proof, noise, of_found, .. } = explained;
+    *found = harm::without(case, noise, found.clone(), proof, seed, (of_found, say));
+}
+
+/// Describes by further effects what the answer leaves, unless the held-out runs are predicted worse with them.
+fn describe_discrepancy(case: &Case, explained: &mut Explained, variants: &[Variant], seed: u64, say: &dyn Fn(String)) {
+    if case.is_without(Step::CrossValidation) {
+        return;
     }
-    Explained { found, proof, noise, of_found, ..explained }
+    let Explained { found, proof, noise, after, of_found, .. } = explained;
+    let problem = |runs: RunSet| Problem { case, runs: case.subset(runs), noise };
+    let (open, held_out, whole) = (problem(RunSet::Open), problem(RunSet::HeldOut), problem(RunSet::All));
+    let Some(described) = discrepancy::described(&open, &found.best, variants, say) else { return };
+    let fit = &described.fit;
+    let renewed = prove::prove(&held_out, &found.baseline, fit, seed);
+    let (Some(renewed), Some(left)) = (renewed, whole.residuals(&fit.model, &fit.x)) else { return };
+    if harm::does_harm(case, noise, (found, fit), &renewed, seed) {
+        let [own, known] = [fit, &found.best].map(|fit| fit.model.title());
+        of_found.push(format!("{own} predicts the held-out runs worse than {known}, which scene.toml has"));
+        return;
+    }
+    (*proof, *after) = (renewed, left);
+    found.described = Some(described);
+}
+
+/// Compares the answer with the full scene.
+fn hold_against_full_scene(case: &Case, explained: &mut Explained, seed: u64, say: &dyn Fn(String)) {
+    say("full scene".to_owned());
+    let Explained { found, proof, noise, of_found, .. } = explained;
+    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise };
+    proof.placebo_gap_closed = confirm::placebos(&held_out, found, seed);
+    if !confirm::check_on_full_scene(&held_out, found, proof, seed, of_found) {
+        harm::without_unplayable(case, noise, found, proof, of_found);
+    }
 }
 
 pub(super) fn diverges() -> DiagnoseError {

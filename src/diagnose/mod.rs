@@ -44,8 +44,8 @@ use std::collections::BTreeMap;
 pub use answer::{Outcome, write_answer, write_answer_with};
 pub use case::{Case, Step};
 pub use diagnosis::{
-    Balance, ChannelProof, Curve, Detection, Diagnosis, Estimate, Form, Freehand, Location, NamedEffect,
-    NextExperiment, Proof, Verdict,
+    Balance, ChannelProof, Curve, Detection, Diagnosis, DiscrepancyTerm, Estimate, Form, Freehand, Location,
+    NamedEffect, NextExperiment, Proof, Verdict,
 };
 pub use error::DiagnoseError;
 
@@ -133,8 +133,14 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
     // A specimen that is predicted from others has no say in their parameters.
     let fitted = if case.is_transfer() { RunSet::Open } else { RunSet::All };
-    let complete = complete(&Problem { case: &case, runs: case.subset(fitted), noise: &noise }, &found);
+    let fitted = |noise| Problem { case: &case, runs: case.subset(fitted), noise };
+    let complete = match &found.withheld {
+        Some(_) => found.baseline.clone(),
+        None => fitted_to(&fitted(&noise), &found.best),
+    };
+    let of_scene = found.described.as_ref().map(|own| fitted_to(&fitted(&own.noise), &own.fit));
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
+    let left_by_scene = misfit::left(&whole, found.corrected()).map_or(excess.best, |(left, _)| left);
     let left = excess.best.max(0.0) * whole.samples() as f64;
     let (mut effects, contradicted) = named(&case, (&found, &complete, left), &noise, &mut warnings);
     let verdict = judged(&case, (&found, &effects), confirmed, excess);
@@ -162,10 +168,11 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         verdict,
         modelled: (verdict == Verdict::UnknownPhysics).then_some(is_modelled),
         summary: String::new(),
-        detection: figures::detection(&case, &noise, &found, excess),
+        detection: figures::detection(&case, &noise, &found, (excess, left_by_scene)),
         location,
         effects,
         withheld,
+        discrepancy: of_scene.as_ref().map_or_else(Vec::new, |fit| verdict::discrepancy(&found, fit)),
         calibration: figures::calibration(&case, &complete),
         specimens,
         fit: proof,
@@ -179,7 +186,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         diagnosis,
         baseline: Some(found.baseline),
         corrected: Some(found.best),
-        complete: Some(complete),
+        complete: Some(of_scene.unwrap_or(complete)),
         residuals: Some([before, after]),
         noise,
         rivals,
@@ -239,16 +246,13 @@ fn add_curves(whole: &Problem, complete: &Fit, effects: &mut [NamedEffect]) {
     }
 }
 
-/// What was found, fitted to all runs: what the scene gets. Where the answer is withheld it is the calibrated scene as it stands.
-fn complete(whole: &Problem, found: &Found) -> Fit {
-    if found.withheld.is_some() {
-        return found.baseline.clone();
-    }
-    let fitted = whole.fit_to_the_end(&found.best.model, &found.best.x);
-    let mut complete = fitted.unwrap_or_else(|| found.best.clone());
+/// What was found, fitted to these runs.
+fn fitted_to(whole: &Problem, found: &Fit) -> Fit {
+    let fitted = whole.fit_to_the_end(&found.model, &found.x);
+    let mut complete = fitted.unwrap_or_else(|| found.clone());
     intervals::widen(whole, &mut complete);
     // Parameters of all runs with which the full scene diverges are no use: then those of the open runs, with which it does not.
-    let refined = refine::refine(whole, complete.clone()).or_else(|| refine::refine(whole, found.best.clone()));
+    let refined = refine::refine(whole, complete.clone()).or_else(|| refine::refine(whole, found.clone()));
     refined.unwrap_or(complete)
 }
 
@@ -270,6 +274,7 @@ fn unusable(case: Case, preflight: preflight::Preflight) -> Outcome {
         location: Location::default(),
         effects: Vec::new(),
         withheld: Vec::new(),
+        discrepancy: Vec::new(),
         calibration: BTreeMap::new(),
         specimens: BTreeMap::new(),
         fit: Proof::default(),

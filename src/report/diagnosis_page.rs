@@ -1,6 +1,6 @@
 //! The page of a diagnosis: verdict, curves, where, what, how sure, what next, numbers.
 
-use crate::diagnose::{CaseRun, Estimate, NamedEffect, Outcome};
+use crate::diagnose::{CaseRun, DiscrepancyTerm, Estimate, NamedEffect, Outcome};
 use crate::recording::parse_column;
 
 use super::HtmlPage;
@@ -101,6 +101,14 @@ fn what(page: &mut HtmlPage, outcome: &Outcome) {
         parameters(page, &d.withheld);
         laws(page, &d.withheld);
     }
+    if !d.discrepancy.is_empty() {
+        page.paragraph(
+            "What that leaves is described by further effects in `scene.toml`. They predict better; that they are there \
+             is not claimed:",
+        );
+        let rows: Vec<Vec<String>> = d.discrepancy.iter().flat_map(term_rows).collect();
+        page.table(&["effect", "element", "parameter", "value", "95 % interval", "law"], &rows);
+    }
 }
 
 fn parameters(page: &mut HtmlPage, effects: &[NamedEffect]) {
@@ -122,6 +130,19 @@ fn effect_rows(e: &NamedEffect) -> Vec<Vec<String>> {
         [head, vec![key.clone()], estimate(key, e.channel.as_deref(), number), vec![law]].concat()
     };
     e.parameters.iter().enumerate().map(row).collect()
+}
+
+fn term_rows(term: &DiscrepancyTerm) -> Vec<Vec<String>> {
+    let channel = term.channel.as_deref();
+    let element = channel.map_or_else(|| term.element.clone(), |c| format!("{} {c}", term.element));
+    let row = |(i, (key, number)): (usize, (&String, &Estimate))| {
+        let (head, law) = match i {
+            0 => ([term.name.clone(), element.clone()], greek(&term.law)),
+            _ => Default::default(),
+        };
+        [&head[..], &[key.clone()], &estimate(key, channel, number), &[law]].concat()
+    };
+    term.parameters.iter().enumerate().map(row).collect()
 }
 
 /// What nobody reads who does not look for it.

@@ -103,6 +103,7 @@ mod tests {
             location: crate::diagnose::Location::default(),
             effects: Vec::new(),
             withheld: Vec::new(),
+            discrepancy: Vec::new(),
             calibration: std::collections::BTreeMap::new(),
             specimens: std::collections::BTreeMap::new(),
             fit: crate::diagnose::Proof::default(),

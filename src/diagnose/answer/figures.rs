@@ -10,8 +10,13 @@ use crate::diagnose::fit::Fit;
 use crate::diagnose::search::Found;
 use crate::diagnose::verdict::Excess;
 
-/// Misfit above noise, and detection limits.
-pub(in crate::diagnose) fn detection(case: &Case, noise: &[Noise], found: &Found, excess: Excess) -> Detection {
+/// Misfit above noise, of the corrected scene as given, and detection limits.
+pub(in crate::diagnose) fn detection(
+    case: &Case,
+    noise: &[Noise],
+    found: &Found,
+    (excess, corrected): (Excess, f64),
+) -> Detection {
     let by_channel = |f: fn(&Noise) -> f64| -> BTreeMap<String, f64> {
         case.channels.iter().zip(noise).map(|(c, n)| (c.column.clone(), f(n))).collect()
     };
@@ -23,7 +28,7 @@ pub(in crate::diagnose) fn detection(case: &Case, noise: &[Noise], found: &Found
     smallest.retain(|_, size| size.is_finite());
     Detection {
         excess_chi2_per_sample: excess.baseline,
-        excess_chi2_per_sample_corrected: excess.best,
+        excess_chi2_per_sample_corrected: corrected,
         p_value: by_chance(excess.baseline / excess.error),
         noise_sd: by_channel(|n| n.sd),
         noise_inflation: by_channel(|n| n.inflation()),

@@ -11,10 +11,10 @@ use crate::recording::Recording;
 pub struct Outcome {
     pub diagnosis: Diagnosis,
     pub case: Case,
-    /// The calibration alone and with the effects, both fitted to the open runs.
+    /// The calibration alone and with the named effects, both fitted to the open runs.
     pub baseline: Option<Fit>,
     pub corrected: Option<Fit>,
-    /// The corrected fit renewed on all runs: what the scene gets.
+    /// What the scene gets, fitted to all runs: the named effects, and those that describe what they leave.
     pub complete: Option<Fit>,
     /// Measured minus simulated of all runs: baseline, corrected.
     pub residuals: Option<[Vec<Vec<Vec<f64>>>; 2]>,

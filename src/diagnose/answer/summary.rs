@@ -18,18 +18,19 @@ fn verdict(d: &Diagnosis) -> String {
 }
 
 fn title(e: &NamedEffect) -> String {
-    match &e.channel {
-        Some(channel) => format!("{} on {channel}", e.name),
-        None => format!("{} in {}", e.name, e.element),
+    placed(&e.name, &e.element, e.channel.as_deref())
+}
+
+/// An effect with its place.
+fn placed(name: &str, element: &str, channel: Option<&str>) -> String {
+    match channel {
+        Some(channel) => format!("{name} on {channel}"),
+        None => format!("{name} in {element}"),
     }
 }
 
 fn said(d: &Diagnosis, effects: &[String]) -> String {
-    // Less than the noise can be left by chance: no more than all of a gap is closed.
-    let closed = format!(
-        "On the held-out runs it closes {:.0} % of the gap between the calibrated scene and the noise.",
-        100.0 * d.fit.gap_closed.min(1.0)
-    );
+    let closed = closed(d);
     match d.verdict {
         Verdict::Adequate => format!(
             "The calibrated scene explains the recordings down to their noise: nothing is missing that they could show. \
@@ -46,6 +47,32 @@ fn said(d: &Diagnosis, effects: &[String]) -> String {
         ),
         Verdict::UnusableData => d.summary.clone(),
     }
+}
+
+/// What the corrected scene predicts.
+fn closed(d: &Diagnosis) -> String {
+    let scene = match &described(d)[..] {
+        [] => "On the held-out runs it closes".to_owned(),
+        terms => format!(
+            "What that leaves is described in scene.toml by {} (see discrepancy); on the held-out runs this closes",
+            terms.join(" and ")
+        ),
+    };
+    // Less than the noise can be left by chance: no more than all of a gap is closed.
+    let share = 100.0 * d.fit.gap_closed.min(1.0);
+    format!("{scene} {share:.0} % of the gap between the calibrated scene and the noise.")
+}
+
+/// Titles of the terms that describe the discrepancy, each once.
+fn described(d: &Diagnosis) -> Vec<String> {
+    let mut titles: Vec<String> = Vec::new();
+    for term in &d.discrepancy {
+        let title = placed(&term.name, &term.element, term.channel.as_deref());
+        if !titles.contains(&title) {
+            titles.push(title);
+        }
+    }
+    titles
 }
 
 /// Ports named beside the most likely one: limit of twice the log odds, and maximum number.

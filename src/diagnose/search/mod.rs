@@ -6,6 +6,7 @@
 pub(super) mod candidates;
 pub(super) mod creep;
 pub(super) mod detection_limit;
+pub(super) mod discrepancy;
 mod exchange;
 mod refits;
 pub(super) mod reweight;

@@ -1,5 +1,6 @@
 //! Stepwise search from the calibration upwards, one effect at a time.
 
+use super::discrepancy::Described;
 use super::exchange::Exchange;
 use super::screening::{Screened, least_gain, screen};
 use super::way::{Bound, MOST_EFFECTS, Seen, Up, Way, climb, leaves_much, several_to_begin};
@@ -22,9 +23,16 @@ pub struct Found {
     /// The answer that was withheld because it predicts held-out runs worse than the calibration, or cannot be
     /// simulated.
     pub withheld: Option<Box<Found>>,
+    /// The best with further effects behind its own that describe what it leaves.
+    pub described: Option<Described>,
 }
 
 impl Found {
+    /// What predicts: the best, with what describes its discrepancy.
+    pub fn corrected(&self) -> &Fit {
+        self.described.as_ref().map_or(&self.best, |described| &described.fit)
+    }
+
     /// Forms of one effect.
     pub fn forms_of(&self, effect: usize) -> &[Fit] {
         self.forms.get(effect).map_or(&[], Vec::as_slice)
@@ -103,6 +111,7 @@ impl Begun {
             screened: self.screened.clone(),
             forms: Vec::new(),
             withheld: None,
+            described: None,
         }
     }
 

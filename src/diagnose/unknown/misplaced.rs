@@ -81,7 +81,7 @@ mod tests {
         let (baseline, best) = (fit(&Model::baseline()), fit(&Model::baseline().plus(&gain, &entry.typical())));
         let rivals_against = best.cost;
         let (rivals, screened, forms) = (vec![Vec::new()], Vec::new(), Vec::new());
-        let found = Found { baseline, best, rivals, rivals_against, screened, forms, withheld: None };
+        let found = Found { baseline, best, rivals, rivals_against, screened, forms, withheld: None, described: None };
         let other = exchanged(&case, &noise, &found, &|_| {})?;
         let last = other.best.model.effects.last().expect("a law");
         Some(format!("{} over {:?}", verdict::port(last), last.spec().variables))

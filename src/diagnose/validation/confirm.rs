@@ -146,7 +146,7 @@ fn compare_with_full_scene(
     warnings: &mut Vec<String>,
 ) -> Result<(), DiagnoseError> {
     let case = held_out.case;
-    let corrected = play_full(case, &found.best, held_out.noise)?;
+    let corrected = play_full(case, found.corrected(), held_out.noise)?;
     let agreement = agreement(case, &corrected);
     if !agreement.agrees {
         let residuals = |runs: &[FullRun]| -> Vec<Vec<Vec<f64>>> {

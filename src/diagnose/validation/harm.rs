@@ -44,6 +44,7 @@ pub(in crate::diagnose) fn without(
 fn withhold(found: &mut Found, proof: &mut Proof) {
     let known = found.clone();
     found.best = found.baseline.clone();
+    found.described = None;
     found.rivals.clear();
     found.forms.clear();
     found.withheld = Some(Box::new(known));
@@ -141,6 +142,21 @@ pub(in crate::diagnose) fn is_worse(held_out: &Problem, listed: &Found, lawful: 
     let has_listed = !listed.best.model.effects.is_empty();
     let is_beyond_chance = |p: Proof| p.gap_closed < 0.0 && p.gain_ci95[1] < 0.0;
     has_listed && prove::prove(held_out, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
+}
+
+/// Whether an answer with what describes its discrepancy predicts held-out runs worse than the answer or the calibrated
+/// scene, beyond chance, or cannot be played on the full scene. `proof` is its own.
+pub(in crate::diagnose) fn does_harm(
+    case: &Case,
+    noise: &[Noise],
+    (found, described): (&Found, &Fit),
+    proof: &Proof,
+    seed: u64,
+) -> bool {
+    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise };
+    is_worse(&held_out, found, described, seed)
+        || is_harmful(case, noise, &found.baseline, described, proof)
+        || play_full(case, described, noise).is_err()
 }
 
 /// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it

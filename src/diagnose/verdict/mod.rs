@@ -9,6 +9,6 @@ mod written;
 
 pub(super) use misfit::{Excess, Residuals, misfit};
 pub(super) use named::{
-    Confirmed, Open, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
+    Confirmed, Open, discrepancy, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
 };
 pub(super) use written::{curve, port};

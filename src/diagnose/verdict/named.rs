@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::misfit::Excess;
 use super::written;
-use crate::diagnose::diagnosis::{Estimate, NamedEffect, Verdict};
+use crate::diagnose::diagnosis::{DiscrepancyTerm, Estimate, NamedEffect, Verdict};
 use crate::diagnose::fit::{Fit, Placed};
 use crate::diagnose::search::Found;
 
@@ -167,6 +167,20 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
     Open { rivals, unit: unit_of(found, left) }
 }
 
+/// The effects that describe what the named ones leave, with their parameters in a fit that has them all.
+pub fn discrepancy(found: &Found, fit: &Fit) -> Vec<DiscrepancyTerm> {
+    let named = found.best.model.effects.len();
+    let terms = fit.model.effects.iter().enumerate().skip(named);
+    let term = |(at, placed): (usize, &Placed)| DiscrepancyTerm {
+        name: placed.spec().name.clone(),
+        element: placed.element.to_string(),
+        channel: placed.channel.clone(),
+        parameters: parameters(fit, at),
+        law: placed.spec().equation.clone(),
+    };
+    terms.map(term).collect()
+}
+
 /// All other models fitted in place of the best, with their chi², cheapest first: one row per set of effects. A model
 /// that reads like the answer has another form, and the row says which parameter it differs in.
 pub fn lost(found: &Found) -> Vec<(String, f64)> {
@@ -295,6 +309,7 @@ mod tests {
             screened: Vec::new(),
             forms: Vec::new(),
             withheld: None,
+            described: None,
         }
     }
 
