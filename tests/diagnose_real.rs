@@ -134,8 +134,9 @@ fn val_relaxation_of_a_held_strip_is_named() {
     let d = answer(load(&folder));
     assert!(named(&d, "viscoelasticity", "muscle").parameters["decades"].value > 0.0, "{:?}", d.effects);
     let force = d.fit.channels["force_n"];
-    // Three branches beside a neo-Hookean law leave 0.064 N.
-    assert!(force.rmse_corrected < 0.067, "{force:?}");
+    // Yeoh's law with five branches leaves 0.033 N; the relaxation by itself 0.058.
+    assert!(d.discrepancy.iter().any(|term| term.name == "rubber_law"), "{:?}", d.discrepancy);
+    assert!(force.rmse_corrected < 0.035, "{force:?}");
 }
 
 /// Pieces of one second, cut out of a longer run: a lag of 50 to 60 ms is documented, of which kind nobody can say.
@@ -146,8 +147,9 @@ fn val_a_late_tip_of_a_catheter_is_named() {
     let lag = named(&d, "sensor_lag", "sensor");
     let late_s = lag.parameters.get("time_constant_s").or(lag.parameters.get("delay_s")).expect("a time").value;
     assert!((0.04..0.09).contains(&late_s), "{late_s}");
+    // The two lags by themselves leave 1.15 mm; cubic gain, delay, second order and play 0.42.
     let tip = d.fit.channels["tip_x_mm"];
-    assert!(tip.rmse_corrected < 0.3 * tip.rmse_baseline, "{tip:?}");
+    assert!(tip.rmse_corrected < 0.6, "{tip:?}");
 }
 
 /// Whether its tip is late or its rod heavily damped is left open; a delay beside a cubic gain leaves 1.48 mm.
@@ -155,7 +157,7 @@ fn val_a_late_tip_of_a_catheter_is_named() {
 fn val_a_late_tip_of_a_catheter_is_predicted() {
     let Some(folder) = real("catheter_tendon_multisine") else { return };
     let tip = answer(load(&folder)).fit.channels["tip_x_mm"];
-    assert!(tip.rmse_corrected < 0.4 * tip.rmse_baseline, "{tip:?}");
+    assert!(tip.rmse_corrected < 1.55, "{tip:?}");
 }
 
 /// Seven chambers in one folder: the two that leak empty are named, each with a leak of its own.
@@ -166,5 +168,5 @@ fn val_chambers_that_leak_are_named() {
     named(&d, "leak", "line_6");
     named(&d, "leak", "line_7");
     let pressure = d.fit.channels["pressure_kpa"];
-    assert!(pressure.rmse_corrected < 0.03 * pressure.rmse_baseline, "{pressure:?}");
+    assert!(pressure.rmse_corrected < 6.0, "{pressure:?}");
 }

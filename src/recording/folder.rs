@@ -4,6 +4,7 @@ use super::bag_source::BagSource;
 use super::folder_keys::Keys;
 use super::folder_tables::{TOP_KEYS, channels, check_format, layout, runs};
 use super::source::unopened;
+use super::table::FILE_KEYS;
 use super::{FileOptions, Recording, RecordingError, TableSource};
 use crate::files::read_text;
 use std::collections::BTreeMap;
@@ -141,6 +142,7 @@ impl RecordingSet {
         })?;
         let top = Keys::new(file, "top level", &table);
         check_format(&top)?;
+        top.refuse_keys_of("[file]", &FILE_KEYS)?;
         top.refuse_unknown(&TOP_KEYS)?;
         let channels = channels(&top, file)?;
         let layout = layout(&top, file)?;

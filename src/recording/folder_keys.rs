@@ -34,6 +34,15 @@ impl<'a> Keys<'a> {
         }
     }
 
+    /// Refuses keys that belong to another table.
+    pub(super) fn refuse_keys_of(&self, other: &str, keys: &[&str]) -> Result<(), RecordingError> {
+        match self.table.iter().find(|(key, _)| keys.contains(&key.as_str())) {
+            None => Ok(()),
+            Some((key, value)) => Err(self
+                .error(format!("key \"{key}\" is one of {other}\n  remedy: write {key} = {value} below a line {other}"))),
+        }
+    }
+
     pub(super) fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
     }

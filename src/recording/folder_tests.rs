@@ -63,6 +63,13 @@ fn top_level_mistakes() {
         "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd, \
          name, unit, scale, zero, topic, field, joint, time"
     );
+    assert_eq!(
+        refusal("format = 1", "format = 1\ntime = \"index\""),
+        "rig/recordings.toml: top level: key \"time\" is one of [file]\n  remedy: write time = \"index\" below a line \
+         [file]"
+    );
+    let moved = GOOD.replace("[[run]]", "[file]\ntime = \"index\"\ninterval_s = 0.1\n[[run]]");
+    assert!(parse(&moved).is_ok());
     assert!(refusal("scene = ", "scene ").contains("is not valid TOML: TOML parse error at line 3"));
 }
 
