@@ -59,7 +59,7 @@ pub use {
     fit::{Fit, Model, Placed},
 };
 
-use answer::{caveats, figures, location, specimens, summary};
+use answer::{caveats, figures, location, specimens, summary, warnings};
 use experiment::Experiment;
 use explained::{Explained, diverges};
 use fit::{Problem, intervals};
@@ -177,7 +177,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
         specimens,
         fit: proof,
         next_experiment: experiment.next,
-        warnings,
+        warnings: warnings::together(&case.runs.iter().map(|r| r.file.as_str()).collect::<Vec<_>>(), &warnings),
     };
     let caveats = caveats::caveats(&case, (&complete, &diagnosis.effects), &noise, &contradicted);
     diagnosis.summary = summary::summary(&diagnosis, &caveats);

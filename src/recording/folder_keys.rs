@@ -38,8 +38,9 @@ impl<'a> Keys<'a> {
     pub(super) fn refuse_keys_of(&self, other: &str, keys: &[&str]) -> Result<(), RecordingError> {
         match self.table.iter().find(|(key, _)| keys.contains(&key.as_str())) {
             None => Ok(()),
-            Some((key, value)) => Err(self
-                .error(format!("key \"{key}\" is one of {other}\n  remedy: write {key} = {value} below a line {other}"))),
+            Some((key, value)) => Err(self.error(format!(
+                "key \"{key}\" is one of {other}\n  remedy: write {key} = {value} below a line {other}"
+            ))),
         }
     }
 

@@ -10,6 +10,7 @@ mod outcome;
 mod side_by_side;
 pub(super) mod specimens;
 pub(super) mod summary;
+pub(super) mod warnings;
 
 pub use files::{write_answer, write_answer_with};
 pub use outcome::Outcome;
