@@ -136,11 +136,11 @@ fn term_rows(term: &DiscrepancyTerm) -> Vec<Vec<String>> {
     let channel = term.channel.as_deref();
     let element = channel.map_or_else(|| term.element.clone(), |c| format!("{} {c}", term.element));
     let row = |(i, (key, number)): (usize, (&String, &Estimate))| {
-        let (head, law) = match i {
-            0 => ([term.name.clone(), element.clone()], greek(&term.law)),
-            _ => Default::default(),
+        let [name, place, law] = match i {
+            0 => [term.name.clone(), element.clone(), greek(&term.law)],
+            _ => <[String; 3]>::default(),
         };
-        [&head[..], &[key.clone()], &estimate(key, channel, number), &[law]].concat()
+        [vec![name, place, key.clone()], estimate(key, channel, number), vec![law]].concat()
     };
     term.parameters.iter().enumerate().map(row).collect()
 }
