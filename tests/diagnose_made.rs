@@ -200,27 +200,36 @@ fn a_logger_that_loses_samples_makes_no_false_alarm() {
     }
 }
 
-/// Sets that a greedy search loses sight of; each is named, and nothing else.
+/// Sets that a greedy search loses sight of; each is named, and nothing else. One of them is asked with laws allowed, which cost most of the
+/// time and take no set's place (the kept run of the proof has hundreds).
 #[test]
 fn sets_are_found_where_no_effect_leads_to_them() {
     let cases = [
         // A leak, a bubble and a drift of 300 times the noise's variance: one thermal expansion explains 97 % of it, and none of the
         // three added to it explains much of the rest. Together they do.
-        ([2027, 146], 0.99),
+        ([2027, 146], 0.99, Asked::Catalogue),
         // A lag, a softening and a preload: of two runs, neither says enough of one by itself to predict the other.
-        ([2028, 38], 0.9),
+        ([2028, 38], 0.9, Asked::Catalogue),
         // A weight and a gain that bends: neither alone predicts, both together do; what the bend leaves is no third effect.
-        ([2028, 152], 0.9),
+        ([2028, 152], 0.9, Asked::Laws),
         // A leak and a bubble: the leak alone bends the calibration so far that a gain and a weight take the bubble's place.
-        ([2028, 250], 0.99),
+        ([2028, 250], 0.99, Asked::Catalogue),
     ];
-    for (case, least_gap_closed) in cases {
+    for (case, least_gap_closed, asked) in cases {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (name, drawn) = concealed(Hiding::Several, case, folder.path());
-        let d = answer(&folder.path().join(name));
+        let folder = folder.path().join(name);
+        let d = if asked == Asked::Laws { answer(&folder) } else { answer_of_the_catalogue(&folder) };
         names_what_is_hidden(&d, &drawn);
         assert!(d.fit.gap_closed > least_gap_closed, "{case:?}: {}", d.fit.gap_closed);
     }
+}
+
+/// What a search may answer with.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    Catalogue,
+    Laws,
 }
 
 /// What a search says that may not ask for laws.
@@ -267,13 +276,10 @@ fn what_two_effects_only_imitate_is_unknown() {
 }
 
 /// What two sensor effects of altered form leave over looks like plastic set, in some runs; the held-out one would have the set undo itself.
-/// A search that may ask for laws as well does not come by it.
 #[test]
 fn an_effect_that_a_run_would_have_at_an_impossible_size_is_taken_back() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (name, drawn) = concealed(Hiding::Several, [2026, 490], folder.path());
-    let d = answer(&folder.path().join(&name));
-    names_what_is_hidden(&d, &drawn);
     let closed = answer_of_the_catalogue(&folder.path().join(name));
     names_what_is_hidden(&closed, &drawn);
     let takes_back = |w: &String| w.contains("a size in triangle.csv that it cannot have");

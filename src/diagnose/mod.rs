@@ -131,27 +131,12 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings, of_found } = explained;
     warnings.extend(of_found);
     let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
-    // A specimen that is predicted from others has no say in their parameters.
-    let fitted = if case.is_transfer() { RunSet::Open } else { RunSet::All };
-    let fitted = |noise| Problem { case: &case, runs: case.subset(fitted), noise };
-    let complete = match &found.withheld {
-        Some(_) => found.baseline.clone(),
-        None => fitted_to(&fitted(&noise), &found.best),
-    };
-    let of_scene = found.described.as_ref().map(|own| fitted_to(&fitted(&own.noise), &own.fit));
+    let (complete, of_scene) = complete_fits(&case, &found, &noise);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left_by_scene = misfit::left(&whole, found.corrected()).map_or(excess.best, |(left, _)| left);
     let left = excess.best.max(0.0) * whole.samples() as f64;
-    let (mut effects, contradicted) = named(&case, (&found, &complete, left), &noise, &mut warnings);
-    let verdict = judged(&case, (&found, &effects), confirmed, excess);
-    let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
-    let is_refuted = confirmed == Confirmed::InPart && !is_modelled;
-    if verdict == Verdict::UnknownPhysics && (is_refuted || verdict::leaves_a_part(&found, excess)) {
-        verdict::doubt(&mut effects);
-    }
-    if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(&case, &noise, &found) {
-        warnings.push(HELD_OUT_ALONE.to_owned());
-    }
+    let Said { verdict, is_modelled, effects, contradicted } =
+        said(&case, (&found, &complete, left), (confirmed, excess), &noise, &mut warnings);
     warnings.extend(figures::on_bounds(&case, &complete));
     let specimens = specimens::parameters(&case, &complete);
     warnings.extend(specimens::words(&case, &specimens));
@@ -196,6 +181,48 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     })
 }
 
+/// What was found, and what describes the rest beside it, fitted to the runs that may have a say.
+fn complete_fits(case: &Case, found: &Found, noise: &[Noise]) -> (Fit, Option<Fit>) {
+    // A specimen that is predicted from others has no say in their parameters.
+    let runs = if case.is_transfer() { RunSet::Open } else { RunSet::All };
+    let fitted = |noise| Problem { case, runs: case.subset(runs), noise };
+    let complete = match &found.withheld {
+        Some(_) => found.baseline.clone(),
+        None => fitted_to(&fitted(noise), &found.best),
+    };
+    (complete, found.described.as_ref().map(|own| fitted_to(&fitted(&own.noise), &own.fit)))
+}
+
+/// What an answer says is missing.
+struct Said {
+    verdict: Verdict,
+    is_modelled: bool,
+    effects: Vec<NamedEffect>,
+    /// Parameters in which runs contradict each other.
+    contradicted: Vec<String>,
+}
+
+/// The effects and the verdict on them; `left` as in [`next_experiment`].
+fn said(
+    case: &Case,
+    (found, complete, left): (&Found, &Fit, f64),
+    (confirmed, excess): (Confirmed, verdict::Excess),
+    noise: &[Noise],
+    warnings: &mut Vec<String>,
+) -> Said {
+    let (mut effects, contradicted) = named(case, (found, complete, left), noise, warnings);
+    let verdict = judged(case, (found, &effects), confirmed, excess);
+    let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
+    let is_refuted = confirmed == Confirmed::InPart && !is_modelled;
+    if verdict == Verdict::UnknownPhysics && (is_refuted || verdict::leaves_a_part(found, excess)) {
+        verdict::doubt(&mut effects);
+    }
+    if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(case, noise, found) {
+        warnings.push(HELD_OUT_ALONE.to_owned());
+    }
+    Said { verdict, is_modelled, effects, contradicted }
+}
+
 /// What would set apart what stays open, or else the answer from what comes next to it; `left` is the chi² that the best leaves beyond noise.
 fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experiment, RecordingError> {
     let open = verdict::open(found, left);
@@ -205,8 +232,7 @@ fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experime
     experiment::settle(whole, &found.best, &open)
 }
 
-/// The effects of the answer with their curves and their sizes by run, and the parameters in which runs contradict each other; `left` as in
-/// [`next_experiment`].
+/// The effects of the answer with their curves and their sizes by run, and the parameters in which runs contradict each other.
 fn named(
     case: &Case,
     (found, complete, left): (&Found, &Fit, f64),

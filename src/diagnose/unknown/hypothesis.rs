@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
-use super::unlisted::{Proposals, propose};
+use super::unlisted::{Proposals, propose, propose_against};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::Reach;
@@ -254,10 +254,10 @@ impl Search<'_> {
             }
             let begun = if lawful.is_none() { known.plain.take() } else { known.beside(&here) };
             let begun = begun.map(|begun| begun.again(open));
-            let Some(mut proposals) = begun.or_else(|| propose(open, &here, Reach::Plain, self.say)) else { break };
+            let Some(mut proposals) = begun.or_else(|| self.propose(&here, Reach::Plain)) else { break };
             let Some(first) = proposals.fits.first() else { break };
             if lawful.is_none() && leaves_something(open, first) && self.may_be_wider(first) {
-                proposals.fits = wider(open, &here, proposals.fits, known.wide.take(), self.say);
+                proposals.fits = self.wider(&here, proposals.fits, known.wide.take());
             }
             let Some(first) = proposals.fits.first() else { break };
             if here.cost - first.cost < least_gain(open.samples()) {
@@ -269,6 +269,21 @@ impl Search<'_> {
             lawful = Some(Lawful { best, forms });
         }
         lawful
+    }
+
+    /// Laws beside a fit; against an answer that leaves nothing, only such as may come near it.
+    fn propose(&self, from: &Fit, reach: Reach) -> Option<Proposals> {
+        let answer = (!self.is_open).then_some(self.found.best.cost);
+        propose_against(self.open, (from, answer), reach, self.say)
+    }
+
+    /// Replaces plain laws by ones with memory, products or wider shapes where these are clearly better. Cheapest first.
+    fn wider(&self, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>) -> Vec<Fit> {
+        let wide = known.map(|wide| wide.again(self.open)).or_else(|| self.propose(from, Reach::Wide));
+        let Some(wide) = wide else { return plain };
+        let criterion = Criterion::of(self.open, plain.first().into_iter().chain(wide.fits.first()));
+        let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
+        if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
     }
 
     /// Maximum number of laws: fewer than the effects they replace, if those leave nothing.
@@ -297,13 +312,4 @@ pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -
         forms = forms.par_iter().filter_map(|form| without(form, i)).collect();
         best = fit;
     }
-}
-
-/// Replaces plain laws by ones with memory, products or wider shapes where these are clearly better. Cheapest first.
-fn wider(open: &Problem, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>, say: &dyn Fn(String)) -> Vec<Fit> {
-    let wide = known.map(|wide| wide.again(open)).or_else(|| propose(open, from, Reach::Wide, say));
-    let Some(wide) = wide else { return plain };
-    let criterion = Criterion::of(open, plain.first().into_iter().chain(wide.fits.first()));
-    let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
-    if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
 }

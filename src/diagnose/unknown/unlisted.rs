@@ -25,6 +25,9 @@ const WORTH: f64 = 0.1;
 /// Number of the best slots that are compared with each other.
 const COMPARED: usize = 60;
 const WIDENED: usize = 4;
+/// Against an answer, the best curve must promise this share of what the answer explains beyond the fit that laws are added to. Derivatives
+/// promise too little where the scene is far off, seldom by half.
+const HALF_WAY: f64 = 0.5;
 /// Constant laws that are refitted beside them.
 const NUMBERS: usize = 4;
 /// Shapes refitted per slot; refits that are converged.
@@ -55,6 +58,17 @@ pub(in crate::diagnose) fn propose(
     reach: Reach,
     say: &dyn Fn(String),
 ) -> Option<Proposals> {
+    propose_against(problem, (from, None), reach, say)
+}
+
+/// The same against an answer that leaves this chi²: `None` also where no curve at any slot promises half of the way there, because refits
+/// cost nearly all of the time.
+pub(super) fn propose_against(
+    problem: &Problem,
+    (from, answer): (&Fit, Option<f64>),
+    reach: Reach,
+    say: &dyn Fn(String),
+) -> Option<Proposals> {
     let all = slots(problem.case, from, reach);
     if all.is_empty() {
         return None;
@@ -74,6 +88,11 @@ pub(in crate::diagnose) fn propose(
         address(&located),
         variable(&located)
     ));
+    let needed = answer.map_or(0.0, |cost| HALF_WAY * (from.cost - cost));
+    if located.first().is_none_or(|best| best.gain < needed) {
+        say(format!("no law beside {} comes near the answer", from.model.title()));
+        return None;
+    }
     let best = several_ports(&located, &likely);
     let mut fits = shown.refits(&all, &best, 1);
     // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.

@@ -5,10 +5,12 @@
 mod known_as;
 pub(super) mod misfit;
 mod named;
+mod parameters;
 mod written;
 
 pub(super) use misfit::{Excess, Residuals, misfit};
 pub(super) use named::{
-    Confirmed, Open, discrepancy, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
+    Confirmed, Open, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
 };
+pub(super) use parameters::discrepancy;
 pub(super) use written::{curve, port};

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::misfit::Excess;
+use super::parameters::{add_branch, parameters};
 use super::written;
-use crate::diagnose::diagnosis::{DiscrepancyTerm, Estimate, NamedEffect, Verdict};
+use crate::diagnose::diagnosis::{NamedEffect, Verdict};
 use crate::diagnose::fit::{Fit, Placed};
 use crate::diagnose::search::Found;
 
@@ -167,20 +168,6 @@ pub fn open(found: &Found, left: f64) -> Open<'_> {
     Open { rivals, unit: unit_of(found, left) }
 }
 
-/// The effects that describe what the named ones leave, with their parameters in a fit that has them all.
-pub fn discrepancy(found: &Found, fit: &Fit) -> Vec<DiscrepancyTerm> {
-    let named = found.best.model.effects.len();
-    let terms = fit.model.effects.iter().enumerate().skip(named);
-    let term = |(at, placed): (usize, &Placed)| DiscrepancyTerm {
-        name: placed.spec().name.clone(),
-        element: placed.element.to_string(),
-        channel: placed.channel.clone(),
-        parameters: parameters(fit, at),
-        law: placed.spec().equation.clone(),
-    };
-    terms.map(term).collect()
-}
-
 /// All other models fitted in place of the best, with their chi², cheapest first: one row per set of effects. A model
 /// that reads like the answer has another form, and the row says which parameter it differs in.
 pub fn lost(found: &Found) -> Vec<(String, f64)> {
@@ -203,14 +190,6 @@ pub fn lost(found: &Found) -> Vec<(String, f64)> {
         }
     }
     rows
-}
-
-/// Adds a further branch to an effect already named: its parameters get the next free number as suffix.
-fn add_branch(effect: &mut NamedEffect, parameters: BTreeMap<String, Estimate>) {
-    for (key, number) in parameters {
-        let free = (2..).map(|n| format!("{key}_{n}")).find(|k| !effect.parameters.contains_key(k));
-        effect.parameters.extend(free.map(|k| (k, number)));
-    }
 }
 
 /// Whether an answer names this effect.
@@ -259,28 +238,6 @@ fn unit_of(found: &Found, left: f64) -> f64 {
     unit((found.baseline.cost - found.best.cost) / found.best.model.effects.len() as f64, left)
 }
 
-/// Parameters of one effect of a fit, with intervals for fitted ones, cut at the end of the law's range.
-fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate> {
-    let calibration = fit.x.len() - fit.model.effect_parameters();
-    let spec = fit.model.effects[effect].spec();
-    let mut parameters = BTreeMap::new();
-    for (i, p) in spec.parameters.iter().enumerate() {
-        let place = fit.model.places().iter().position(|&at| at == (effect, i));
-        let estimate = match place {
-            Some(k) => {
-                let (value, half) = (fit.x[calibration + k], fit.half_width(calibration + k));
-                Estimate { value, ci95: [(value - half).max(p.range.min), (value + half).min(p.range.max)] }
-            }
-            None => {
-                let value = fit.model.values[effect][i];
-                Estimate { value, ci95: [value, value] }
-            }
-        };
-        parameters.insert(p.key.to_owned(), estimate);
-    }
-    parameters
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
@@ -311,16 +268,6 @@ mod tests {
             withheld: None,
             described: None,
         }
-    }
-
-    #[test]
-    fn an_interval_ends_where_its_law_does() {
-        let mut loose = fit(&["plastic_set"], 1.0);
-        let spec = &find("plastic_set").expect("of the catalogue").entry().parameters[0];
-        loose.covariance[(0, 0)] = loose.x[0].powi(2);
-        let Estimate { value, ci95: [low, high] } = parameters(&loose, 0)[&spec.key];
-        assert_eq!((value, low), (spec.typical, 0.0));
-        assert!(value < high && high <= spec.range.max, "{high}");
     }
 
     /// A tenth of the baseline's misfit may be model discrepancy; more is missing physics.
