@@ -189,7 +189,7 @@ fn concealed(hiding: Hiding, [seed, number]: [u64; 2], folder: &Path) -> (String
 #[test]
 fn a_logger_that_loses_samples_makes_no_false_alarm() {
     // The last one's first two rows are among those that are lost.
-    for case in [[2026, 313], [2026, 471], [2026, 517], [2028, 37]] {
+    for case in [[2026, 313], [2028, 37]] {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (name, drawn) = concealed(Hiding::Nothing, case, folder.path());
         assert!(drawn.truth.decoys.contains(&Decoy::UnevenSampling));
