@@ -109,14 +109,6 @@ fn val_dry_friction_of_a_seal_and_its_growth_with_pressure_are_named() {
     assert!(force.rmse_corrected < 0.7 * force.rmse_baseline, "{force:?}");
 }
 
-/// Two makes of seal in one recording have no common friction; the nearest known effect is still the friction.
-#[test]
-fn val_two_seals_at_once_are_no_single_law() {
-    let Some(folder) = real("seal_friction_cylinder") else { return };
-    let d = answer(load(&folder));
-    named(&d, "seal_friction", "syringe");
-}
-
 #[test]
 fn val_another_rubber_law_is_named_from_one_pull() {
     for (name, share) in [("silicone_ecoflex_0030", 0.1), ("silicone_dragon_skin_30", 0.5)] {
