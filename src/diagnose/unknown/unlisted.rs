@@ -25,8 +25,8 @@ const WORTH: f64 = 0.1;
 /// Number of the best slots that are compared with each other.
 const COMPARED: usize = 60;
 const WIDENED: usize = 4;
-/// Against an answer, the best curve must promise this share of what the answer explains beyond the fit that laws are added to. Derivatives
-/// promise too little where the scene is far off, seldom by half.
+/// Against an answer, the best curve must promise this share of what the answer explains beyond the fit that laws are added to. A
+/// choice: derivatives promise too little where the scene is far off, by how much was not measured.
 const HALF_WAY: f64 = 0.5;
 /// Constant laws that are refitted beside them.
 const NUMBERS: usize = 4;
@@ -89,7 +89,7 @@ pub(super) fn propose_against(
         variable(&located)
     ));
     let needed = answer.map_or(0.0, |cost| HALF_WAY * (from.cost - cost));
-    if located.first().is_none_or(|best| best.gain < needed) {
+    if located.first().is_some_and(|best| best.gain < needed) {
         say(format!("no law beside {} comes near the answer", from.model.title()));
         return None;
     }
