@@ -3,6 +3,7 @@
 //! May import `case` and `error`.
 
 pub(super) mod baseline;
+mod coarse;
 mod descent;
 mod folds;
 pub(super) mod intervals;

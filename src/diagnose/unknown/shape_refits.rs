@@ -63,7 +63,8 @@ impl Shown<'_> {
     /// well leave more at first than there was without it, because the calibration has yet to follow.
     fn begin(&self, candidate: &Candidate) -> Option<Underway> {
         let (model, known) = (&candidate.model, self.from.x.len());
-        let rows = |x: &[f64]| self.problem.rows(model, x, known..x.len(), Sides::One);
+        let problem = &self.coarse;
+        let rows = |x: &[f64]| problem.rows(model, x, known..x.len(), Sides::One);
         let is_far_off = |own: &Rows| own.residual.norm_squared() >= FAR_OFF * self.from.cost;
         let mut x = candidate.x.clone();
         let mut own = rows(&x);
@@ -77,19 +78,23 @@ impl Shown<'_> {
         let own = own?;
         let mut jacobian = self.jacobian.clone().resize_horizontally(x.len(), 0.0);
         jacobian.columns_mut(known, own.jacobian.ncols()).copy_from(&own.jacobian);
-        Some(self.problem.begin(model, x, Rows { residual: own.residual, jacobian }))
+        Some(problem.begin(model, x, Rows { residual: own.residual, jacobian }))
     }
 
-    /// Rough fits; the best `going_on` of them continue.
+    /// Rough fits; the best `going_on` of them continue, and their chi² is exact.
     fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
-        let problem = self.problem;
+        let problem = &self.coarse;
         let begin = |candidate: &Candidate| Some(problem.go_on(self.begin(candidate)?, FIRST_STEPS));
         let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
         underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         let finish = |(place, fit): (usize, Underway)| {
-            problem.end(if place < going_on { problem.go_on(fit, MORE_STEPS) } else { fit })
+            if place >= going_on {
+                return Some(problem.end(fit));
+            }
+            let fit = problem.end(problem.go_on(fit, MORE_STEPS));
+            Some(Fit { cost: self.problem.cost_at(&fit.model, &fit.x)?, ..fit })
         };
-        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().map(finish).collect();
+        let mut fits: Vec<Fit> = underway.into_par_iter().enumerate().filter_map(finish).collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         fits
     }

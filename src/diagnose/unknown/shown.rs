@@ -57,6 +57,8 @@ pub(super) fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
 /// The misfit to be explained along the runs of a fitted model.
 pub(super) struct Shown<'a> {
     pub(super) problem: &'a Problem<'a>,
+    /// The same on longer steps, for signatures and rough refits.
+    pub(super) coarse: Problem<'a>,
     /// The model along whose runs signals are injected.
     along: &'a Fit,
     /// The model that laws are added to.
@@ -94,11 +96,12 @@ impl<'a> Shown<'a> {
 
     /// The misfit `left` along the runs of a fit, with the Jacobian of the model that laws are added to.
     fn along(problem: &'a Problem<'a>, along: &'a Fit, from: Fit, jacobian: DMatrix<f64>, left: DVector<f64>) -> Self {
-        let linear = linear_rows(problem, along);
+        let coarse = problem.coarse(along);
+        let linear = linear_rows(&coarse, along);
         let free = jacobian.column_iter().map(|column| column.into_owned()).chain(problem.free_zeros());
         let basis = basis(free, &linear, left.len());
         let left = orthogonal(&basis, &where_linear(left, &linear));
-        Self { problem, along, from, jacobian, linear, basis, left }
+        Self { problem, coarse, along, from, jacobian, linear, basis, left }
     }
 
     /// Keeps the part of the misfit that curves over a slot's variable can explain. Finite effects contain more than
@@ -149,7 +152,7 @@ impl<'a> Shown<'a> {
             })
             .collect();
         let of_runs: Vec<Vec<Option<Vec<f64>>>> =
-            self.problem.runs.par_iter().enumerate().map(|(r, run)| self.in_run(r, run, &single)).collect();
+            self.coarse.runs.par_iter().enumerate().map(|(r, run)| self.in_run(r, run, &single)).collect();
         let whole = |i: usize| -> Option<DVector<f64>> {
             let mut entries = Vec::with_capacity(self.left.len());
             for run in &of_runs {
