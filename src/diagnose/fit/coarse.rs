@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::model::{Model, simulate};
+use super::model::simulate;
 use super::problem::{Fit, Problem};
 use crate::diagnose::case::CaseRun;
 use crate::system::StepPlan;
@@ -15,35 +15,35 @@ const LONGER: u16 = 4;
 const WORTH: f64 = 1.5;
 
 impl<'a> Problem<'a> {
-    /// The problem on longer steps, for models near a fit; the same problem where [`Problem::on_longer_steps`] has none.
+    /// The problem on longer steps, for models near a fit. What these change of the fit is added to the measurement, so that the fit
+    /// leaves the same residual, and another model is off only by what it changes of the error (defect correction: Stetter, Numer.
+    /// Math. 29, 1978). The same problem if that saves little, or cannot be simulated.
+    ///
+    /// Not for fits to the end: where friction and slack decide, slopes over long steps need two to three times as many of them.
     pub fn coarse(&self, near: &Fit) -> Self {
-        let same = || Problem { case: self.case, runs: self.runs.clone(), noise: self.noise };
-        self.on_longer_steps(&near.model, &near.x).unwrap_or_else(same)
+        let runs = self.runs_on_longer_steps(near).unwrap_or_else(|| self.runs.clone());
+        Problem { case: self.case, runs, noise: self.noise }
     }
 
-    /// The problem on longer steps. What these change of a model is added to the measurement, so that the model leaves the same
-    /// residual, and another is off only by what it changes of the error (defect correction: Stetter, Numer. Math. 29, 1978).
-    /// `None` if that saves little, or the model cannot be simulated.
-    pub fn on_longer_steps(&self, model: &Model, x: &[f64]) -> Option<Self> {
+    fn runs_on_longer_steps(&self, near: &Fit) -> Option<Vec<Cow<'a, CaseRun>>> {
         let longer = |plan: &StepPlan| plan.iter().map(|steps| steps.div_ceil(LONGER)).collect();
         let longer: Vec<StepPlan> = self.plans().map(longer).collect();
         if longer.len() < self.runs.len() || steps(self.plans()) < WORTH * steps(longer.iter()) {
             return None;
         }
-        let corrected =
-            |(run, plan): (&Cow<'a, CaseRun>, StepPlan)| self.with_plan(run, plan, (model, x)).map(Cow::Owned);
+        let corrected = |(run, plan): (&Cow<'a, CaseRun>, StepPlan)| self.corrected(run, plan, near).map(Cow::Owned);
         let runs: Vec<Option<Cow<'a, CaseRun>>> = self.runs.par_iter().zip(longer).map(corrected).collect();
-        Some(Problem { case: self.case, runs: runs.into_iter().collect::<Option<_>>()?, noise: self.noise })
+        runs.into_iter().collect()
     }
 
     fn plans(&self) -> impl Iterator<Item = &StepPlan> {
         self.runs.iter().filter_map(|run| run.drive.plan.as_ref())
     }
 
-    fn with_plan(&self, run: &CaseRun, plan: StepPlan, (model, x): (&Model, &[f64])) -> Option<CaseRun> {
+    fn corrected(&self, run: &CaseRun, plan: StepPlan, near: &Fit) -> Option<CaseRun> {
         let mut coarse = run.clone();
         coarse.drive.plan = Some(plan);
-        let shown = |run: &CaseRun| simulate(self.case, run, model, x);
+        let shown = |run: &CaseRun| simulate(self.case, run, &near.model, &near.x);
         let (exact, changed) = (shown(run)?, shown(&coarse)?);
         for values in std::iter::once(&mut coarse.measured).chain(&mut coarse.open_part) {
             for (values, (exact, changed)) in values.iter_mut().zip(exact.iter().zip(&changed)) {
@@ -66,7 +66,7 @@ fn steps<'p>(plans: impl Iterator<Item = &'p StepPlan>) -> f64 {
 mod tests {
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
-    use crate::diagnose::fit::Placed;
+    use crate::diagnose::fit::{Model, Placed};
     use crate::effects::{Element, ElementKind, find};
     use crate::scene::Override;
 

@@ -25,17 +25,9 @@ const PLAYED_REFRESHES: usize = 4;
 const LEAST_DAMPING: f64 = 1e-10;
 
 impl Problem<'_> {
-    /// Fits a model from `start`, first on longer steps: these have the slopes, shorter ones the last word. `None` if it cannot be
-    /// simulated there.
+    /// Fits a model from `start`. `None` if it cannot be simulated there.
     pub fn fit(&self, model: &Model, start: &[f64]) -> Option<Fit> {
-        let start = within(start, &self.parameters(model));
-        let Some(coarse) = self.on_longer_steps(model, &start) else {
-            return self.fit_until(GAIN, model, &start, self);
-        };
-        let near = coarse.fit_until(GAIN, model, &start, &coarse).map_or_else(|| start.clone(), |fit| fit.x);
-        let is_nearer = |there: f64| coarse.cost_at(model, &start).is_none_or(|here| there < here);
-        let is_near = self.cost_at(model, &near).is_some_and(is_nearer);
-        self.fit_until(GAIN, model, if is_near { &near } else { &start }, &coarse)
+        self.fit_until(GAIN, model, start)
     }
 
     /// The same from the scene's calibration, with effects as in `start`; `None` unless it ends lower than `cost`. A
@@ -48,21 +40,20 @@ impl Problem<'_> {
 
     /// As [`Problem::fit`], until next to nothing is to be gained.
     pub fn fit_to_the_end(&self, model: &Model, start: &[f64]) -> Option<Fit> {
-        self.fit_until(LAST_GAIN, model, &within(start, &self.parameters(model)), self)
+        self.fit_until(LAST_GAIN, model, start)
     }
 
-    /// Descends from parameters within their ranges, with slopes taken in another problem.
-    fn fit_until(&self, gain: f64, model: &Model, start: &[f64], slopes: &Problem) -> Option<Fit> {
-        let (parameters, x) = (self.parameters(model), start.to_vec());
-        let jacobian = |x: &[f64], sides: Sides| slopes.rows(model, x, 0..x.len(), sides).map(|rows| rows.jacobian);
-        let rows = Rows { residual: self.weighted_residual(model, &x)?, jacobian: jacobian(&x, Sides::One)? };
+    fn fit_until(&self, gain: f64, model: &Model, start: &[f64]) -> Option<Fit> {
+        let parameters = self.parameters(model);
+        let x = within(start, &parameters);
+        let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
         let residual = |x: &[f64]| self.weighted_residual(model, x);
         let mut descent = Descent::new(self, model, &parameters, x, rows, &residual);
         descent.gain = gain;
         descent.run();
         for _ in 0..REFRESHES {
             let cost = descent.normal().cost;
-            descent.rows.jacobian = jacobian(&descent.x, Sides::Both)?;
+            descent.rows = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?;
             descent.damping = LEAST_DAMPING;
             descent.run();
             if cost - descent.normal().cost < gain * descent.unit() {
