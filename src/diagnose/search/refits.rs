@@ -58,14 +58,9 @@ fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
 }
 
 /// Joint refits with each candidate added, best first; of several starts of one effect, the better. All are fitted
-/// roughly, on longer steps; those near the best are converged.
+/// roughly; those near the best are converged.
 pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
-    let coarse = problem.coarse(&screening.from);
-    let rough = |s: &Screened| {
-        let fit = add(&coarse, screening, s)?;
-        Some(Fit { cost: problem.cost_at(&fit.model, &fit.x)?, ..fit })
-    };
-    let rough: Vec<Option<Fit>> = candidates.par_iter().map(rough).collect();
+    let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
     let rough = best_of_each(rough.into_iter().flatten().collect());
     let Some(best) = rough.first().map(|f| f.cost) else { return rough };
     let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
@@ -176,14 +171,12 @@ const PREDICTED: f64 = 0.5;
 /// others known, and much better.
 pub(in crate::diagnose) fn cross_validates(problem: &Problem, before: &Fit, after: &Fit) -> bool {
     cross_validates_runs(problem, before, after)
-        || gain_left_out(problem.coarse(after).halves_left_out(), before, after)
-            > PREDICTED * (before.cost - after.cost)
+        || gain_left_out(problem.halves_left_out(), before, after) > PREDICTED * (before.cost - after.cost)
 }
 
 /// Whether a model predicts whole left-out runs better than another. A single run is cut in two.
 pub(in crate::diagnose) fn cross_validates_runs(problem: &Problem, before: &Fit, after: &Fit) -> bool {
-    problem.case.is_without(Step::CrossValidation)
-        || gain_left_out(problem.coarse(after).runs_left_out(), before, after) > 0.0
+    problem.case.is_without(Step::CrossValidation) || gain_left_out(problem.runs_left_out(), before, after) > 0.0
 }
 
 /// Reduction of chi² on left-out data.
