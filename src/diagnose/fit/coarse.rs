@@ -59,7 +59,7 @@ mod tests {
     use crate::effects::{Element, ElementKind, find};
     use crate::scene::Override;
 
-    /// A softer syringe, seen from the stock one: at the fit the residual is the exact one, nearby chi² is off by less than a thousandth
+    /// A softer syringe, seen from the stock one: at the fit the residual is the exact one, with a great leak chi² is off by less than a hundredth
     /// of what it changes by, and there are a quarter of the steps. Where the noise is a thousandth of that, they stay as they are.
     #[test]
     fn longer_steps_leave_the_same_misfit_nearby() {
@@ -84,7 +84,7 @@ mod tests {
         let leaks = model.plus(&Placed { entry, element, channel: None }, &[3e-15]);
         let x = problem.start(&leaks, Some(&fit.x));
         let [exact, near] = [&problem, &coarse].map(|p| p.cost_at(&leaks, &x).expect("played"));
-        assert!((exact - near).abs() < 1e-3 * (exact - fit.cost).abs(), "{} {exact} {near}", fit.cost);
+        assert!((exact - near).abs() < 1e-2 * (exact - fit.cost).abs(), "{} {exact} {near}", fit.cost);
         let quiet = noise.clone().map(|own| Noise::white(1e-3 * own.sd));
         let kept = Problem { case: &case, runs: case.subset(RunSet::All), noise: &quiet };
         assert_eq!(steps(&kept.coarse(&fit)), steps(&kept));
