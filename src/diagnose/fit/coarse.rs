@@ -85,7 +85,7 @@ mod tests {
         let x = problem.start(&leaks, Some(&fit.x));
         let [exact, near] = [&problem, &coarse].map(|p| p.cost_at(&leaks, &x).expect("played"));
         assert!((exact - near).abs() < 1e-2 * (exact - fit.cost).abs(), "{} {exact} {near}", fit.cost);
-        let quiet = noise.clone().map(|own| Noise::white(1e-3 * own.sd));
+        let quiet = noise.each_ref().map(|own| Noise::white(1e-3 * own.sd));
         let kept = Problem { case: &case, runs: case.subset(RunSet::All), noise: &quiet };
         assert_eq!(steps(&kept.coarse(&fit)), steps(&kept));
     }
