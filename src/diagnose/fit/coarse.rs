@@ -1,4 +1,4 @@
-//! The same problem on longer steps, for fits that only tell which models are worth an exact one.
+//! The same problem on longer steps: for rough fits, which only tell the models that are worth an exact one.
 
 use std::borrow::Cow;
 
@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::model::simulate;
 use super::problem::{Fit, Problem};
 use crate::diagnose::case::{CaseRun, Noise};
+use crate::recording::figures;
 
 /// Steps are longer by the first of these factors that does: one in a sampling interval where friction asks for four, or two.
 const LONGER: [u16; 2] = [4, 2];
@@ -30,7 +31,7 @@ impl<'a> Problem<'a> {
             let mut coarse = run.clone();
             coarse.drive.plan = Some(plan.iter().map(|steps| steps.div_ceil(factor)).collect());
             let changes = difference(&shown(&coarse)?, &exact);
-            let is_little = |(change, noise): (&Vec<f64>, &Noise)| rms(change) <= CHANGES * noise.sd;
+            let is_little = |(change, noise): (&Vec<f64>, &Noise)| figures::rms(change) <= CHANGES * noise.sd;
             if !changes.iter().zip(self.noise).all(is_little) {
                 return None;
             }
@@ -47,14 +48,10 @@ fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::case::{RunSet, made};
     use crate::diagnose::fit::{Model, Placed};
     use crate::effects::{Element, ElementKind, find};
     use crate::scene::Override;
