@@ -31,20 +31,28 @@ impl<'a> Problem<'a> {
             let mut coarse = run.clone();
             coarse.drive.plan = Some(plan.iter().map(|steps| steps.div_ceil(factor)).collect());
             let changes = difference(&shown(&coarse)?, &exact);
-            let is_little = |(change, noise): (&Vec<f64>, &Noise)| figures::rms(change) <= CHANGES * noise.sd;
-            if !changes.iter().zip(self.noise).all(is_little) {
-                return None;
-            }
-            for values in std::iter::once(&mut coarse.measured).chain(&mut coarse.open_part) {
-                let each = values.iter_mut().flatten().zip(changes.iter().flatten());
-                each.for_each(|(measured, change)| *measured += change);
-            }
-            Some(coarse)
+            self.is_little(&changes).then(|| shifted(coarse, &changes))
         })
+    }
+
+    /// Whether changes of a run, by channel and time, are small enough that a model nearby changes them by next to nothing.
+    pub fn is_little(&self, changes: &[Vec<f64>]) -> bool {
+        let is_little = |(change, noise): (&Vec<f64>, &Noise)| figures::rms(change) <= CHANGES * noise.sd;
+        changes.iter().zip(self.noise).all(is_little)
     }
 }
 
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+/// The run with changes, by channel and time, added to what was measured.
+pub(in crate::diagnose) fn shifted(mut run: CaseRun, changes: &[Vec<f64>]) -> CaseRun {
+    for values in std::iter::once(&mut run.measured).chain(&mut run.open_part) {
+        let each = values.iter_mut().flatten().zip(changes.iter().flatten());
+        each.for_each(|(measured, change)| *measured += change);
+    }
+    run
+}
+
+/// One set of channels less another.
+pub(in crate::diagnose) fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
 }
 

@@ -15,12 +15,8 @@ const LOWER: f64 = 5.0;
 /// Steps on an updated Jacobian, and how often it is evaluated anew.
 const ITERATIONS: usize = 25;
 const REFRESHES: usize = 8;
+/// Steps, each shorter than the last, that are tried in one direction.
 const TRIES: usize = 8;
-/// The same for the full scene, which is expensive: a gain of 0.05 is two tenths of a standard error.
-const PLAYED_GAIN: f64 = 0.05;
-const PLAYED_ITERATIONS: usize = 4;
-const PLAYED_TRIES: usize = 3;
-const PLAYED_REFRESHES: usize = 4;
 /// The first steps are undamped: the laws are nearly linear in their parameters, and damping crawls along narrow valleys.
 const LEAST_DAMPING: f64 = 1e-10;
 
@@ -47,8 +43,7 @@ impl Problem<'_> {
         let parameters = self.parameters(model);
         let x = within(start, &parameters);
         let rows = self.rows(model, &x, 0..x.len(), Sides::One)?;
-        let residual = |x: &[f64]| self.weighted_residual(model, x);
-        let mut descent = Descent::new(self, model, &parameters, x, rows, &residual);
+        let mut descent = Descent::new(self, model, &parameters, x, rows);
         descent.gain = gain;
         descent.run();
         for _ in 0..REFRESHES {
@@ -80,8 +75,7 @@ impl Problem<'_> {
     pub fn go_on(&self, underway: Underway, iterations: usize) -> Underway {
         let Underway { model, x, rows, damping } = underway;
         let parameters = self.parameters(&model);
-        let residual = |x: &[f64]| self.weighted_residual(&model, x);
-        let mut descent = Descent::new(self, &model, &parameters, x, rows, &residual);
+        let mut descent = Descent::new(self, &model, &parameters, x, rows);
         (descent.damping, descent.iterations) = (damping, iterations);
         descent.run();
         let Descent { x, rows, damping, .. } = descent;
@@ -92,32 +86,7 @@ impl Problem<'_> {
     pub fn end(&self, underway: Underway) -> Fit {
         let Underway { model, x, rows, .. } = underway;
         let parameters = self.parameters(&model);
-        let residual = |x: &[f64]| self.weighted_residual(&model, x);
-        Descent::new(self, &model, &parameters, x, rows, &residual).finish()
-    }
-
-    /// Refines a fit with another model: `played` gives the residuals in units of the noise, the reduced-order model
-    /// the Jacobian. Every evaluation may cost seconds, so there are few. Also returns the step that the Jacobian still
-    /// asks for and that does not lower the cost, in parameter units; `None` if nothing can be simulated.
-    pub fn fit_played(&self, model: &Model, start: &[f64], played: &Play) -> Option<(Fit, Vec<f64>)> {
-        let parameters = self.parameters(model);
-        let rows = Rows { residual: played(start)?, ..self.rows(model, start, 0..start.len(), Sides::Both)? };
-        let mut descent = Descent::new(self, model, &parameters, start.to_vec(), rows, played);
-        descent.gain = PLAYED_GAIN;
-        descent.iterations = PLAYED_ITERATIONS;
-        descent.tries = PLAYED_TRIES;
-        for _ in 0..PLAYED_REFRESHES {
-            let cost = descent.normal().cost;
-            descent.run();
-            if cost - descent.normal().cost < PLAYED_GAIN * descent.unit() {
-                break;
-            }
-            descent.rows.jacobian = self.rows(model, &descent.x, 0..descent.x.len(), Sides::Both)?.jacobian;
-            descent.damping = LEAST_DAMPING;
-        }
-        let refused = descent.normal().bounded_step(&parameters, &descent.x, 0.0)?;
-        let refused = refused.iter().zip(&parameters).map(|(step, n)| step * n.scale).collect();
-        Some((descent.finish(), refused))
+        Descent::new(self, &model, &parameters, x, rows).finish()
     }
 }
 
@@ -140,9 +109,6 @@ impl Underway {
     }
 }
 
-/// Residuals at some parameters, in units of the noise; `None` if the model diverges.
-pub(super) type Play<'a> = dyn Fn(&[f64]) -> Option<DVector<f64>> + 'a;
-
 /// A fit in progress.
 struct Descent<'a> {
     problem: &'a Problem<'a>,
@@ -150,13 +116,10 @@ struct Descent<'a> {
     parameters: &'a [FitParameter],
     x: Vec<f64>,
     rows: Rows,
-    residual: &'a Play<'a>,
     damping: f64,
     /// Units of chi² that are worth another iteration.
     gain: f64,
     iterations: usize,
-    /// Steps, each shorter than the last, that are tried in one direction.
-    tries: usize,
 }
 
 impl<'a> Descent<'a> {
@@ -166,10 +129,8 @@ impl<'a> Descent<'a> {
         parameters: &'a [FitParameter],
         x: Vec<f64>,
         rows: Rows,
-        residual: &'a Play<'a>,
     ) -> Self {
-        let (damping, gain, iterations, tries) = (LEAST_DAMPING, GAIN, ITERATIONS, TRIES);
-        Self { problem, model, parameters, x, rows, residual, damping, gain, iterations, tries }
+        Self { problem, model, parameters, x, rows, damping: LEAST_DAMPING, gain: GAIN, iterations: ITERATIONS }
     }
 
     fn normal(&self) -> Normal {
@@ -194,7 +155,7 @@ impl<'a> Descent<'a> {
     /// One step; returns its gain, `None` if less than a third of `least` can be gained.
     fn improve(&mut self, least: f64) -> Option<f64> {
         let here = self.normal();
-        for _ in 0..self.tries {
+        for _ in 0..TRIES {
             let step = here.bounded_step(self.parameters, &self.x, self.damping)?;
             if here.promised_gain(&step) < least / 3.0 {
                 return None;
@@ -204,7 +165,7 @@ impl<'a> Descent<'a> {
             let next = within(&moved, self.parameters);
             let made = self.x.iter().zip(&next).zip(self.parameters).map(|((from, to), n)| (to - from) / n.scale);
             let made = DVector::from_iterator(next.len(), made);
-            let residual = (self.residual)(&next);
+            let residual = self.problem.weighted_residual(self.model, &next);
             let there = residual.map(|r| (r.norm_squared() + prior_cost(self.parameters, &next), r));
             if let Some((cost, residual)) = there.filter(|(cost, _)| *cost < here.cost) {
                 self.rows.move_on(&made, residual);
