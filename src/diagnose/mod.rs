@@ -56,7 +56,7 @@ pub use {
     case::{CaseChannel, CaseParameter, CaseRun, Direction, Noise, RunSet},
     diagnosis::size_key,
     experiment::programme,
-    fit::{Fit, Model, Placed},
+    fit::{Calibrated, Fit, Model, Placed, chi2_beyond},
 };
 
 use answer::{caveats, figures, location, specimens, summary, warnings};

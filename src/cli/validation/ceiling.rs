@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use smam::conceal::{Ceiling, Hiding, Secret, Settling, ceiling, settling};
-use smam::proof::{Folders, ProofError, Row, VISIBLE, open};
+use smam::proof::{Folders, LawCeiling, ProofError, Row, Told, VISIBLE, law_ceiling, open};
 use smam::recording::read_csv;
 
 use super::score::write_rows;
@@ -80,6 +80,46 @@ pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folder
          | case | hidden | taken for | promised, sigma | at best, sigma | right at best | settled |\n|---|---|---|---|---|---|---|\n\
          {table}\nRight at best: {}\n",
         mean_share(&right)
+    ))
+}
+
+/// Holds the hidden laws of the first `count` detected cases against their answers, writes law_ceiling.jsonl and prints a table.
+pub fn write_law_ceiling(
+    rows: &[Row],
+    count: usize,
+    seals: &[(String, String)],
+    folders: &Folders,
+    out: &Path,
+) -> Result<(), CliError> {
+    let is_detected = |r: &&Row| matches!(r.hiding, Hiding::Law | Hiding::Laws) && r.is_detected();
+    let chosen: Vec<&Row> = rows.iter().filter(is_detected).take(count).collect();
+    let one = |row: &&Row| -> Result<Option<LawCeiling>, ProofError> {
+        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { return Ok(None) };
+        match law_ceiling(&open(&row.name, seal, folders)?, row, folders) {
+            // A law so steep that the scene's steps cannot follow it is no case for this table.
+            Err(ProofError::Diagnose(error)) => {
+                eprintln!("{}: {error}", row.name);
+                Ok(None)
+            }
+            found => found,
+        }
+    };
+    let found: Vec<Option<LawCeiling>> = chosen.par_iter().map(one).collect::<Result<_, _>>()?;
+    let found: Vec<LawCeiling> = found.into_iter().flatten().collect();
+    write_rows(&found.iter().collect::<Vec<_>>(), &out.join("law_ceiling.jsonl"))?;
+    let line = |c: &LawCeiling| {
+        let rank = c.rank.map_or("-".to_owned(), |n| n.to_string());
+        let told = match c.told() {
+            Told::Found => "found",
+            Told::Alike => "not told apart",
+            Told::Missed => "missed",
+        };
+        format!("| {} | {:.0} | {:.1} | {rank} | {told} |\n", c.name, c.calibrated, c.corrected)
+    };
+    let table: String = found.iter().map(line).collect();
+    crate::cli::print_text(&format!(
+        "\n### Answers beside the laws themselves\n\nChi2 left beyond the scene with the hidden law:\n\n\
+         | case | calibrated | corrected | port and variable | |\n|---|---|---|---|---|\n{table}"
     ))
 }
 

@@ -11,7 +11,7 @@ use smam::conceal::Hiding;
 use smam::diagnose::{Step, Verdict};
 use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, row, settle};
 
-use super::ceiling::{write_ceiling, write_settling};
+use super::ceiling::{write_ceiling, write_law_ceiling, write_settling};
 use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
 use crate::cli::CliError;
 use crate::cli::diagnose::StepName;
@@ -40,7 +40,8 @@ pub struct ProofArguments {
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
     /// Compute as well what could be known at best of so many visible cases that hide one thing, and what the proposed
-    /// experiments could decide at best: ceiling.jsonl, settling.jsonl
+    /// experiments could decide at best (ceiling.jsonl, settling.jsonl); with --laws, chi² of the hidden law itself beside
+    /// that of the answer (law_ceiling.jsonl)
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     ceiling: usize,
     /// Where cases, answers and score go; what is there already is kept
@@ -79,7 +80,9 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
         Run { planned: &planned, seals: &seals, folders: &folders, without: arguments.without.map(StepName::step) };
     let rows = run.answer_all(former, &out, &journal)?;
     write_score(&rows, &out)?;
-    if arguments.ceiling > 0 {
+    if arguments.ceiling > 0 && arguments.laws {
+        write_law_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
+    } else if arguments.ceiling > 0 {
         write_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
         write_settling(&rows, &seals, &folders, &out)?;
     }

@@ -55,7 +55,7 @@ fn plan_steps(case: &mut Case, noise: &[Noise], near: Option<&[f64]>) -> Option<
     case.plan_steps(&settings, noise)
 }
 
-fn diverges() -> DiagnoseError {
+pub(super) fn diverges() -> DiagnoseError {
     DiagnoseError::Simulation("it diverges".to_owned())
 }
 

@@ -3,6 +3,7 @@
 //! May import `case` and `error`.
 
 pub(super) mod baseline;
+mod calibrated;
 mod coarse;
 mod descent;
 mod folds;
@@ -11,9 +12,11 @@ mod model;
 mod normal;
 mod problem;
 
+pub use calibrated::{Calibrated, chi2_beyond};
 pub use model::{Model, Placed};
 pub use problem::Fit;
 
+pub(super) use coarse::{difference, shifted};
 pub(super) use descent::Underway;
 pub(super) use model::{Probe, Sides, Variant, respond, simulate, simulate_many};
 pub(super) use normal::{FitParameter, Normal, Rows, orthogonal};
