@@ -284,6 +284,34 @@ mod tests {
         assert!(spread < 1e-6, "{found:?}");
         assert!((found[0] - 0.12).abs() < 0.005, "{found:?}");
     }
+
+    /// `F = 3 N + (40 N s/m) v + (2.5 kg) a` of an axis shaken at 1.1 Hz from rest to rest, without a pressure, its position rounded to 1 µm.
+    #[test]
+    fn an_axis_without_a_pressure_shows_its_mass() {
+        let text = "format = 1\nscene = \"driven_axis\"\nrun = [{ file = \"sine.csv\" }]\nchannel = [{ column = \"position_mm\", \
+                    role = \"input\" }, { column = \"pressure_kpa\", role = \"input\", constant = 0 }, { column = \"force_n\", \
+                    role = \"output\", noise_sd = 0.05 }]";
+        let set = RecordingSet::parse(text, Path::new("recordings.toml")).expect("a set");
+        let omega = std::f64::consts::TAU * 1.1;
+        let times_s: Vec<f64> = (0..2000).map(|i| 0.01 * f64::from(i)).collect();
+        let position_mm: Vec<f64> = times_s.iter().map(|t| (1e4 * (1.0 - (omega * t).cos())).round() / 1e3).collect();
+        let force = |t: &f64| {
+            let (sin, cos) = (omega * t).sin_cos();
+            3.0 + 40.0 * 0.01 * omega * sin + 2.5 * 0.01 * omega * omega * cos
+        };
+        let force_n: Vec<f64> = times_s.iter().map(force).collect();
+        let still = vec![0.0; times_s.len()];
+        let channels = [("position_mm", position_mm), ("pressure_kpa", still), ("force_n", force_n)];
+        let channels = channels.map(|(column, values)| Channel::new(column, values)).to_vec();
+        let recording = Recording::new(times_s, channels).expect("even times");
+        let run = RecordedRun { run: Run { file: "sine.csv".to_owned(), ..Run::default() }, recording };
+        let found = fit_rig_parameters(&set, "driven_axis", &[], &[run]).expect("fits");
+        for (key, truth) in [("axis.mass_kg", 2.5), ("axis.damping_n_s_m", 40.0), ("axis.offset_n", 3.0)] {
+            let own = found.parameters.iter().find(|p| p.key == key).expect("calibrated");
+            assert!((own.value / truth - 1.0).abs() < 0.01, "{key}: {} of {truth}", own.value);
+        }
+    }
+
     /// A cost with a valley beside the true one: a search that ends in it begins again elsewhere.
     #[test]
     fn a_fit_leaves_a_valley() {

@@ -5,7 +5,7 @@ mod fit;
 mod lead_in;
 mod levenberg_marquardt;
 pub mod loops;
-mod own_start;
+mod own_settings;
 mod replay;
 
 pub use fit::{FitReport, FittedParameter, fit_rig_parameters};
@@ -16,6 +16,6 @@ pub use replay::{IdentifyError, RecordedRun, load_runs, replay};
 pub use {
     lead_in::LeadIn,
     levenberg_marquardt::{Bounds, LmOptions, LmResult, minimise, minimise_with_jacobian},
-    own_start::own_start,
+    own_settings::own_settings,
     replay::{check_channels, condition_overrides, lead_in},
 };

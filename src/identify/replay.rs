@@ -6,7 +6,7 @@ use crate::recording::{
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
-use super::{LeadIn, own_start};
+use super::{LeadIn, own_settings};
 
 /// Why recordings cannot be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -142,7 +142,7 @@ pub fn replay(
 ) -> Result<Recording, IdentifyError> {
     let plain = Scene::load(scene, overrides)?;
     let mut conditions = condition_overrides(&plain, &run.run)?;
-    conditions.extend(own_start(&plain, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
+    conditions.extend(own_settings(&plain, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
     let scene = match conditions.is_empty() {
         true => plain,
         false => Scene::load(scene, &[overrides, &conditions].concat())?,
@@ -189,7 +189,9 @@ fn begin_where_recorded(
 /// How to declare an input, which may be there in another unit.
 fn wanted_input(set: &RecordingSet, wanted: &str) -> String {
     let in_other = set.of_role(Role::Input).find_map(|c| in_another_unit(&c.column, &[wanted]));
-    in_other.unwrap_or_else(|| "declare it as a [[channel]] with role = \"input\"".to_owned())
+    in_other.unwrap_or_else(|| {
+        "declare it as a [[channel]] with role = \"input\"; if it stood still and was not recorded, add constant = 0, or where it stood".to_owned()
+    })
 }
 
 /// What to do with a column that the scene has in another unit.

@@ -36,7 +36,7 @@ impl ChannelFit {
 ///     Recording::new(vec![0.0, 1.0, 2.0], vec![Channel::new("force_n", force_n.to_vec())])
 /// };
 /// let (measured, simulated) = (recording([1.0, f64::NAN, 5.0])?, recording([2.0, 7.0, 4.0])?);
-/// let force = ChannelSpec { column: "force_n".to_owned(), role: Role::Output, noise_sd: Some(0.5), bag: None, table: TableSource::default() };
+/// let force = ChannelSpec { column: "force_n".to_owned(), role: Role::Output, noise_sd: Some(0.5), constant: None, bag: None, table: TableSource::default() };
 /// let fits = compare(&measured, &simulated, &[force])?;
 /// // 1 N off at the two samples that there are: twice the noise.
 /// assert_eq!((fits[0].rmse, fits[0].count, fits[0].rmse_over_noise()), (1.0, 2, Some(2.0)));
@@ -110,6 +110,7 @@ mod tests {
             column: "force_n".into(),
             role: Role::Output,
             noise_sd: Some(0.5),
+            constant: None,
             bag: None,
             table: TableSource::default(),
         }]

@@ -41,6 +41,8 @@ pub struct ChannelSpec {
     pub role: Role,
     /// Standard deviation of its noise in the column's unit, if stated.
     pub noise_sd: Option<f64>,
+    /// Value at which an input stood that no file has, in the column's unit.
+    pub constant: Option<f64>,
     /// Where a bag has it, if stated.
     pub bag: Option<BagSource>,
     /// Where a table has it, and in which unit.
@@ -165,9 +167,10 @@ impl RecordingSet {
         self.channels.iter().filter(move |spec| spec.role == role)
     }
 
-    /// The declared channels that a run was recorded with.
+    /// The declared channels that a run's file has.
     pub fn channels_of(&self, run: &Run) -> Vec<ChannelSpec> {
-        self.channels.iter().filter(|spec| !run.not_recorded.contains(&spec.column)).cloned().collect()
+        let is_there = |spec: &&ChannelSpec| spec.constant.is_none() && !run.not_recorded.contains(&spec.column);
+        self.channels.iter().filter(is_there).cloned().collect()
     }
 }
 

@@ -48,7 +48,8 @@ impl RecordingSet {
             if is_table && index == 0 {
                 notes.extend(self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(&declared)));
             }
-            Ok(LoadedRun { recording: with_missing(recording, &run.not_recorded, &file)?, notes })
+            let recording = with_missing(recording, &run.not_recorded, &file)?;
+            Ok(LoadedRun { recording: self.with_constants(recording, &file)?, notes })
         };
         parts.into_iter().enumerate().map(whole).collect()
     }
@@ -60,7 +61,25 @@ impl RecordingSet {
         if absent.is_empty() {
             return Ok(());
         }
-        found_in_bag(file, &absent)?.map_or(Ok(()), |column| Err(is_there(&column, file)))
+        found_in_bag(file, &absent)?
+            .map_or(Ok(()), |column| Err(is_there(&column, NOT_RECORDED.0, NOT_RECORDED.1, file)))
+    }
+
+    /// The recording with the inputs that stood still.
+    fn with_constants(&self, recording: Recording, file: &Path) -> Result<Recording, RecordingError> {
+        let still: Vec<(&str, f64)> =
+            self.channels.iter().filter_map(|spec| Some((spec.column.as_str(), spec.constant?))).collect();
+        if still.is_empty() {
+            return Ok(recording);
+        }
+        let mut channels = recording.channels().to_vec();
+        for (column, value) in still {
+            if recording.find(column).is_some() {
+                return Err(is_there(column, "stood still (constant)", "remove constant from its [[channel]]", file));
+            }
+            channels.push(Channel::new(column, vec![value; recording.sample_count()]));
+        }
+        Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
     }
 
     fn undeclared_note(&self, recording: &Recording) -> Option<String> {
@@ -93,6 +112,9 @@ fn taken_as_it_stands(declared: &[ChannelSpec]) -> Option<String> {
         .then(|| format!("unit and zero are for bags: {} taken as in the file, convert there", columns.join(", ")))
 }
 
+/// What recordings.toml says of a column that a run lacks, and what to do where it does not.
+const NOT_RECORDED: (&str, &str) = ("is not_recorded", "remove it from that list");
+
 /// A recording with columns that it was recorded without: all their samples are missing.
 fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result<Recording, RecordingError> {
     if columns.is_empty() {
@@ -104,17 +126,16 @@ fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result
             if there.values.iter().all(|v| v.is_nan()) {
                 continue;
             }
-            return Err(is_there(column, file));
+            return Err(is_there(column, NOT_RECORDED.0, NOT_RECORDED.1, file));
         }
         channels.push(Channel::new(column.clone(), vec![f64::NAN; recording.sample_count()]));
     }
     Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
 }
 
-fn is_there(column: &str, file: &Path) -> RecordingError {
+fn is_there(column: &str, said: &str, remedy: &str, file: &Path) -> RecordingError {
     let problem = format!(
-        "column \"{column}\" is there, and recordings.toml says that it is not_recorded\n  \
-         remedy: remove it from that list, or rename the column"
+        "column \"{column}\" is there, and recordings.toml says that it {said}\n  remedy: {remedy}, or rename the column"
     );
     RecordingError::Format { file: file.to_owned(), problem }
 }

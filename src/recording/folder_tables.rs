@@ -10,7 +10,7 @@ use std::path::Path;
 
 const FORMAT: i64 = 1;
 pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
-pub(super) const CHANNEL_KEYS: [&str; 3] = ["column", "role", "noise_sd"];
+pub(super) const CHANNEL_KEYS: [&str; 4] = ["column", "role", "noise_sd", "constant"];
 pub(super) const RUN_KEYS: [&str; 4] = ["file", "use", "not_recorded", "specimen"];
 
 pub(super) fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
@@ -61,13 +61,31 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
     if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
         return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
     }
+    let constant = constant(keys, role)?;
     let bag = bag_source(keys, unit)?;
     // Beside a topic unit and zero are the bag's; a table's numbers are then the channel's as they stand.
     let table = match bag {
         None => table_source(keys, unit)?,
         Some(_) => TableSource { name: keys.text("name")?.map(str::to_owned), ..TableSource::default() },
     };
-    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, bag, table })
+    Ok(ChannelSpec { column: column.to_owned(), role, noise_sd, constant, bag, table })
+}
+
+/// The value at which an input stood that no file has.
+fn constant(keys: &Keys<'_>, role: Role) -> Result<Option<f64>, RecordingError> {
+    let constant = keys.number("constant")?;
+    if constant.is_some() {
+        if role == Role::Output {
+            return Err(keys.error("constant is for inputs\n  remedy: leave an output out that was not recorded"));
+        }
+        let of_files = [&TABLE_KEYS[..], &BAG_KEYS, &["noise_sd"]].concat();
+        if let Some(odd) = of_files.into_iter().find(|key| keys.has(key)) {
+            return Err(keys.error(format!(
+                "{odd} says where the files have the channel, constant that they lack it\n  remedy: remove one of the two"
+            )));
+        }
+    }
+    Ok(constant)
 }
 
 pub(super) fn runs(

@@ -134,6 +134,36 @@ fn runs_are_checked_against_the_declaration() {
 }
 
 #[test]
+fn an_input_that_stood_still_need_not_be_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        GOOD.replace("[[run]]", "[[channel]]\ncolumn = \"pressure_kpa\"\nrole = \"input\"\nconstant = 20\n\n[[run]]");
+    std::fs::write(folder.path().join(SET_FILE_NAME), text).unwrap();
+    let set = RecordingSet::load(folder.path()).unwrap();
+    let csv = folder.path().join("sine.csv");
+    std::fs::write(&csv, "time_s,plunger_mm,force_n\n0,1,2\n0.1,2,2\n").unwrap();
+    let loaded = set.load_run(&set.runs[0]).unwrap();
+    assert_eq!(loaded.recording.channel("pressure_kpa").unwrap().values, [20.0, 20.0]);
+    assert!(loaded.notes.is_empty());
+    std::fs::write(&csv, "time_s,plunger_mm,force_n,pressure_kpa\n0,1,2,20\n").unwrap();
+    let error = set.load_run(&set.runs[0]).unwrap_err().to_string();
+    assert!(
+        error.ends_with(
+            "column \"pressure_kpa\" is there, and recordings.toml says that it stood still (constant)\n  \
+             remedy: remove constant from its [[channel]], or rename the column"
+        ),
+        "{error}"
+    );
+    assert!(
+        refusal("noise_sd = 1", "constant = 1")
+            .ends_with("constant is for inputs\n  remedy: leave an output out that was not recorded")
+    );
+    assert!(refusal("role = \"input\"", "role = \"input\"\nconstant = 1\nunit = \"m\"").ends_with(
+        "unit says where the files have the channel, constant that they lack it\n  remedy: remove one of the two"
+    ));
+}
+
+#[test]
 fn a_run_may_lack_a_sensor_that_others_have() {
     let folder = tempfile::tempdir().unwrap();
     let text = GOOD.replace("use = \"holdout\"", "not_recorded = [\"force_n\"]");

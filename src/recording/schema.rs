@@ -40,6 +40,7 @@ fn channel() -> Value {
             "type": "number", "exclusiveMinimum": 0,
             "description": "Standard deviation of the noise, in the column's unit; estimated when left out.",
         },
+        "constant": { "type": "number", "description": "Inputs only: the value at which it stood, in the column's unit, where no file has it." },
         "topic": { "type": "string", "pattern": "^/", "description": "Bags only: the topic, /syringe/position." },
         "field": text("Bags only: path of the number in the message, wrench.force.z or data[2]; data when left out."),
         "joint": text("Bags only: which joint, by its name in the list `name` of the message."),

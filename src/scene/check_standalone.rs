@@ -54,7 +54,7 @@ fn check_axis(scene: &SceneFile, axis: &AxisSpec, place: &Place) -> Result<(), S
     place.not_negative("mass_kg", axis.mass_kg)?;
     place.not_negative("damping_n_s_m", axis.damping_n_s_m)?;
     place.finite("offset_n", axis.offset_n)?;
-    place.positive("derivative_window_s", axis.derivative_window_s)
+    axis.derivative_window_s.map_or(Ok(()), |window_s| place.positive("derivative_window_s", window_s))
 }
 
 fn check_strip(scene: &SceneFile, strip: &StripSpec, place: &Place) -> Result<(), SceneError> {

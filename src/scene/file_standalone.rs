@@ -20,8 +20,10 @@ pub struct AxisSpec {
     pub damping_n_s_m: f64,
     #[serde(default)]
     pub offset_n: f64,
-    /// Width of the window over which speed and acceleration are taken from the recorded position, s.
-    pub derivative_window_s: f64,
+    /// Width of the window over which speed and acceleration are taken from the position, s. Left out, a recording's own noise and
+    /// sampling decide; without a recording it is two steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_window_s: Option<f64>,
 }
 
 /// A strip of rubber clamped at both ends and pulled: `F = A0 P(1 + x/L0)`, `P` the nominal stress of its law.

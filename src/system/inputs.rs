@@ -38,9 +38,14 @@ impl InputSource {
 
     /// Where a recorded channel begins, s.
     pub(crate) fn begins_s(&self) -> Option<f64> {
+        self.span_s().map(|(begins_s, _)| begins_s)
+    }
+
+    /// Where a recorded channel begins and ends, s.
+    pub(crate) fn span_s(&self) -> Option<(f64, f64)> {
         match self {
             Self::Program(_) => None,
-            Self::Recorded(samples) => samples.times_s().first().copied(),
+            Self::Recorded(samples) => samples.times_s().first().copied().zip(samples.times_s().last().copied()),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::effects::Effect;
-use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs, own_start};
+use crate::identify::{LeadIn, RecordedRun, check_channels, condition_overrides, load_runs, own_settings};
 use crate::recording::{Recording, RecordingSet, Role, RunUse, strays};
 use crate::scene::{CalibrateSpec, Override, Scene};
 use crate::system::{Rom, RomRun};
@@ -80,7 +80,7 @@ impl Case {
         self.notes.extend(notes);
         for run in &runs {
             let mut conditions = condition_overrides(&self.scene, &run.run)?;
-            conditions.extend(own_start(&self.scene, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
+            conditions.extend(own_settings(&self.scene, &run.recording).map_err(|e| e.in_file(&run.run.file))?);
             conditions.extend(self.chamber_number());
             let scene = match conditions.is_empty() {
                 true => self.scene.clone(),

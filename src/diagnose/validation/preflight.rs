@@ -152,7 +152,8 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), S
             }
         }
         let noise = problem.runs.iter().filter_map(|r| noise_sd(r.times_s(), &r.measured[c])).fold(0.0, f64::max);
-        if spread(&measured) < NOISE_ALONE * noise {
+        // A scene whose calibrated parameters all start at zero shows nothing to compare with.
+        if spread(&measured) < NOISE_ALONE * noise || spread(&simulated) < 1e-9 * spread(&measured) {
             continue;
         }
         let ratio = spread(&measured) / spread(&simulated).max(f64::MIN_POSITIVE);

@@ -12,7 +12,11 @@ pub(in crate::system) struct Axis {
     pub spec: AxisSpec,
     pub position: usize,
     pub pressure: Option<usize>,
+    window_s: f64,
 }
+
+/// Window without a recording, whose inputs are exact, in steps.
+const WINDOW_STEPS: f64 = 2.0;
 
 /// The numbers of an axis, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +52,8 @@ impl Axis {
         let input = |name: &str| scene.file.input.iter().position(|i| i.channel == name);
         let position = input(&spec.position_input)?;
         let pressure = spec.pressure_input.as_deref().and_then(input);
-        Some(Self { spec, position, pressure })
+        let window_s = spec.derivative_window_s.unwrap_or(WINDOW_STEPS * scene.file.simulation.step_s);
+        Some(Self { spec, position, pressure, window_s })
     }
 
     /// The scene's numbers.
@@ -61,14 +66,17 @@ impl Axis {
         }
     }
 
-    /// The motion at a time, from the inputs as functions of time.
-    pub fn motion_at(&self, input: impl Fn(usize, f64) -> f64, time_s: f64) -> AxisMotion {
-        let w = self.spec.derivative_window_s;
+    /// The motion at a time, from the inputs as functions of time. At the ends of a recorded position, `span_s`, derivatives are those
+    /// of the nearest instant whose window lies inside: beyond, nothing is known of it.
+    pub fn motion_at(&self, input: impl Fn(usize, f64) -> f64, span_s: Option<(f64, f64)>, time_s: f64) -> AxisMotion {
+        let w = self.window_s;
         let x = |t: f64| input(self.position, t);
+        let inside = span_s.map(|(begins_s, ends_s)| (begins_s + w, ends_s - w)).filter(|(first, last)| first <= last);
+        let near_s = inside.map_or(time_s, |(first, last)| time_s.clamp(first, last));
         AxisMotion {
             position_m: x(time_s),
-            speed_m_s: (x(time_s + w / 2.0) - x(time_s - w / 2.0)) / w,
-            acceleration_m_s2: (x(time_s + w) - 2.0 * x(time_s) + x(time_s - w)) / (w * w),
+            speed_m_s: (x(near_s + w / 2.0) - x(near_s - w / 2.0)) / w,
+            acceleration_m_s2: (x(near_s + w) - 2.0 * x(near_s) + x(near_s - w)) / (w * w),
             pressure_pa: self.pressure.map_or(0.0, |i| input(i, time_s)),
         }
     }

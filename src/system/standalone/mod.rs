@@ -105,11 +105,11 @@ impl Standalone {
 }
 
 impl<D: Scalar> Answering<D> {
-    /// What the element shows at a time, SI, from the inputs as functions of time.
-    pub fn show(&mut self, input: impl Fn(usize, f64) -> f64, time_s: f64) -> D {
+    /// What the element shows at a time, SI, from the inputs as functions of time; `span_s` is where recorded ones begin and end.
+    pub fn show(&mut self, input: impl Fn(usize, f64) -> f64, span_s: Option<(f64, f64)>, time_s: f64) -> D {
         match self {
             Self::Axis(axis, numbers, friction) => {
-                let motion = axis.motion_at(input, time_s);
+                let motion = axis.motion_at(input, span_s, time_s);
                 numbers.force_n(&motion) + friction.force_n(&motion)
             }
             Self::Strip(rubber) => rubber.force_n(input(rubber.position, time_s), time_s),
