@@ -43,6 +43,27 @@ fn val_rom_meets_the_full_scene() {
     }
 }
 
+/// A ball that nothing touches falls beside the catheter and changes nothing of the model; what links may touch needs the engine.
+#[test]
+fn bodies_count_where_links_may_touch_them() {
+    let ball = "mechanism.body=[{name=\"ball\",mass_kg=1e-3,has_weight=true,position_m=[0.0,0.0,1.0],shape={sphere={radius_m=1e-3}}}]";
+    let load = |changes: &[&str]| {
+        let changes: Vec<Override> = changes.iter().map(|c| Override::parse(c).expect("written rightly")).collect();
+        Scene::load("bending_catheter", &changes).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let (full, fast, columns) = both(&load(&[ball]), 2.0);
+    let (without, same, _) = both(&load(&[]), 2.0);
+    assert_eq!(fast, same);
+    for column in &columns {
+        let percent =
+            difference(&full.find(column).expect("a channel").values, &without.find(column).expect("a channel").values);
+        assert!(percent < 1e-6, "{column}: {percent}");
+    }
+    let touching = load(&[ball, "mechanism.contact={links=[\"jaw_left_link\"]}"]);
+    let refusal = Rom::new(&touching).err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(refusal.contains("remedy: remove [mechanism.contact] if they touch nothing while recorded"), "{refusal}");
+}
+
 /// The effects of the catalogue that can sit on a scene, at their typical size: one scene text each.
 fn with_each_effect(name: &str) -> Vec<(String, Scene)> {
     let stock = Scene::load(name, &[]).unwrap_or_else(|e| panic!("{e}"));

@@ -17,11 +17,26 @@ impl Pose {
 
     /// A point of the world in this frame, m.
     pub(crate) fn to_local(self, point_m: [f64; 3]) -> [f64; 3] {
-        let [x, y, z, w] = self.rotation_xyzw;
-        let rotation = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
         let offset = nalgebra::Vector3::from(point_m) - nalgebra::Vector3::from(self.translation_m);
-        rotation.inverse_transform_vector(&offset).into()
+        self.rotation().inverse_transform_vector(&offset).into()
     }
+
+    /// The rotation vector from another frame to this one, rad.
+    pub(crate) fn rotation_from(self, frame: Self) -> [f64; 3] {
+        (frame.rotation().inverse() * self.rotation()).scaled_axis().into()
+    }
+
+    fn rotation(self) -> nalgebra::UnitQuaternion<f64> {
+        let [x, y, z, w] = self.rotation_xyzw;
+        nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z))
+    }
+}
+
+/// What is read of a pose: of its place along an axis, or of its rotation vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PoseComponent {
+    Position(usize),
+    Rotation(usize),
 }
 
 /// A shape in its own frame: boxes and spheres centred, cylinders centred along z.

@@ -103,6 +103,18 @@ impl<D: Scalar> Placement<'_, D> {
         self.bodies[*body].after(in_body).seen(&origin)
     }
 
+    /// The rotation vector of a link, from another or from the world, rad.
+    pub(crate) fn rotation_from(&self, link: usize, frame: Option<usize>) -> [D; 3] {
+        let turn = |link: usize| {
+            let (body, in_body) = &self.linkage.links[link];
+            self.bodies[*body].after(in_body).turn
+        };
+        let own = turn(link);
+        let from = frame.map_or_else(|| Frame::<f64>::STILL.lift().turn, turn);
+        let column = |m: &[[D; 3]; 3], j: usize| [m[0][j], m[1][j], m[2][j]];
+        rotation_vector(&[0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(&column(&from, i), &column(&own, j)))))
+    }
+
     /// Length of straight segments through points, m, and its derivative by each coordinate, m/rad or m/m.
     pub fn path_length(&self, points: &[LinkPoint], slope: &mut [D]) -> D {
         slope.fill(D::constant(0.0));
@@ -213,6 +225,23 @@ fn turned_about<D: Scalar>(axis: &[f64; 3], angle: D, v: &[f64; 3]) -> [D; 3] {
     [0, 1, 2].map(|i| cos * v[i] + sin * across[i] + (-cos + 1.0) * (axis[i] * along))
 }
 
+/// Below this sine of the angle, squared, the vector is a series in it: its length has no derivative at zero.
+const SMALL: f64 = 1e-4;
+/// Steps of Newton's iteration from 0 to any angle below 3.1 rad; the last ones triple the digits.
+const NEWTON: usize = 12;
+
+/// Axis times angle of a rotation matrix: `w a/sin(a)`, `w` its skew part, `a` from `|w| = sin(a)` and `cos(a) = (trace - 1)/2`.
+fn rotation_vector<D: Scalar>(turn: &[[D; 3]; 3]) -> [D; 3] {
+    let skew = [turn[2][1] - turn[1][2], turn[0][2] - turn[2][0], turn[1][0] - turn[0][1]].map(|x| x * 0.5);
+    let square = dot(&skew, &skew);
+    let (sin, cos) = (square.sqrt(), (turn[0][0] + turn[1][1] + turn[2][2] - 1.0) * 0.5);
+    let angle = (0..NEWTON).fold(D::constant(0.0), |angle, _| angle + sin * angle.cos() - cos * angle.sin());
+    // asin(s)/s = 1 + s²/6 + 3 s⁴/40.
+    let series = square * square * (3.0 / 40.0) + square / 6.0 + 1.0;
+    let longer = square.select_above(D::constant(SMALL), angle / sin, series);
+    skew.map(|x| x * longer)
+}
+
 fn dot<D: Scalar>(a: &[D; 3], b: &[D; 3]) -> D {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -290,6 +319,9 @@ mod tests {
             let seen = here.origin_in(tip, far);
             let wanted = poses[far].to_local(poses[tip].translation_m);
             assert!((0..3).all(|i| (seen[i] - wanted[i]).abs() < 1e-12), "{seen:?} {wanted:?}");
+            let turned = here.rotation_from(tip, Some(0));
+            let wanted = poses[tip].rotation_from(poses[0]);
+            assert!((0..3).all(|i| (turned[i] - wanted[i]).abs() < 1e-11), "{q:?} {turned:?} {wanted:?}");
             let (mut own, mut wanted) = ([0.0; 2], [0.0; 2]);
             let length = here.path_length(&points, &mut own);
             let engine = finger.path_length(&Route::Via(points.clone()), &mut wanted);
@@ -300,6 +332,20 @@ mod tests {
             here.weight(&mut own);
             finger.weight(&mut wanted);
             assert!((0..2).all(|i| (own[i] - wanted[i]).abs() < 1e-12), "{own:?} {wanted:?}");
+        }
+    }
+
+    /// About one axis the vector is the angle, with a slope of one, also where it is none.
+    #[test]
+    fn a_rotation_vector_is_the_angle_about_its_axis() {
+        for angle in [0.0, 1e-9, 5e-3, -0.011, 0.7, -2.0, 3.05] {
+            let axis = [0.0, 0.6, 0.8];
+            let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+                .map(|unit| turned_about(&axis, Dual64::new(angle, 1.0), &unit));
+            let found = rotation_vector(&[0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])));
+            for (found, axis) in found.iter().zip(axis) {
+                assert!((found.re - axis * angle).abs() < 1e-9 && (found.eps - axis).abs() < 1e-7, "{angle} {found:?}");
+            }
         }
     }
 

@@ -39,6 +39,7 @@ mod xml_scan;
 
 pub use error::MechanismError;
 pub use geometry::Pose;
+pub(crate) use geometry::PoseComponent;
 pub use spec::{
     BodyMotion, BodyShapeSpec, ContactSpec, FreeBodySpec, JointSpec, LeverSpec, LinkMassSpec, MechanismSpec, PointSpec,
     RouteSpec, StopSpec,

@@ -252,6 +252,7 @@ fn units_of(quantity: Quantity) -> &'static [&'static str] {
         | Quantity::ArcTipZ => &["m"],
         Quantity::SyringePressure | Quantity::MusclePressure | Quantity::ChamberPressure => &["pa"],
         Quantity::Pull | Quantity::Tension | Quantity::AxisForce | Quantity::StripForce => &["n"],
+        Quantity::BodyRotationX | Quantity::BodyRotationY | Quantity::BodyRotationZ => &["rad"],
         Quantity::JointPosition => &["rad", "m"],
     }
 }

@@ -52,6 +52,11 @@ pub enum Quantity {
     BodyX,
     BodyY,
     BodyZ,
+    /// Orientation of a link or a free body: component of its rotation vector, axis times angle, below half a turn; with a second name
+    /// in `of`, from that link.
+    BodyRotationX,
+    BodyRotationY,
+    BodyRotationZ,
     /// Force of the axis.
     AxisForce,
     /// Force of the strip on its clamps.

@@ -2,11 +2,12 @@
 
 use crate::effects::{Effect, SensorHistory};
 use crate::laws::Law;
-use crate::mechanism::{Coordinate, CoordinateKind};
+use crate::mechanism::{Coordinate, CoordinateKind, Pose, PoseComponent};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
 
 use super::arc::ArcSide;
+use super::inputs::InputSource;
 use super::laws::LawSensor;
 use super::plant::Drive;
 use super::rom::sensor;
@@ -22,10 +23,10 @@ enum Reader {
     Pull(usize),
     Tension(usize),
     Joints(Vec<usize>, f64),
-    /// A body's position along an axis, in the world or in another link's frame.
+    /// A component of a body's pose, in the world or in another link's frame.
     Body {
         body: usize,
-        axis: usize,
+        component: PoseComponent,
         frame: Option<usize>,
     },
     Standalone(Box<Answering<f64>>),
@@ -120,12 +121,20 @@ impl Reader {
             },
             Self::Tension(c) => plant.cable(*c, state, spans, 0.0).2,
             Self::Joints(joints, constant) => *constant + joints.iter().map(|&j| state.y()[j]).sum::<f64>(),
-            Self::Body { body, axis, frame } => simulation.mechanism.as_ref().map_or(f64::NAN, |mechanism| {
+            Self::Body { body, component, frame } => simulation.mechanism.as_ref().map_or(f64::NAN, |mechanism| {
                 let poses = mechanism.link_poses();
-                let position = poses[*body].translation_m;
-                frame.map_or(position, |f| poses[f].to_local(position))[*axis]
+                let (pose, frame) = (poses[*body], frame.map(|f| poses[f]));
+                match component {
+                    PoseComponent::Position(axis) => {
+                        frame.map_or(pose.translation_m, |f| f.to_local(pose.translation_m))[*axis]
+                    }
+                    PoseComponent::Rotation(axis) => pose.rotation_from(frame.unwrap_or(Pose::IDENTITY))[*axis],
+                }
             }),
-            Self::Standalone(element) => element.show(|i, t| simulation.inputs[i].value(t), simulation.time_s),
+            Self::Standalone(element) => {
+                let span_s = simulation.inputs.first().and_then(InputSource::span_s);
+                element.show(|i, t| simulation.inputs[i].value(t), span_s, simulation.time_s)
+            }
             Self::ArcTip(joints, length_m, side) => side.of_tip(*length_m, joints.iter().map(|&j| state.y()[j]).sum()),
             Self::Displacement(input) => spans[*input].value,
         }
@@ -159,9 +168,12 @@ fn reader(simulation: &Simulation, output: &OutputSpec) -> Result<Reader, System
             Reader::Tension(cable.ok_or_else(|| no_such(scene, output, "this cable"))?)
         }
         Quantity::JointPosition => joints(simulation, output)?,
-        Quantity::BodyX => body(simulation, output, 0)?,
-        Quantity::BodyY => body(simulation, output, 1)?,
-        Quantity::BodyZ => body(simulation, output, 2)?,
+        Quantity::BodyX => body(simulation, output, PoseComponent::Position(0))?,
+        Quantity::BodyY => body(simulation, output, PoseComponent::Position(1))?,
+        Quantity::BodyZ => body(simulation, output, PoseComponent::Position(2))?,
+        Quantity::BodyRotationX => body(simulation, output, PoseComponent::Rotation(0))?,
+        Quantity::BodyRotationY => body(simulation, output, PoseComponent::Rotation(1))?,
+        Quantity::BodyRotationZ => body(simulation, output, PoseComponent::Rotation(2))?,
         Quantity::AxisForce | Quantity::StripForce | Quantity::ChamberPressure => {
             let element =
                 Standalone::of(scene).ok_or_else(|| no_such(scene, output, "an element that stands alone"))?;
@@ -230,12 +242,12 @@ fn wrong_unit(scene: &Scene, output: &OutputSpec, joint: &Coordinate) -> SystemE
     }
 }
 
-fn body(simulation: &Simulation, output: &OutputSpec, axis: usize) -> Result<Reader, SystemError> {
+fn body(simulation: &Simulation, output: &OutputSpec, component: PoseComponent) -> Result<Reader, SystemError> {
     let links = simulation.mechanism.as_ref().map_or(&[][..], |m| m.link_names());
     let find = |name: Option<&String>| links.iter().position(|l| Some(l) == name);
     match (find(output.of.first()), output.of.get(1), find(output.of.get(1))) {
-        (Some(body), None, _) => Ok(Reader::Body { body, axis, frame: None }),
-        (Some(body), Some(_), Some(frame)) => Ok(Reader::Body { body, axis, frame: Some(frame) }),
+        (Some(body), None, _) => Ok(Reader::Body { body, component, frame: None }),
+        (Some(body), Some(_), Some(frame)) => Ok(Reader::Body { body, component, frame: Some(frame) }),
         _ => Err(no_such(&simulation.scene, output, &format!("these bodies or links (known: {})", links.join(", ")))),
     }
 }

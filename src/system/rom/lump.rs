@@ -30,19 +30,21 @@ pub(super) struct Lumped {
 
 /// Refuses scenes whose mechanism cannot be reduced.
 pub(super) fn refuse_what_has_none(scene: &Scene, built: &Built) -> Result<(), SystemError> {
-    let refuse = |table: &str, message: &str| {
+    let refuse = |table: &str, message: &str, remedy: &str| {
         Err(SystemError::Name {
             file: scene.path.clone(),
             table: table.to_owned(),
             message: format!("{message}: there is no reduced-order model of this scene"),
-            remedy: "diagnose a recording of a scene without it".to_owned(),
+            remedy: remedy.to_owned(),
         })
     };
-    if scene.file.mechanism.as_ref().is_some_and(|m| !m.body.is_empty()) {
-        return refuse("[[mechanism.body]]", "free bodies need the rigid-body engine");
+    if scene.file.mechanism.as_ref().is_some_and(|m| !m.body.is_empty() && m.contact.is_some()) {
+        let remedy = "remove [mechanism.contact] if they touch nothing while recorded, else record without them";
+        return refuse("[[mechanism.body]]", "bodies that links may touch need the rigid-body engine", remedy);
     }
     if !built.displacements.is_empty() {
-        return refuse("[muscles.displacement]", "a displacement model has no forces");
+        let remedy = "diagnose a recording of a scene without it";
+        return refuse("[muscles.displacement]", "a displacement model has no forces", remedy);
     }
     Ok(())
 }
@@ -94,7 +96,10 @@ pub(super) fn lump(scene: &Scene, mechanism: Option<&Mechanism>, built: Built) -
     let spring_table = group_names.iter().map(|g| tables.iter().rposition(|t| t.joints.contains(&g[0]))).collect();
     let kinds = slides(mechanism.map_or(&[][..], Mechanism::coordinates));
     let slides = groups.iter().map(|g| kinds[g[0]]).collect();
-    let link_names = mechanism.map_or_else(Vec::new, |m| m.link_names().to_vec());
+    // Bodies come after the links; where nothing touches them they are no part of the model.
+    let bodies = scene.file.mechanism.as_ref().map_or(0, |m| m.body.len());
+    let mut link_names = mechanism.map_or_else(Vec::new, |m| m.link_names().to_vec());
+    link_names.truncate(link_names.len().saturating_sub(bodies));
     Ok(Lumped { plant, state, hinges, names: group_names, slides, spring_table, posture, link_names })
 }
 

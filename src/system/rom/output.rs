@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::effects::{Effect, Native, Sensor, SensorHistory};
 use crate::laws::Law;
-use crate::mechanism::LinkPoint;
+use crate::mechanism::{LinkPoint, PoseComponent};
 use crate::recording::{PiecewiseLinear, parse_column};
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
@@ -31,11 +31,11 @@ enum Reader {
     /// Coordinates and the share of each that is asked for.
     Joints(Vec<(usize, f64)>),
     Standalone,
-    /// A coordinate of a link's origin: the link, which axis, and in which other link's frame, if not the world's.
+    /// A component of a link's pose: the link, which component, and in which other link's frame, if not the world's.
     Link {
         posture: Arc<Posture>,
         link: usize,
-        axis: usize,
+        component: PoseComponent,
         frame: Option<usize>,
     },
     /// The tip of a rod of a length that these coordinates bend.
@@ -71,12 +71,15 @@ impl RomOutput {
             },
             Reader::Tension(c) => plant.cable_in(*c, &Instant::of(state, inputs, 0.0), room).2,
             Reader::Joints(parts) => parts.iter().map(|(i, share)| state.y()[*i] * *share).sum(),
-            Reader::Link { posture, link, axis, frame } => {
+            Reader::Link { posture, link, component, frame } => {
                 let here = posture.positions(state.y());
                 let placement = posture.linkage.at(&here);
-                match frame {
-                    Some(frame) => placement.origin_in(*link, *frame)[*axis],
-                    None => placement.point(&LinkPoint { link: *link, point_m: [0.0; 3] })[*axis],
+                match (component, frame) {
+                    (PoseComponent::Rotation(axis), frame) => placement.rotation_from(*link, *frame)[*axis],
+                    (PoseComponent::Position(axis), Some(frame)) => placement.origin_in(*link, *frame)[*axis],
+                    (PoseComponent::Position(axis), None) => {
+                        placement.point(&LinkPoint { link: *link, point_m: [0.0; 3] })[*axis]
+                    }
                 }
             }
             Reader::Standalone => D::constant(f64::NAN),
@@ -112,9 +115,12 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
             let side = ArcSide::of(spec.quantity);
             side.zip(spec.arc_length_m).map(|(side, length_m)| Reader::ArcTip(joints(spec, lumped), length_m, side))
         }
-        Quantity::BodyX => link(spec, lumped, 0),
-        Quantity::BodyY => link(spec, lumped, 1),
-        Quantity::BodyZ => link(spec, lumped, 2),
+        Quantity::BodyX => link(spec, lumped, PoseComponent::Position(0)),
+        Quantity::BodyY => link(spec, lumped, PoseComponent::Position(1)),
+        Quantity::BodyZ => link(spec, lumped, PoseComponent::Position(2)),
+        Quantity::BodyRotationX => link(spec, lumped, PoseComponent::Rotation(0)),
+        Quantity::BodyRotationY => link(spec, lumped, PoseComponent::Rotation(1)),
+        Quantity::BodyRotationZ => link(spec, lumped, PoseComponent::Rotation(2)),
     };
     let reader = reader.ok_or_else(|| SystemError::Name {
         file: scene.path.clone(),
@@ -126,15 +132,15 @@ pub(super) fn resolve(scene: &Scene, spec: &OutputSpec, lumped: &Lumped) -> Resu
     Ok(RomOutput { column: spec.channel.clone(), reader, factor: parse_column(&spec.channel)?.unit.factor, laws })
 }
 
-/// A link's origin, if a link is what is named.
-fn link(spec: &OutputSpec, lumped: &Lumped, axis: usize) -> Option<Reader> {
+/// A component of a link's pose, if a link is what is named.
+fn link(spec: &OutputSpec, lumped: &Lumped, component: PoseComponent) -> Option<Reader> {
     let find = |name: &String| lumped.link_names.iter().position(|l| l == name);
     let link = find(spec.of.first()?)?;
     let frame = match spec.of.get(1) {
         Some(name) => Some(find(name)?),
         None => None,
     };
-    Some(Reader::Link { posture: lumped.posture.clone()?, link, axis, frame })
+    Some(Reader::Link { posture: lumped.posture.clone()?, link, component, frame })
 }
 
 fn joints(spec: &OutputSpec, lumped: &Lumped) -> Vec<(usize, f64)> {
@@ -225,9 +231,10 @@ pub(super) fn standalone_series<D: Scalar>(
     let lines: Vec<Option<PiecewiseLinear>> =
         run.inputs.iter().map(|x| PiecewiseLinear::new(&run.times_s, x)).collect();
     let input = |i: usize, t: f64| lines[i].as_ref().map_or(0.0, |line| line.value(t));
+    let span_s = run.times_s.first().copied().zip(run.times_s.last().copied());
     let mut series = vec![Vec::with_capacity(run.times_s.len()); outputs.len()];
     for &time in &run.times_s {
-        let value = answering.show(input, time);
+        let value = answering.show(input, span_s, time);
         for (output, series) in outputs.iter().zip(&mut series) {
             series.push(sensors.show(output, time, value / output.factor));
         }
