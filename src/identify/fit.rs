@@ -305,7 +305,11 @@ mod tests {
         let channels = channels.map(|(column, values)| Channel::new(column, values)).to_vec();
         let recording = Recording::new(times_s, channels).expect("even times");
         let run = RecordedRun { run: Run { file: "sine.csv".to_owned(), ..Run::default() }, recording };
-        let found = fit_rig_parameters(&set, "driven_axis", &[], &[run]).expect("fits");
+        let free =
+            ["mass_kg\", min=0.0, max=10.0", "damping_n_s_m\", min=0.0, max=200.0", "offset_n\", min=-10.0, max=10.0"];
+        let free = free.map(|own| format!("{{key=\"axis.{own}, belongs_to_rig=true}}")).join(",");
+        let free = Override::parse(&format!("calibrate=[{free}]")).expect("written rightly");
+        let found = fit_rig_parameters(&set, "driven_axis", &[free], &[run]).expect("fits");
         for (key, truth) in [("axis.mass_kg", 2.5), ("axis.damping_n_s_m", 40.0), ("axis.offset_n", 3.0)] {
             let own = found.parameters.iter().find(|p| p.key == key).expect("calibrated");
             assert!((own.value / truth - 1.0).abs() < 0.01, "{key}: {} of {truth}", own.value);

@@ -131,3 +131,30 @@ impl<D: Scalar> AxisFriction<D> {
         force
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::PiecewiseLinear;
+
+    /// `x = x0 + v t + a t²/2`, recorded in motion from the first sample to the last: acceleration is exact everywhere, speed but at the ends,
+    /// where it is that of half a window inside or more.
+    #[test]
+    fn ends_in_motion_have_the_derivatives_of_what_is_near() {
+        let scene = Scene::load("driven_axis", &[]).expect("a stock scene");
+        let axis = Axis { window_s: 0.04, ..Axis::of(&scene).expect("an axis") };
+        let times_s: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
+        let position_m: Vec<f64> = times_s.iter().map(|t| 0.003 + 0.02 * t - 0.5 * 0.3 * t * t).collect();
+        let line = PiecewiseLinear::new(&times_s, &position_m).expect("even times");
+        let at = |t: f64| axis.motion_at(|_, t| line.value(t), Some((0.0, 1.99)), t);
+        for &t in &times_s {
+            let motion = at(t);
+            assert!((motion.acceleration_m_s2 + 0.3).abs() < 1e-9, "{t}: {motion:?}");
+            let near_s = t.clamp(0.04, 1.95);
+            assert!((motion.speed_m_s - (0.02 - 0.3 * near_s)).abs() < 1e-9, "{t}: {motion:?}");
+        }
+        // A recording shorter than two windows has no inside.
+        let short = axis.motion_at(|_, t| line.value(t), Some((0.0, 0.05)), 0.02);
+        assert!((short.acceleration_m_s2 + 0.3).abs() > 1e-3, "{short:?}");
+    }
+}
