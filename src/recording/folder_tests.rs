@@ -60,7 +60,7 @@ fn top_level_mistakes() {
     );
     assert_eq!(
         refusal("[[run]]", "[[channel]]"),
-        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd, \
+        "rig/recordings.toml: [[channel]] 3: unknown key \"file\"\n  remedy: the keys here are column, role, noise_sd, constant, \
          name, unit, scale, zero, topic, field, joint, time"
     );
     assert_eq!(
@@ -78,7 +78,7 @@ fn channel_mistakes() {
     assert_eq!(
         refusal("role = \"input\"", "rol = \"input\""),
         "rig/recordings.toml: [[channel]] 1 (\"plunger_mm\"): unknown key \"rol\", did you mean \"role\"?\n  remedy: \
-         the keys here are column, role, noise_sd, name, unit, scale, zero, topic, field, joint, time"
+         the keys here are column, role, noise_sd, constant, name, unit, scale, zero, topic, field, joint, time"
     );
     assert_eq!(
         refusal("\"output\"", "\"ouput\""),
