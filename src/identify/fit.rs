@@ -146,6 +146,10 @@ fn lowest(
 /// Step of the differences behind intervals, as a share of the range: wide enough to see past where sticking begins.
 const WIDE: f64 = 1e-3;
 
+/// Added to each diagonal element of the normal matrix, per range squared: a number that no run shows must not hide the others. Its own
+/// interval is then a thousand ranges wide.
+const UNSHOWN: f64 = 1e-6;
+
 /// 95 % intervals at a fit; residuals in units of the noise, in those of what is left where that is more.
 fn intervals(
     residuals: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
@@ -162,7 +166,8 @@ fn intervals(
             jacobian.set_column(i, &((residuals(&high)? - residuals(&low)?) * ((b.max - b.min) / (high[i] - low[i]))));
         }
         let unit = (here.norm_squared() / here.len().max(1) as f64).max(1.0);
-        Some(jacobian.tr_mul(&jacobian).try_inverse()? * unit)
+        let normal = jacobian.tr_mul(&jacobian) + DMatrix::identity(x.len(), x.len()) * UNSHOWN;
+        Some(normal.try_inverse()? * unit)
     };
     let Some(covariance) = covariance() else { return vec![None; x.len()] };
     let half = |i: usize| 1.96 * covariance[(i, i)].max(0.0).sqrt() * (bounds[i].max - bounds[i].min);
@@ -305,15 +310,22 @@ mod tests {
         let channels = channels.map(|(column, values)| Channel::new(column, values)).to_vec();
         let recording = Recording::new(times_s, channels).expect("even times");
         let run = RecordedRun { run: Run { file: "sine.csv".to_owned(), ..Run::default() }, recording };
-        let free =
-            ["mass_kg\", min=0.0, max=10.0", "damping_n_s_m\", min=0.0, max=200.0", "offset_n\", min=-10.0, max=10.0"];
+        let free = [
+            "piston_area_m2\", min=0.0, max=0.01",
+            "mass_kg\", min=0.0, max=10.0",
+            "damping_n_s_m\", min=0.0, max=200.0",
+            "offset_n\", min=-10.0, max=10.0",
+        ];
         let free = free.map(|own| format!("{{key=\"axis.{own}, belongs_to_rig=true}}")).join(",");
         let free = Override::parse(&format!("calibrate=[{free}]")).expect("written rightly");
         let found = fit_rig_parameters(&set, "driven_axis", &[free], &[run]).expect("fits");
         for (key, truth) in [("axis.mass_kg", 2.5), ("axis.damping_n_s_m", 40.0), ("axis.offset_n", 3.0)] {
             let own = found.parameters.iter().find(|p| p.key == key).expect("calibrated");
             assert!((own.value / truth - 1.0).abs() < 0.01, "{key}: {} of {truth}", own.value);
+            assert!(own.ci95.is_some(), "{key}: {own:?}");
         }
+        // Without a pressure nothing shows the area, which hides none of the others.
+        assert!(found.parameters.iter().any(|p| p.key == "axis.piston_area_m2" && p.ci95.is_none()));
     }
 
     /// A cost with a valley beside the true one: a search that ends in it begins again elsewhere.

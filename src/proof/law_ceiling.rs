@@ -34,7 +34,7 @@ pub struct LawCeiling {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Told {
-    /// Port and variable are among the forms that the answer calls equally good.
+    /// Port and variable are among the forms that the answer calls equally good; of two laws, those of the first.
     Found,
     /// They are not, and the recordings do not tell the answer from the truth.
     Alike,

@@ -48,8 +48,9 @@ impl RecordingSet {
             if is_table && index == 0 {
                 notes.extend(self.undeclared_note(&recording).into_iter().chain(taken_as_it_stands(&declared)));
             }
-            let recording = with_missing(recording, &run.not_recorded, &file)?;
-            Ok(LoadedRun { recording: self.with_constants(recording, &file)?, notes })
+            let missing: Vec<(&str, f64)> = run.not_recorded.iter().map(|column| (column.as_str(), f64::NAN)).collect();
+            let recording = with_filled(recording, &missing, &NOT_RECORDED, &file)?;
+            Ok(LoadedRun { recording: with_filled(recording, &self.constants(), &STOOD_STILL, &file)?, notes })
         };
         parts.into_iter().enumerate().map(whole).collect()
     }
@@ -61,25 +62,12 @@ impl RecordingSet {
         if absent.is_empty() {
             return Ok(());
         }
-        found_in_bag(file, &absent)?
-            .map_or(Ok(()), |column| Err(is_there(&column, NOT_RECORDED.0, NOT_RECORDED.1, file)))
+        found_in_bag(file, &absent)?.map_or(Ok(()), |column| Err(NOT_RECORDED.is_there(&column, file)))
     }
 
-    /// The recording with the inputs that stood still.
-    fn with_constants(&self, recording: Recording, file: &Path) -> Result<Recording, RecordingError> {
-        let still: Vec<(&str, f64)> =
-            self.channels.iter().filter_map(|spec| Some((spec.column.as_str(), spec.constant?))).collect();
-        if still.is_empty() {
-            return Ok(recording);
-        }
-        let mut channels = recording.channels().to_vec();
-        for (column, value) in still {
-            if recording.find(column).is_some() {
-                return Err(is_there(column, "stood still (constant)", "remove constant from its [[channel]]", file));
-            }
-            channels.push(Channel::new(column, vec![value; recording.sample_count()]));
-        }
-        Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
+    /// Inputs that stood still, and where.
+    fn constants(&self) -> Vec<(&str, f64)> {
+        self.channels.iter().filter_map(|spec| Some((spec.column.as_str(), spec.constant?))).collect()
     }
 
     fn undeclared_note(&self, recording: &Recording) -> Option<String> {
@@ -112,30 +100,42 @@ fn taken_as_it_stands(declared: &[ChannelSpec]) -> Option<String> {
         .then(|| format!("unit and zero are for bags: {} taken as in the file, convert there", columns.join(", ")))
 }
 
-/// What recordings.toml says of a column that a run lacks, and what to do where it does not.
-const NOT_RECORDED: (&str, &str) = ("is not_recorded", "remove it from that list");
+/// Why a file lacks a column: what recordings.toml says of it, and what to do where it is there.
+struct Lacking {
+    said: &'static str,
+    remedy: &'static str,
+}
 
-/// A recording with columns that it was recorded without: all their samples are missing.
-fn with_missing(recording: Recording, columns: &[String], file: &Path) -> Result<Recording, RecordingError> {
+const NOT_RECORDED: Lacking = Lacking { said: "is not_recorded", remedy: "remove it from that list" };
+const STOOD_STILL: Lacking = Lacking { said: "stood still (constant)", remedy: "remove constant from its [[channel]]" };
+
+impl Lacking {
+    fn is_there(&self, column: &str, file: &Path) -> RecordingError {
+        let Self { said, remedy } = self;
+        let problem = format!(
+            "column \"{column}\" is there, and recordings.toml says that it {said}\n  remedy: {remedy}, or rename the column"
+        );
+        RecordingError::Format { file: file.to_owned(), problem }
+    }
+}
+
+/// A recording with columns that its file lacks, each of one value; an empty one counts as lacking.
+fn with_filled(
+    recording: Recording,
+    columns: &[(&str, f64)],
+    why: &Lacking,
+    file: &Path,
+) -> Result<Recording, RecordingError> {
     if columns.is_empty() {
         return Ok(recording);
     }
     let mut channels = recording.channels().to_vec();
-    for column in columns {
-        if let Some(there) = recording.find(column) {
-            if there.values.iter().all(|v| v.is_nan()) {
-                continue;
-            }
-            return Err(is_there(column, NOT_RECORDED.0, NOT_RECORDED.1, file));
+    for (column, value) in columns {
+        if recording.find(column).is_some_and(|there| there.values.iter().any(|v| !v.is_nan())) {
+            return Err(why.is_there(column, file));
         }
-        channels.push(Channel::new(column.clone(), vec![f64::NAN; recording.sample_count()]));
+        channels.retain(|channel| channel.column != *column);
+        channels.push(Channel::new(*column, vec![*value; recording.sample_count()]));
     }
     Recording::new(recording.time_s().to_vec(), channels).map_err(|e| e.in_file(file.display().to_string()))
-}
-
-fn is_there(column: &str, said: &str, remedy: &str, file: &Path) -> RecordingError {
-    let problem = format!(
-        "column \"{column}\" is there, and recordings.toml says that it {said}\n  remedy: {remedy}, or rename the column"
-    );
-    RecordingError::Format { file: file.to_owned(), problem }
 }

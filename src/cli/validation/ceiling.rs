@@ -21,7 +21,7 @@ pub fn write_ceiling(
     let is_single = |r: &&Row| matches!(r.hiding, Hiding::One | Hiding::Unlisted) && r.excess >= VISIBLE;
     let chosen: Vec<&Row> = rows.iter().filter(is_single).take(count).collect();
     let one = |row: &&Row| -> Result<Option<(Ceiling, Hiding)>, ProofError> {
-        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { return Ok(None) };
+        let Some(seal) = seal_of(row, seals) else { return Ok(None) };
         let found = ceiling(&open(&row.name, seal, folders)?)?;
         eprintln!("ceiling of {}", row.name);
         Ok(found.map(|c| (c, row.hiding)))
@@ -46,7 +46,7 @@ pub fn write_ceiling(
 /// and prints a table.
 pub fn write_settling(rows: &[Row], seals: &[(String, String)], folders: &Folders, out: &Path) -> Result<(), CliError> {
     let one = |row: &&Row| -> Result<Option<(Settling, String)>, ProofError> {
-        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { return Ok(None) };
+        let Some(seal) = seal_of(row, seals) else { return Ok(None) };
         let Some(settled) = &row.settled else { return Ok(None) };
         let programme = read_csv(&folders.answers.join(&row.name).join("next_experiment.csv"))?;
         let sensor = settled.with_sensor.as_ref();
@@ -94,7 +94,7 @@ pub fn write_law_ceiling(
     let is_detected = |r: &&Row| matches!(r.hiding, Hiding::Law | Hiding::Laws) && r.is_detected();
     let chosen: Vec<&Row> = rows.iter().filter(is_detected).take(count).collect();
     let one = |row: &&Row| -> Result<Option<LawCeiling>, ProofError> {
-        let Some((_, seal)) = seals.iter().find(|(name, _)| *name == row.name) else { return Ok(None) };
+        let Some(seal) = seal_of(row, seals) else { return Ok(None) };
         match law_ceiling(&open(&row.name, seal, folders)?, row, folders) {
             // A law so steep that the scene's steps cannot follow it is no case for this table.
             Err(ProofError::Diagnose(error)) => {
@@ -121,6 +121,11 @@ pub fn write_law_ceiling(
         "\n### Answers beside the laws themselves\n\nChi2 left beyond the scene with the hidden law:\n\n\
          | case | calibrated | corrected | port and variable | |\n|---|---|---|---|---|\n{table}"
     ))
+}
+
+/// The seal of a row's case.
+fn seal_of<'a>(row: &Row, seals: &'a [(String, String)]) -> Option<&'a str> {
+    seals.iter().find(|(name, _)| *name == row.name).map(|(_, seal)| seal.as_str())
 }
 
 /// Mean of shares in words.
