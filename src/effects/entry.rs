@@ -51,6 +51,8 @@ pub enum Part {
     Chamber,
     Cable,
     SecondCable,
+    /// A cable that an input pulls by itself, without a muscle.
+    DrivenCable,
     /// A wall of rubber: muscles that are no linear springs.
     Wall,
     MuscleFriction,

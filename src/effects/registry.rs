@@ -30,6 +30,8 @@ const FILES: &[(&str, &str)] = files![
     "coil_preload",
     "plastic_set",
     "pressure_friction",
+    "drive_backlash",
+    "drive_nonlinearity",
     "cable_slack",
     "tendon_friction",
     "gravity_load",

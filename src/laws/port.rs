@@ -76,8 +76,18 @@ const MUSCLE: &[Quantity] = &[
     Q::Time,
 ];
 const PLUNGER: &[Quantity] = &[Q::Pressure, Q::Plunger, Q::PlungerSpeed, Q::Time];
-const CABLE: &[Quantity] =
-    &[Q::Stretch, Q::Tension, Q::Angle, Q::AngularSpeed, Q::Elongation, Q::Speed, Q::Pressure, Q::Time];
+const CABLE: &[Quantity] = &[
+    Q::Stretch,
+    Q::Tension,
+    Q::Drive,
+    Q::DriveSpeed,
+    Q::Angle,
+    Q::AngularSpeed,
+    Q::Elongation,
+    Q::Speed,
+    Q::Pressure,
+    Q::Time,
+];
 const JOINT: &[Quantity] =
     &[Q::Angle, Q::AngularSpeed, Q::Position, Q::Speed, Q::Tension, Q::Pressure, Q::Elongation, Q::Time];
 const SENSOR: &[Quantity] = &[Q::Reading, Q::Time];

@@ -15,6 +15,8 @@ pub enum Quantity {
     FrictionState,
     Stretch,
     Tension,
+    Drive,
+    DriveSpeed,
     Angle,
     AngularSpeed,
     Position,
@@ -54,7 +56,7 @@ const fn spec(quantity: Quantity, stem: &'static str, ending: &'static str, is: 
 }
 
 /// Every quantity, in the order of [`Quantity`].
-pub const QUANTITIES: [QuantitySpec; 15] = [
+pub const QUANTITIES: [QuantitySpec; 17] = [
     spec(Quantity::Elongation, "elongation", "m", "how much longer the muscle is than unloaded"),
     spec(Quantity::Speed, "speed", "m_s", "rate of the elongation; of a sliding joint its speed"),
     spec(
@@ -75,6 +77,8 @@ pub const QUANTITIES: [QuantitySpec; 15] = [
     ),
     spec(Quantity::Stretch, "stretch", "m", "how much longer the cable is than unloaded; below 0 it is slack"),
     spec(Quantity::Tension, "tension", "n", "tension of the cable; for a law of the cable itself that without laws"),
+    spec(Quantity::Drive, "drive", "m", "length of cable that its drive has taken in, as commanded"),
+    spec(Quantity::DriveSpeed, "drive_speed", "m_s", "speed at which the drive takes in cable, as commanded"),
     spec(Quantity::Angle, "angle", "rad", "angle of the joint, or the sum over the joints that bend together"),
     spec(Quantity::AngularSpeed, "angular_speed", "rad_s", "rate of that angle"),
     spec(Quantity::Position, "position", "m", "position of a sliding joint"),
@@ -91,7 +95,10 @@ impl Quantity {
 
     /// Whether it is time, or goes by it.
     pub(crate) fn is_rate(self) -> bool {
-        matches!(self, Self::Speed | Self::Flow | Self::PlungerSpeed | Self::AngularSpeed | Self::Time)
+        matches!(
+            self,
+            Self::Speed | Self::Flow | Self::PlungerSpeed | Self::DriveSpeed | Self::AngularSpeed | Self::Time
+        )
     }
 
     /// Its unit; that of a reading is its channel's.

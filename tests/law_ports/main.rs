@@ -1,6 +1,7 @@
 //! Contract: at every port a law does what is known by hand, in the full scene and in the reduced-order model, and the energy balance knows it.
 
 mod cases;
+mod drive;
 mod effects;
 mod energy;
 mod memory;

@@ -42,7 +42,7 @@ fn rate(of: Quantity) -> Option<Quantity> {
 /// Whether memory of the variable adds information. The lag of a rate equals the lead of its quantity; for the flow,
 /// that quantity is not among the variables.
 fn has_past(of: Quantity) -> bool {
-    !matches!(of, Quantity::Time | Quantity::Speed | Quantity::AngularSpeed | Quantity::PlungerSpeed | Quantity::Flow)
+    !of.is_rate()
 }
 
 /// All arguments with memory or products for the variable `own`; all variables are given with their scales.

@@ -30,7 +30,7 @@ fn variables(spec: &PortSpec) -> &'static [Quantity] {
         Carrier::Muscle if spec.element == "muscle" => &[Q::Elongation, Q::Speed, Q::Pressure, Q::Time],
         Carrier::Muscle if spec.element == "plunger" => &[Q::Pressure, Q::Plunger, Q::Time],
         Carrier::Muscle => &[Q::Pressure, Q::Flow, Q::Elongation, Q::Time],
-        Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::AngularSpeed, Q::Time],
+        Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::Drive, Q::AngularSpeed, Q::Time],
         Carrier::Joint => &[Q::Angle, Q::AngularSpeed, Q::Time],
         Carrier::Sensor => &[],
     }

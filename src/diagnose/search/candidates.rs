@@ -1,8 +1,8 @@
 //! Effects that a rig could have, and the parameters each is first tried with.
 
-use crate::effects::{Element, ElementKind, EntryId, Levels, catalogue};
+use crate::effects::{Element, ElementKind, EntryId, Levels, Part, catalogue};
 use crate::recording::parse_column;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneFile};
 
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::{Placed, Variant};
@@ -43,11 +43,23 @@ fn places(case: &Case, entry: EntryId) -> Vec<Placed> {
     if count > 1 && (entry.trying.shared || file.chamber.is_some()) {
         placed.push(on(entry.element, 0, 1, None));
     }
+    let is_of_drive = entry.needs.iter().any(|need| need.scene == Part::DrivenCable);
+    if is_of_drive && count > 1 && is_one_drive(file) {
+        // What one drive has, all of its cables have.
+        placed.drain(..count);
+    }
     if let Some(kind) = entry.also_on.filter(|_| file.cable.is_empty()) {
         // On a bench the weight hangs on the muscle.
         placed = (0..file.muscle.len()).map(|i| on(kind, i, file.muscle.len(), None)).collect();
     }
     placed
+}
+
+/// Whether all cables hang on the same drive.
+fn is_one_drive(file: &SceneFile) -> bool {
+    let mut inputs = file.cable.iter().map(|cable| cable.drive.as_ref().map(|drive| &drive.input));
+    let first = inputs.next().flatten();
+    first.is_some() && inputs.all(|input| input == first)
 }
 
 /// Number of recorded chambers: each run may be of another one.
@@ -111,6 +123,19 @@ fn levels(case: &Case, own: &Levels) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
     use crate::diagnose::case::made;
+
+    /// Both tendons hang on the one drive: its play is theirs together, and no single one's.
+    #[test]
+    fn what_a_drive_has_all_its_cables_have() {
+        let case = made::recorded("tendon_sheath", &[], &["drive_deg"], &["tip_deg"]);
+        let elements = |name: &str| -> Vec<String> {
+            let own = variants(&case).into_iter().filter(|v| v.placed.spec().name == name);
+            own.map(|v| v.placed.element.to_string()).collect()
+        };
+        assert_eq!(elements("drive_backlash"), ["cable"]);
+        assert_eq!(elements("drive_nonlinearity"), ["cable"]);
+        assert_eq!(elements("cable_slack"), ["cable_1", "cable_2"]);
+    }
 
     /// Rows without a clock tell an order but no pace.
     #[test]

@@ -145,6 +145,8 @@ impl<D: Scalar> PlantLaws<D> {
             Source::Flow(m) => at.line(m)[now.state.segments() + 1],
             Source::Input(i) => D::constant(now.input(i)),
             Source::InputSpeed(i) => D::constant(now.inputs[i].slope),
+            Source::Drive(i, m) => D::constant(now.input(i) * m),
+            Source::DriveSpeed(i, m) => D::constant(now.inputs[i].slope * m),
             Source::FrictionState(m) => at.z(m),
             Source::Stretch(c) => plant.cables[c].stretch_and_rate(now).0,
             Source::Tension(c) => tension_n[c],

@@ -17,6 +17,9 @@ pub enum Source {
     /// An input, by its index, and its slope.
     Input(usize),
     InputSpeed(usize),
+    /// What an input, by its index, takes in of a cable for each of its units.
+    Drive(usize, f64),
+    DriveSpeed(usize, f64),
     FrictionState(usize),
     Stretch(usize),
     Tension(usize),
@@ -49,6 +52,8 @@ pub struct Rig {
     pub directions: Vec<Direction>,
     /// Of each cable the direction of the joints that it turns, and that of joints without a name.
     turned: Vec<Option<usize>>,
+    /// Of each cable the input that drives it, and what one unit of that takes in, m.
+    driven: Vec<Option<(usize, f64)>>,
     main: Option<usize>,
     /// Names of the joints of each coordinate, with their direction.
     named: Vec<(String, usize)>,
@@ -65,6 +70,7 @@ impl Rig {
                 cable.jacobian.iter().enumerate().map(|(i, l)| f64::from(u8::from(i < joints && *l != 0.0))).collect();
             let at = rig.add(&turned, site);
             rig.turned.push(at);
+            rig.driven.push(cable.drive);
         }
         for (i, names) in site.names.iter().enumerate() {
             let mut unit = vec![0.0; plant.dim()];
@@ -181,6 +187,11 @@ impl Rig {
                 || wrong("no cable pulls there", "use pressure_pa or elongation_m"),
                 |c| Ok(Source::Tension(c)),
             ),
+            (Quantity::Drive | Quantity::DriveSpeed, _) => match cable.and_then(|c| self.driven[c]) {
+                Some((input, m)) if variable.quantity == Quantity::Drive => Ok(Source::Drive(input, m)),
+                Some((input, m)) => Ok(Source::DriveSpeed(input, m)),
+                None => wrong("no input drives the cable itself", "use stretch_m, or give the cable a drive"),
+            },
             (Quantity::Angle, _) => own.along(self, false).map_or_else(
                 || wrong("no joint turns there", "use elongation_m, or position_m of a slider"),
                 |d| Ok(Source::Along(d)),

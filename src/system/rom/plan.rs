@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::recording::median;
 use crate::system::plant::Plant;
 
 use super::course::Course;
@@ -21,6 +22,8 @@ const CORNER_S: f64 = 0.3;
 const CORNER_STEPS: f64 = 4.0;
 /// A corner: the slope of an input changes by this share of the greatest slope it ever has.
 const CORNER_SHARE: f64 = 0.25;
+/// But not where a measured input scatters that much: a corner is this many times its usual change.
+const CORNER_OVER_NOISE: f64 = 3.0;
 
 /// Most steps in one interval.
 const MOST: u16 = 256;
@@ -43,11 +46,11 @@ impl Rom {
         let mut plan = Vec::with_capacity(run.times_s.len());
         let mut steps: u16 = 1;
         let longest_s = if plant.may_rub() { LONGEST_S } else { LONGEST_SMOOTH_S };
-        let greatest: Vec<f64> = run.inputs.iter().map(|x| greatest_slope(x, &run.times_s)).collect();
+        let corners: Vec<f64> = run.inputs.iter().map(|x| corner_slope(x, &run.times_s)).collect();
         let mut corner_s = run.times_s.first().copied().unwrap_or(0.0);
         for k in 1..run.times_s.len() {
             // What was enough before may be more than enough now.
-            steps = (steps / 2).max(fewest_steps(run, k, longest_s, &greatest, &mut corner_s));
+            steps = (steps / 2).max(fewest_steps(run, k, longest_s, &corners, &mut corner_s));
             let mut coarse = course.clone();
             coarse.advance(&mut plant, run, k, steps);
             let mut of_coarse = shown(&plant, &coarse);
@@ -86,19 +89,58 @@ impl Rom {
     }
 }
 
-/// Fewest steps of the interval that ends at sample `k`; keeps the time of the last corner.
-fn fewest_steps(run: &RomRun, k: usize, longest_s: f64, greatest: &[f64], corner_s: &mut f64) -> u16 {
-    let length_s = |k: usize| run.times_s[k] - run.times_s[k - 1];
-    let slope = |x: &[f64], k: usize| (x[k] - x[k - 1]) / length_s(k);
-    let turns =
-        |(x, greatest): (&Vec<f64>, &f64)| k > 1 && (slope(x, k) - slope(x, k - 1)).abs() > CORNER_SHARE * greatest;
-    if run.inputs.iter().zip(greatest).any(turns) {
+/// Fewest steps of the interval that ends at sample `k`; keeps the time of the last corner. `corners` are the changes of slope
+/// from which on an input has one.
+fn fewest_steps(run: &RomRun, k: usize, longest_s: f64, corners: &[f64], corner_s: &mut f64) -> u16 {
+    let length_s = run.times_s[k] - run.times_s[k - 1];
+    let turns = |(x, corner): (&Vec<f64>, &f64)| k > 1 && slope_change(x, &run.times_s, k) > *corner;
+    if run.inputs.iter().zip(corners).any(turns) {
         *corner_s = run.times_s[k - 1];
     }
     let shorter = if run.times_s[k - 1] - *corner_s < CORNER_S { CORNER_STEPS } else { 1.0 };
-    (length_s(k) * shorter / longest_s - 1e-6).ceil().clamp(1.0, f64::from(MOST)) as u16
+    (length_s * shorter / longest_s - 1e-6).ceil().clamp(1.0, f64::from(MOST)) as u16
 }
 
-fn greatest_slope(x: &[f64], times_s: &[f64]) -> f64 {
-    x.windows(2).zip(times_s.windows(2)).map(|(x, t)| ((x[1] - x[0]) / (t[1] - t[0])).abs()).fold(0.0, f64::max)
+fn slope(x: &[f64], times_s: &[f64], k: usize) -> f64 {
+    (x[k] - x[k - 1]) / (times_s[k] - times_s[k - 1])
+}
+
+/// Change of slope at sample `k - 1`.
+fn slope_change(x: &[f64], times_s: &[f64], k: usize) -> f64 {
+    (slope(x, times_s, k) - slope(x, times_s, k - 1)).abs()
+}
+
+/// Change of slope that is a corner of an input.
+fn corner_slope(x: &[f64], times_s: &[f64]) -> f64 {
+    let greatest = (1..x.len()).map(|k| slope(x, times_s, k).abs()).fold(0.0, f64::max);
+    let mut changes: Vec<f64> = (2..x.len()).map(|k| slope_change(x, times_s, k)).collect();
+    let usual = median(&mut changes).unwrap_or(0.0);
+    (CORNER_SHARE * greatest).max(CORNER_OVER_NOISE * usual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle of one turn each 5 s, in steps of a counter that wavers by one or two.
+    fn triangle(wavers: bool) -> (Vec<f64>, Vec<f64>) {
+        let times_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.1).collect();
+        let counts = |k: usize| if wavers { [2.0, 3.0, 1.0, 2.0, 1.0, 3.0][k % 6] } else { 2.0 };
+        let direction = |k: usize| if k % 100 < 50 { 1.0 } else { -1.0 };
+        let x = (0..200).scan(0.0, |x, k| {
+            *x += direction(k) * counts(k);
+            Some(*x)
+        });
+        (times_s, x.collect())
+    }
+
+    #[test]
+    fn a_measured_input_turns_where_it_turns() {
+        for wavers in [false, true] {
+            let (times_s, x) = triangle(wavers);
+            let corner = corner_slope(&x, &times_s);
+            let turns: Vec<usize> = (2..x.len()).filter(|&k| slope_change(&x, &times_s, k) > corner).collect();
+            assert_eq!(turns, [50, 100, 150], "{wavers}");
+        }
+    }
 }
