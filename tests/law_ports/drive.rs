@@ -53,6 +53,18 @@ fn val_a_drive_that_saturates_goes_less_far() {
     }
 }
 
+/// `u - T du/dt` of a ramp is the ramp, late by T.
+#[test]
+fn val_a_drive_that_falls_behind_with_its_speed_is_late() {
+    let law = &["cable.stretch adds -0.05*drive_speed_m_s"];
+    for model in BOTH {
+        let late = run(model, &scene("tendon_sheath", &[STOCK], law), 0.8);
+        let stock = run(model, &scene("tendon_sheath", &[STOCK], &[]), 0.75);
+        let (late, stock) = (late.last("tip_deg"), stock.last("tip_deg"));
+        assert!((late - stock).abs() < 1e-3 * stock, "{model:?}: {late} and {stock} degrees");
+    }
+}
+
 #[test]
 fn a_cable_without_a_drive_has_no_play_of_one() {
     for name in ["drive_backlash", "drive_nonlinearity"] {

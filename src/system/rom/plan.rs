@@ -122,10 +122,10 @@ fn corner_slope(x: &[f64], times_s: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A triangle of one turn each 5 s, in steps of a counter that wavers by one or two.
+    /// A triangle that turns every 5 s, by the steps of a counter, four at a time, or three to five.
     fn triangle(wavers: bool) -> (Vec<f64>, Vec<f64>) {
         let times_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.1).collect();
-        let counts = |k: usize| if wavers { [2.0, 3.0, 1.0, 2.0, 1.0, 3.0][k % 6] } else { 2.0 };
+        let counts = |k: usize| if wavers { [4.0, 5.0, 3.0, 4.0, 3.0, 5.0][k % 6] } else { 4.0 };
         let direction = |k: usize| if k % 100 < 50 { 1.0 } else { -1.0 };
         let x = (0..200).scan(0.0, |x, k| {
             *x += direction(k) * counts(k);
