@@ -427,3 +427,26 @@ fn a_law_is_found_together_with_the_effect_beside_it() {
     assert_eq!((unlisted.variables.as_slice(), d.effects.len()), (&["time_s".to_owned()][..], 2), "{:?}", d.effects);
     assert!(d.fit.gap_closed > 0.95, "{}", d.fit.gap_closed);
 }
+
+/// A cable much too long: the search from the scene's own calibration takes a coupled tendon for it, and a softer cable explains all.
+/// At that law's calibration the slack does as well, and it is listed.
+#[test]
+fn a_listed_effect_that_does_as_well_as_a_law_is_named() {
+    let slack = effect_of("cable_slack", "cable_1", None, &[("slack_length_m", 7.5e-4)]);
+    let d = answer(made("tendon_sheath", Some(&slack), 1510).path());
+    let [named] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+    assert_eq!((named.name.as_str(), named.element.as_str()), ("cable_slack", "cable_1"), "{}", d.summary);
+    let size = named.parameters["slack_length_m"];
+    assert!((size.value / 7.5e-4 - 1.0).abs() < 0.01, "{size:?}");
+}
+
+/// Both tendons hang on the drive, so its play is theirs.
+#[test]
+fn play_of_a_drive_is_named() {
+    let play = effect_of("drive_backlash", "cable", None, &[("width_m", 3e-4)]);
+    let d = answer(made("tendon_sheath", Some(&play), 11).path());
+    let [named] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+    assert_eq!((named.name.as_str(), named.element.as_str()), ("drive_backlash", "cable"), "{}", d.summary);
+    let size = named.parameters["width_m"];
+    assert!(size.ci95[0] < 3e-4 && 3e-4 < size.ci95[1], "{size:?}");
+}

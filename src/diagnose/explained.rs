@@ -4,7 +4,7 @@
 use super::case::{Case, Noise, RunSet, Step};
 use super::diagnosis::Proof;
 use super::error::DiagnoseError;
-use super::fit::{Problem, Variant, baseline};
+use super::fit::{Fit, Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, discrepancy, reweight};
 use super::unknown::hypothesis::{self, OneLaw};
 use super::unknown::pair::{self, Pair};
@@ -43,9 +43,14 @@ pub(super) fn explain(
     let base = baseline::baseline(case)?;
     let variants = candidates::variants(case);
     let begun = Begun::with_one(&reweight::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
-    let explained = match hypothesis::one_law(case, &base.noise, &begun.found(), say) {
+    let search = Search { variants: &variants, seed, say };
+    let explained = match hypothesis::one_law(case, &base.noise, (&begun.found(), &variants), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
-        OneLaw::Part(tried) => Search { variants: &variants, seed, say }.several(case, begun, base.noise, *tried)?,
+        OneLaw::Listed(fit, tried) => {
+            let begun = search.from(case, &base.noise, (base.fit, fit));
+            search.several(case, begun, base.noise, *tried)?
+        }
+        OneLaw::Part(tried) => search.several(case, begun, base.noise, *tried)?,
     };
     let explained = without_misplaced(case, explained, seed, say)?;
     let mut explained = at_better_places(case, explained, seed)?;
@@ -64,6 +69,11 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// Begins with effects of the catalogue that laws have led to, beside the calibration.
+    fn from(&self, case: &Case, noise: &[Noise], fits: (Fit, Fit)) -> Begun {
+        Begun::again(&reweight::open_runs(case, noise), fits, self.variants, Vec::new(), self.say)
+    }
+
     /// Tries several effects, several laws, and laws beside effects. Stops adding effects once one law outdoes two of
     /// them; resumes if no law remains in their place.
     fn several(
@@ -75,17 +85,16 @@ impl Search<'_> {
     ) -> Result<Explained, DiagnoseError> {
         let one = begun.found();
         let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
-        let tried = match hypothesis::one_law_from_effect(case, &noise, (&one, &begun.found()), tried, self.say) {
-            OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
-            OneLaw::Part(tried) => *tried,
-        };
+        let two = begun.found();
+        let (begun, tried) =
+            match hypothesis::one_law_from_effect(case, &noise, (&one, &two, self.variants), tried, self.say) {
+                OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
+                OneLaw::Listed(fit, tried) => (self.from(case, &noise, (two.baseline, fit)), *tried),
+                OneLaw::Part(tried) => (begun, *tried),
+            };
         let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
             Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
-            Pair::Listed(two, tried) => {
-                let open = reweight::open_runs(case, &noise);
-                let Found { baseline, .. } = begun.found();
-                (Begun::again(&open, (baseline, two), self.variants, Vec::new(), self.say), *tried)
-            }
+            Pair::Listed(two, tried) => (self.from(case, &noise, (begun.found().baseline, two)), *tried),
             Pair::Part(tried) => (begun, *tried),
         };
         let law = Bound(tried.law.as_ref());

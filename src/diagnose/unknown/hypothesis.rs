@@ -3,11 +3,12 @@
 use rayon::prelude::*;
 
 use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
+use super::listed::does_as_well;
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
 use super::unlisted::{Proposals, propose, propose_against};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
-use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{
     Found, MOST_EFFECTS, cross_validates, cross_validates_runs, least_gain, leaves_much, reweight,
@@ -27,12 +28,19 @@ pub(in crate::diagnose) enum OneLaw {
     /// One law explains everything above noise, and clearly better than any single effect. With the noise estimated
     /// from its residual.
     All(Box<Found>, Vec<Noise>),
+    /// It does, and so does an effect of the catalogue where the law has brought the calibration.
+    Listed(Fit, Box<Tried>),
     /// It does not, or the step was left out.
     Part(Box<Tried>),
 }
 
 /// Searches for one law to replace the best single effect, if that effect leaves more than noise.
-pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Found, say: &dyn Fn(String)) -> OneLaw {
+pub(in crate::diagnose) fn one_law(
+    case: &mut Case,
+    noise: &[Noise],
+    (found, variants): (&Found, &[Variant]),
+    say: &dyn Fn(String),
+) -> OneLaw {
     let nothing = OneLaw::Part(Box::default());
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     if case.is_without(Step::OpenSet) || !leaves_something(&open, &found.best) {
@@ -45,11 +53,29 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
     let known = Known { plain: Some(proposals), ..Known::default() };
     let is_all = alone.as_ref().is_some_and(|lawful| !leaves_something(&open, &lawful.best));
     let law = alone.as_ref().map(|lawful| lawful.best.clone());
-    let part = OneLaw::Part(Box::new(Tried { known, law, instead: None, is_open: !is_all }));
-    let Some(lawful) = alone.filter(|_| is_all) else { return part };
+    let tried = Tried { known, law, instead: None, is_open: !is_all };
+    match alone.filter(|_| is_all) {
+        Some(lawful) => all(case, noise, (found, variants), (lawful, tried), say),
+        None => OneLaw::Part(Box::new(tried)),
+    }
+}
+
+/// A law that explains everything, unless a listed effect does as well.
+fn all(
+    case: &mut Case,
+    noise: &[Noise],
+    (found, variants): (&Found, &[Variant]),
+    (lawful, tried): (Lawful, Tried),
+    say: &dyn Fn(String),
+) -> OneLaw {
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    if let Some(listed) = does_as_well(&open, found, &lawful.best, variants) {
+        say(format!("{} does as well as {}", listed.model.title(), lawful.best.model.title()));
+        return OneLaw::Listed(listed, Box::new(Tried { law: None, ..tried }));
+    }
     match renewed(case, noise, lawful.beside(found), say) {
         Some((found, noise)) => OneLaw::All(Box::new(found), noise),
-        None => part,
+        None => OneLaw::Part(Box::new(tried)),
     }
 }
 
@@ -59,7 +85,7 @@ pub(in crate::diagnose) fn one_law(case: &mut Case, noise: &[Noise], found: &Fou
 pub(in crate::diagnose) fn one_law_from_effect(
     case: &mut Case,
     noise: &[Noise],
-    (one, two): (&Found, &Found),
+    (one, two, variants): (&Found, &Found, &[Variant]),
     mut tried: Tried,
     say: &dyn Fn(String),
 ) -> OneLaw {
@@ -75,10 +101,9 @@ pub(in crate::diagnose) fn one_law_from_effect(
     let alone = alone.filter(|lawful| tried.law.as_ref().is_none_or(|law| lawful.best.cost < law.cost));
     let Some(lawful) = alone else { return OneLaw::Part(Box::new(tried)) };
     tried.law = Some(lawful.best.clone());
-    let is_all = !leaves_something(&open, &lawful.best);
-    match is_all.then(|| renewed(case, noise, lawful.beside(one), say)).flatten() {
-        Some((found, noise)) => OneLaw::All(Box::new(found), noise),
-        None => OneLaw::Part(Box::new(tried)),
+    match leaves_something(&open, &lawful.best) {
+        false => all(case, noise, (one, variants), (lawful, tried), say),
+        true => OneLaw::Part(Box::new(tried)),
     }
 }
 

@@ -7,6 +7,7 @@ mod forms;
 pub(super) mod freehand;
 pub(super) mod hypothesis;
 mod linear_range;
+mod listed;
 pub(super) mod misplaced;
 pub(super) mod pair;
 mod shape_refits;

@@ -2,6 +2,7 @@
 
 use super::forms::{equally_good, leaves_something};
 use super::hypothesis::{is_clearly_better, is_explained, renewed, without_idle};
+use super::listed::in_place_of;
 use super::tried::{Lawful, Tried};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
@@ -90,18 +91,12 @@ fn nearly_all(open: &Problem, found: &Found, proposals: &Proposals) -> Option<La
     is_nearly.then_some(Lawful { best, forms })
 }
 
-/// Replaces one of two laws by an effect of the catalogue if that leaves little. The effect is fitted where the law has
-/// brought the model; otherwise calibration and partner would absorb it.
+/// Replaces one of two laws by an effect of the catalogue if that leaves little.
 fn listed_instead(open: &Problem, baseline: &Fit, two: &Fit, variants: &[Variant]) -> Option<Fit> {
     if two.model.effects.len() != 2 {
         return None;
     }
-    let other = |i: usize| {
-        let (model, x) = (two.model.without(i), open.start_without(two, i));
-        let cost = open.cost_at(&model, &x)?;
-        let bare = Fit { model, x, cost, ..two.clone() };
-        beside(open, &bare, variants).into_iter().next().filter(|listed| !leaves_much(open, baseline, listed))
-    };
+    let other = |i: usize| in_place_of(open, two, i, variants).filter(|listed| !leaves_much(open, baseline, listed));
     let laws = (0..2).filter(|&i| two.model.effects[i].entry.hypothetical);
     laws.filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }

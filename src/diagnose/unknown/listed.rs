@@ -1,0 +1,24 @@
+//! An effect of the catalogue in the place of a law.
+
+use super::forms::leaves_something;
+use super::hypothesis::is_clearly_better;
+use crate::diagnose::fit::{Fit, Problem, Variant};
+use crate::diagnose::search::{Found, beside};
+
+/// The best effect of the catalogue in the place of one of a fit's. It is fitted where that one has brought the model; otherwise
+/// calibration and partner would absorb it.
+pub(super) fn in_place_of(open: &Problem, fit: &Fit, effect: usize, variants: &[Variant]) -> Option<Fit> {
+    let (model, x) = (fit.model.without(effect), open.start_without(fit, effect));
+    let cost = open.cost_at(&model, &x)?;
+    let bare = Fit { model, x, cost, ..fit.clone() };
+    beside(open, &bare, variants).into_iter().next()
+}
+
+/// The effect of the catalogue that does as well as a single law that explains everything. The search from the scene's own
+/// calibration may have missed it.
+pub(super) fn does_as_well(open: &Problem, found: &Found, law: &Fit, variants: &[Variant]) -> Option<Fit> {
+    let listed = in_place_of(open, law, 0, variants)?;
+    let is_all = listed.cost < found.best.cost && !leaves_something(open, &listed);
+    let instead = Found { best: listed, ..found.clone() };
+    (is_all && !is_clearly_better(open, &instead, law)).then_some(instead.best)
+}
