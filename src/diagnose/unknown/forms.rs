@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::elsewhere::elsewhere;
 use crate::diagnose::fit::{Fit, Problem};
-use crate::diagnose::search::least_gain;
+use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
 use crate::diagnose::verdict::{self, misfit};
 
 /// Fits are called equally good within so many units of chi²: odds of one to twenty.
@@ -17,6 +17,8 @@ const NEARLY: f64 = 20.0;
 const STILL_TO_COME: f64 = 2.0;
 /// Significance of the remaining misfit, standard errors.
 const SEEN: f64 = 3.0;
+/// An answer with a law replaces one of the catalogue if its criterion is lower by this much.
+pub(super) const CLEARLY: f64 = 20.0;
 /// Price per letter of a law among equally good forms, in units of the criterion.
 const PER_LETTER: f64 = 0.02;
 /// Maximum number of alternatives named.
@@ -38,6 +40,17 @@ impl Criterion {
     pub fn at(&self, fit: &Fit) -> f64 {
         fit.cost / self.dispersion + fit.model.effect_parameters() as f64 * self.per_parameter
     }
+}
+
+/// Whether a fit with a law is clearly better than the answer and cross-validates better. An effect of the catalogue is
+/// replaced only if the law predicts whole left-out runs better.
+pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+    let criterion = Criterion::of(open, [&found.best, lawful]);
+    let predicts = || match found.best.model.effects.is_empty() {
+        true => cross_validates(open, &found.baseline, lawful),
+        false => cross_validates_runs(open, &found.best, lawful),
+    };
+    criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
 }
 
 /// Whether a fit leaves more than noise, and enough for a search to act on.

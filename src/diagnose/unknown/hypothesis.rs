@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::forms::{Criterion, equally_good, leaves_something, with_elsewhere};
+use super::forms::{CLEARLY, Criterion, equally_good, is_clearly_better, leaves_something, with_elsewhere};
 use super::listed::does_as_well;
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
@@ -10,9 +10,7 @@ use super::unlisted::{Proposals, propose, propose_against};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
-use crate::diagnose::search::{
-    Found, MOST_EFFECTS, cross_validates, cross_validates_runs, least_gain, leaves_much, reweight,
-};
+use crate::diagnose::search::{Found, MOST_EFFECTS, least_gain, leaves_much, reweight};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 
 /// Maximum number of laws in one answer.
@@ -20,8 +18,6 @@ const MOST_LAWS: usize = 2;
 /// Shares of the misfit and of the noise below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
 const EXPLAINED_OF_NOISE: f64 = 0.3;
-/// An answer with a law replaces one of the catalogue if its criterion is lower by this much.
-pub(super) const CLEARLY: f64 = 20.0;
 
 /// Result of trying one law before several effects of the catalogue.
 pub(in crate::diagnose) enum OneLaw {
@@ -142,17 +138,6 @@ fn instead(open: &Problem, found: &Found, say: &dyn Fn(String)) -> Option<Lawful
     let (best, forms) = equally_good(open, &proposals.fits, found.best.cost)?;
     let (best, forms) = without_idle(open, best, forms);
     Some(Lawful { best, forms })
-}
-
-/// Whether a fit with a law is clearly better than the answer and cross-validates better. An effect of the catalogue is
-/// replaced only if the law predicts whole left-out runs better.
-pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
-    let criterion = Criterion::of(open, [&found.best, lawful]);
-    let predicts = || match found.best.model.effects.is_empty() {
-        true => cross_validates(open, &found.baseline, lawful),
-        false => cross_validates_runs(open, &found.best, lawful),
-    };
-    criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
 }
 
 impl Lawful {

@@ -1,7 +1,6 @@
 //! An effect of the catalogue in the place of a law.
 
-use super::forms::leaves_something;
-use super::hypothesis::is_clearly_better;
+use super::forms::{is_clearly_better, leaves_something};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::search::{Found, beside};
 

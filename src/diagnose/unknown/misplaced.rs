@@ -3,8 +3,8 @@
 //! Leaving an effect out of the answer leaves a misfit. The effect is a surrogate if an unknown signal at another place
 //! makes that misfit far more likely than a signal at the effect's own place, and more likely than the effect does.
 
-use super::forms::{Criterion, equally_good};
-use super::hypothesis::{CLEARLY, without_idle};
+use super::forms::{CLEARLY, Criterion, equally_good};
+use super::hypothesis::without_idle;
 use super::tried::Lawful;
 use super::unlisted::propose;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};

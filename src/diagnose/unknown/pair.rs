@@ -1,7 +1,7 @@
 //! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
-use super::forms::{equally_good, leaves_something};
-use super::hypothesis::{is_clearly_better, is_explained, renewed, without_idle};
+use super::forms::{equally_good, is_clearly_better, leaves_something};
+use super::hypothesis::{is_explained, renewed, without_idle};
 use super::listed::in_place_of;
 use super::tried::{Lawful, Tried};
 use super::unlisted::{Proposals, propose};

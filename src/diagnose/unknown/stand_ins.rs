@@ -1,7 +1,6 @@
 //! Alternatives to an effect of the answer: laws at other places that explain as much.
 
-use super::forms::{Criterion, other_forms, tie, with_elsewhere};
-use super::hypothesis::CLEARLY;
+use super::forms::{CLEARLY, Criterion, other_forms, tie, with_elsewhere};
 use super::tried::Lawful;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
