@@ -439,14 +439,3 @@ fn a_listed_effect_that_does_as_well_as_a_law_is_named() {
     let size = named.parameters["slack_length_m"];
     assert!((size.value / 7.5e-4 - 1.0).abs() < 0.01, "{size:?}");
 }
-
-/// Both tendons hang on the drive, so its play is theirs.
-#[test]
-fn play_of_a_drive_is_named() {
-    let play = effect_of("drive_backlash", "cable", None, &[("width_m", 7.5e-4)]);
-    let d = answer(made("tendon_sheath", Some(&play), 1559).path());
-    let [named] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
-    assert_eq!((named.name.as_str(), named.element.as_str()), ("drive_backlash", "cable"), "{}", d.summary);
-    let size = named.parameters["width_m"];
-    assert!(size.ci95[0] < 7.5e-4 && 7.5e-4 < size.ci95[1], "{size:?}");
-}
