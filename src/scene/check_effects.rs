@@ -53,7 +53,7 @@ fn place(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), Refusal> {
     let count = count(scene, element.kind);
     let on_axis = scene.axis.is_some() && needs(effect, Part::Axis);
     let is_there = element.index < count || on_axis;
-    match effect.entry.needs.iter().find(|need| !has(scene, need.scene, element.index)) {
+    match effect.entry.needs.iter().find(|need| !has(scene, need.scene, element)) {
         Some(need) if is_there || effect.entry.stands_on.is_some() => return refuse(&need.message, &need.remedy),
         _ if !is_there => {
             return Err((format!("element = \"{element}\" is not in this scene"), known(element.kind, count)));
@@ -72,8 +72,8 @@ fn needs(effect: &Effect<f64>, part: Part) -> bool {
     effect.entry.needs.iter().any(|need| need.scene == part)
 }
 
-/// Whether a scene has what an effect acts on, on the element of this index.
-fn has(scene: &SceneFile, part: Part, index: usize) -> bool {
+/// Whether a scene has what an effect on this element acts on.
+fn has(scene: &SceneFile, part: Part, element: Element) -> bool {
     // A formula in place of the muscles has no parts: that it changes nothing is said below.
     let make = scene.muscles.as_ref().filter(|make| make.displacement.is_none());
     match part {
@@ -81,7 +81,7 @@ fn has(scene: &SceneFile, part: Part, index: usize) -> bool {
         Part::Strip => scene.strip.is_some(),
         Part::Chamber => scene.chamber.is_some(),
         Part::Cable => !scene.cable.is_empty(),
-        Part::DrivenCable => scene.cable.get(index).is_some_and(|cable| cable.drive.is_some()),
+        Part::DrivenCable => element.indices(scene.cable.len()).all(|i| scene.cable[i].drive.is_some()),
         Part::SecondCable => scene.cable.len() >= 2,
         Part::Wall => make.is_none_or(|make| make.linear.is_none()),
         Part::MuscleFriction => make.is_none_or(|make| make.friction.is_some()),
@@ -91,7 +91,7 @@ fn has(scene: &SceneFile, part: Part, index: usize) -> bool {
 /// What a strip or a chamber says to an effect: it has effects of its own; those of sensors are everywhere. `None` leaves the
 /// answer to what follows.
 fn on_standalone(scene: &SceneFile, effect: &Effect<f64>) -> Option<Result<(), Refusal>> {
-    let own = [Part::Strip, Part::Chamber].into_iter().find(|part| has(scene, *part, effect.element.index))?;
+    let own = [Part::Strip, Part::Chamber].into_iter().find(|part| has(scene, *part, effect.element))?;
     if effect.element.kind == ElementKind::Sensor {
         return None;
     }

@@ -1,6 +1,9 @@
 //! Effects of a cable's drive against what is known by hand.
 
-use crate::rig::{BOTH, Model, Series, distance, run, scene};
+use smam::scene::{Override, Scene};
+use smam::system::Simulation;
+
+use crate::rig::{BOTH, Model, Series, distance, law, run, scene};
 
 /// Out to 1 rad, a hold, back past the start to -0.6 rad, a hold.
 const STOCK: &str = "input.0.program={kind=\"points\",time_s=[0.0,1.0,1.5,3.1,3.6],value_rad=[0.0,1.0,1.0,-0.6,-0.6]}";
@@ -9,12 +12,9 @@ const BEHIND_PLAY: &str =
     "input.0.program={kind=\"points\",time_s=[0.0,0.1,1.0,1.7,3.1,3.6],value_rad=[0.0,0.0,0.9,0.9,-0.5,-0.5]}";
 const UNTIL_S: f64 = 3.6;
 
-fn effect(name: &str, value: &str) -> [String; 2] {
-    ["cable_1", "cable_2"].map(|cable| format!("{{name=\"{name}\",element=\"{cable}\",{value}}}"))
-}
-
-fn with_effects(name: &str, value: &str) -> String {
-    format!("effect=[{}]", effect(name, value).join(","))
+/// Both cables hang on the one drive.
+fn with_effect(name: &str, value: &str) -> String {
+    format!("effect=[{{name=\"{name}\",element=\"cable\",{value}}}]")
 }
 
 fn at_rest_the_same(one: &Series, known: &Series, model: Model) {
@@ -27,7 +27,7 @@ fn at_rest_the_same(one: &Series, known: &Series, model: Model) {
 
 #[test]
 fn val_play_of_a_drive_is_a_drive_that_turns_late() {
-    let play = with_effects("drive_backlash", "width_m=1.6e-3");
+    let play = with_effect("drive_backlash", "width_m=1.6e-3");
     for model in BOTH {
         let played = run(model, &scene("tendon_sheath", &[STOCK, &play], &[]), UNTIL_S);
         let known = run(model, &scene("tendon_sheath", &[BEHIND_PLAY], &[]), UNTIL_S);
@@ -41,7 +41,7 @@ fn val_play_of_a_drive_is_a_drive_that_turns_late() {
 
 #[test]
 fn val_a_drive_that_saturates_goes_less_far() {
-    let cubic = with_effects("drive_nonlinearity", "cubic_1_m2=-2e3");
+    let cubic = with_effect("drive_nonlinearity", "cubic_1_m2=-2e3");
     let way = |rad: f64| rad * (1.0 - 2e3 * (8e-3 * rad).powi(2));
     let (out, back) = (way(1.0), way(-0.6));
     let known = format!(
@@ -56,9 +56,9 @@ fn val_a_drive_that_saturates_goes_less_far() {
 /// `u - T du/dt` of a ramp is the ramp, late by T.
 #[test]
 fn val_a_drive_that_falls_behind_with_its_speed_is_late() {
-    let law = &["cable.stretch adds -0.05*drive_speed_m_s"];
+    let slow = &["cable.stretch adds -0.05*drive_speed_m_s"];
     for model in BOTH {
-        let late = run(model, &scene("tendon_sheath", &[STOCK], law), 0.8);
+        let late = run(model, &scene("tendon_sheath", &[STOCK], slow), 0.8);
         let stock = run(model, &scene("tendon_sheath", &[STOCK], &[]), 0.75);
         let (late, stock) = (late.last("tip_deg"), stock.last("tip_deg"));
         assert!((late - stock).abs() < 1e-3 * stock, "{model:?}: {late} and {stock} degrees");
@@ -67,11 +67,27 @@ fn val_a_drive_that_falls_behind_with_its_speed_is_late() {
 
 #[test]
 fn a_cable_without_a_drive_has_no_play_of_one() {
-    for name in ["drive_backlash", "drive_nonlinearity"] {
-        let key = if name == "drive_backlash" { "width_m" } else { "cubic_1_m2" };
-        let set = format!("effect=[{{name=\"{name}\",element=\"cable_1\",{key}=1e-3}}]");
-        let set = smam::scene::Override::parse(&set).expect("an override");
-        let refused = smam::scene::Scene::load("antagonistic_pulley", &[set]).expect_err("no drive").to_string();
+    for (name, key) in [("drive_backlash", "width_m"), ("drive_nonlinearity", "cubic_1_m2")] {
+        let set = with_effect(name, &format!("{key}=1e-3"));
+        let set = Override::parse(&set).expect("an override");
+        let refused = Scene::load("antagonistic_pulley", std::slice::from_ref(&set)).expect_err("no drive").to_string();
         assert!(refused.contains("the cable has no drive"), "{refused}");
+        // One of two has none: both are not to be had, the first one is.
+        let mut mixed = Scene::load("tendon_sheath", &[set]).expect("two drives").file;
+        mixed.cable[1].drive = None;
+        let refused = Scene::from_file(mixed.clone(), "mixed.toml".as_ref()).expect_err("one drive").to_string();
+        assert!(refused.contains("the cable has no drive"), "{refused}");
+        mixed.effect[0].element = "cable_1".to_owned();
+        Scene::from_file(mixed, "mixed.toml".as_ref()).unwrap_or_else(|e| panic!("{e}"));
     }
+}
+
+#[test]
+fn a_law_of_the_drive_on_all_cables_needs_a_drive_on_each() {
+    let mut mixed = Scene::load("tendon_sheath", &[]).expect("a stock scene");
+    mixed.file.cable[1].drive = None;
+    mixed.file.law.push(law("cable.stretch adds 0.01*drive_m", 0));
+    let mixed = Scene::from_file(mixed.file, &mixed.path).unwrap_or_else(|e| panic!("{e}"));
+    let refused = Simulation::new(mixed).err().expect("one drive").to_string();
+    assert!(refused.contains("drive_m") && refused.contains("no input drives the cable"), "{refused}");
 }

@@ -104,14 +104,15 @@ impl<D: Scalar> PlantLaws<D> {
     /// One law more, with the values of its parameters.
     ///
     /// # Errors
-    /// A port or a variable that the rig does not have.
+    /// A port or a variable that the rig does not have; nothing is changed then.
     pub fn add(&mut self, law: &Law, values: Vec<D>, cables: usize) -> Result<(), Wrong> {
         let index = self.laws.len();
-        for at in self.rig.places(&law.address)? {
+        let places = self.rig.places(&law.address)?;
+        let sources = places.iter().map(|&at| self.rig.sources(law, at)).collect::<Result<Vec<_>, _>>()?;
+        for (at, sources) in places.into_iter().zip(sources) {
             if law.address.port.spec().carrier == Carrier::Joint && !self.joint_sites.contains(&at) {
                 self.joint_sites.push(at);
             }
-            let sources = self.rig.sources(law, at)?;
             let (port, carrier) = (law.address.port, law.address.port.spec().carrier);
             let is_alone = !self.instances.iter().any(|i| i.port == port && i.at == at);
             self.instances.iter_mut().filter(|i| i.port == port && i.at == at).for_each(|i| i.is_alone = false);
