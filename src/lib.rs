@@ -45,6 +45,7 @@ pub mod mechanism;
 pub mod muscle;
 #[doc(hidden)]
 pub mod nearest;
+mod parallel;
 #[cfg(feature = "validation")]
 pub mod proof;
 pub mod recording;

@@ -59,7 +59,7 @@ fn val_unknown_physics_is_called_so_and_modelled() {
 
 #[test]
 fn the_answer_is_the_same_on_one_thread_and_on_three() {
-    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    let folder = short_specimen_of_a_leak();
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         serde_json::to_string(&pool.install(|| answer(folder.path()))).expect("JSON")
@@ -76,6 +76,20 @@ fn change(folder: &Path, mut with: impl FnMut(&Recording) -> Recording) {
         let recording = read_csv(&path).unwrap_or_else(|e| panic!("{e}"));
         with(&recording).write_csv(&path).unwrap_or_else(|e| panic!("{e}"));
     }
+}
+
+/// The first rows of a recording.
+fn first(recording: &Recording, rows: usize) -> Recording {
+    let keep = |c: &Channel| Channel::new(c.column.clone(), c.values[..rows].to_vec());
+    let channels = recording.channels().iter().map(keep).collect();
+    Recording::new(recording.time_s()[..rows].to_vec(), channels).expect("increasing")
+}
+
+/// Recordings of a leak, cut to their first 20 s: enough for what is to be the same twice.
+fn short_specimen_of_a_leak() -> TempDir {
+    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    change(folder.path(), |r| first(r, r.time_s().partition_point(|t| *t < 20.0)));
+    folder
 }
 
 /// The recording with the values of one column changed.
@@ -112,10 +126,7 @@ fn bad_recordings_get_a_reason_and_no_diagnosis() {
 #[test]
 fn a_short_run_is_too_short() {
     let folder = specimen(None);
-    change(folder.path(), |r| {
-        let keep = |c: &Channel| Channel::new(c.column.clone(), c.values[..20].to_vec());
-        Recording::new(r.time_s()[..20].to_vec(), r.channels().iter().map(keep).collect()).expect("increasing")
-    });
+    change(folder.path(), |r| first(r, 20));
     let d = answer(folder.path());
     assert_eq!(d.verdict, Verdict::UnusableData);
     assert!(d.summary.contains("samples"), "{}", d.summary);
@@ -158,7 +169,7 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
 /// A pressure that was declared and never recorded is a sensor to add, not one that the next run could be judged by.
 #[test]
 fn a_channel_that_no_run_has_is_left_out() {
-    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    let folder = short_specimen_of_a_leak();
     change(folder.path(), |r| column(r, "pressure_kpa", |_| f64::NAN));
     let with_empty_cells = answer(folder.path());
     let left_out = "pressure_kpa: no run recorded it; the channel is left out";

@@ -3,8 +3,8 @@
 //! The crates looked at (`levenberg-marquardt`, `argmin`) have no bounds on the parameters; with them comes most of
 //! the rest of the method, so it stands here on nalgebra's Cholesky.
 
+use crate::parallel;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Dampings tried for one step, each four times the last.
 const TRIES: usize = 16;
@@ -146,7 +146,7 @@ impl Search<'_> {
             moved[j] += h;
             self.at(&moved).map_or_else(|| DVector::zeros(r.len()), |there| (there - r) / h)
         };
-        let columns: Vec<DVector<f64>> = (0..u.len()).into_par_iter().map(column).collect();
+        let columns: Vec<DVector<f64>> = parallel::map_indices(u.len(), column);
         DMatrix::from_columns(&columns)
     }
 

@@ -28,7 +28,6 @@ mod reduce;
 mod remarks;
 mod route;
 mod shapes;
-mod snapshot;
 mod spec;
 mod stl;
 mod tree;
@@ -56,5 +55,4 @@ pub use {
     notch::NotchGeometry,
     notched_tube::{NotchedTube, notched_tube_meshes, notched_tube_urdf},
     route::{Arm, LinkPoint, Route},
-    snapshot::Snapshot,
 };

@@ -15,10 +15,9 @@ use super::geometry::{self, Visual};
 use super::joints::{self, JointModel};
 use super::linkage::Linkage;
 use super::reduce::{Share, reduce};
-use super::snapshot::World;
 use super::spec::MechanismSpec;
 use super::tree::Tree;
-use super::world::{self, Body, Built, Dof, leader_of};
+use super::world::{self, Body, Built, Dof, World, leader_of};
 use super::{free_bodies, shapes, urdf_file};
 
 /// A rapier multibody behind independent joint coordinates.

@@ -256,3 +256,25 @@ fn set_contact_parameters(world: &mut PhysicsWorld, contact: &ContactSpec) {
     p.contact_softness = softness;
     p.static_contact_softness = softness;
 }
+
+/// The engine's world, which can be copied: without its workspaces, which hold nothing between steps.
+pub(super) struct World(pub PhysicsWorld);
+
+impl Clone for World {
+    fn clone(&self) -> Self {
+        let Self(world) = self;
+        Self(PhysicsWorld {
+            gravity: world.gravity,
+            integration_parameters: world.integration_parameters,
+            islands: world.islands.clone(),
+            broad_phase: world.broad_phase.clone(),
+            narrow_phase: world.narrow_phase.clone(),
+            bodies: world.bodies.clone(),
+            colliders: world.colliders.clone(),
+            impulse_joints: world.impulse_joints.clone(),
+            multibody_joints: world.multibody_joints.clone(),
+            soft_bodies: world.soft_bodies.clone(),
+            ..PhysicsWorld::default()
+        })
+    }
+}

@@ -1,8 +1,7 @@
 //! Durability (Fig. 4f): 2000 s at 80 % elongation and 0.1 Hz.
 
-use rayon::prelude::*;
-
 use crate::effects::EffectTable;
+use crate::parallel;
 use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
 
@@ -118,7 +117,8 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         "the stock rig has nothing that changes over minutes",
     )];
     let mut series = vec![peaks_line("stock rig", BLUE, &plain)];
-    let found: Result<Vec<_>, ReproduceError> = SUSPECTS.par_iter().map(|s| suspected(s, &endurance)).collect();
+    let found: Result<Vec<_>, ReproduceError> =
+        parallel::map(&SUSPECTS, |s| suspected(s, &endurance)).into_iter().collect();
     for (suspect, (row, peaks)) in SUSPECTS.iter().zip(found?) {
         rows.push(row);
         if figures::range(&peaks) > 0.01 {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::effects::EffectTable;
+use crate::parallel;
 use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
 
@@ -108,7 +109,7 @@ const SUSPECTS: [Suspect; 3] = [
 /// Fig. 4a.
 pub fn response() -> Result<Chapter, ReproduceError> {
     const FIGURE: &str = "4a";
-    let ranges: Result<Vec<f64>, _> = FREQUENCIES_HZ.into_par_iter().map(|f| last_range(FIGURE, f)).collect();
+    let ranges: Result<Vec<f64>, _> = parallel::map(&FREQUENCIES_HZ, |f| last_range(FIGURE, *f)).into_iter().collect();
     let ranges = ranges?;
     let gains: Vec<f64> = ranges.iter().map(|r| decibel(*r, ranges[0])).collect();
     let last = gains[gains.len() - 1];

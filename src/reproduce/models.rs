@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::identify::loops::{Form, Identification, LoopRun, mean_square_on};
+use crate::parallel;
 use crate::report::{BLUE, GREEN, ORANGE, PURPLE, Panel, Series, VERMILION};
 use crate::scene::Program;
 
@@ -78,7 +79,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
         .collect();
     let unseen = unseen?;
     let models: Result<Vec<Identification>, ReproduceError> =
-        RIVALS.par_iter().map(|r| fitted(FIGURE, &seen, r.form)).collect();
+        parallel::map(&RIVALS, |r| fitted(FIGURE, &seen, r.form)).into_iter().collect();
     let models = models?;
     let text = "The stock rig stands for the paper's muscle, its elongation recorded with 0.1 % noise and \
                 counted from where the muscle stands with the plunger home. Every form is \

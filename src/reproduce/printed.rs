@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::hysteresis::{DisplacementModel, PaperModel};
 use crate::identify::Bounds;
+use crate::parallel;
 use crate::report::{BLUE, GREEN, GREY, ORANGE, Panel, Series, VERMILION};
 
 use super::calibration::{Bench, Candidate, Knob, Lever};
@@ -75,7 +76,7 @@ pub fn chapter() -> Result<Chapter, ReproduceError> {
     let calibrated = bench.calibrated(&CALIBRATED)?;
     let from: Vec<Knob> = calibrated.settings.iter().map(|(k, x)| Knob { start: *x, ..*k }).collect();
     let with = |further: &[Knob]| bench.calibrated(&[from.clone(), further.to_vec()].concat());
-    let single: Result<Vec<Candidate>, ReproduceError> = FURTHER.par_iter().map(|f| with(&[*f])).collect();
+    let single: Result<Vec<Candidate>, ReproduceError> = parallel::map(&FURTHER, |f| with(&[*f])).into_iter().collect();
     let single = single?;
     // From where the growing bore alone ended, so that a pair is never worse than that.
     let grown: Vec<Knob> = single[0].settings.iter().map(|(k, x)| Knob { start: *x, ..*k }).collect();

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::parallel;
 use crate::recording::figures;
 use crate::report::{BLUE, GREEN, ORANGE, Panel, Series, VERMILION};
 
@@ -54,7 +55,7 @@ fn curved_over_straight(dean: f64) -> f64 {
 /// Fig. 4d, and the comparator that it is set against.
 pub fn chapter() -> Result<Chapter, ReproduceError> {
     let loops: Result<Vec<Loop>, ReproduceError> =
-        ROUTINGS.par_iter().map(|r| line_loop(r.added_resistance(), 1.0)).collect();
+        parallel::map(&ROUTINGS, |r| line_loop(r.added_resistance(), 1.0)).into_iter().collect();
     let loops = loops?;
     let widths: Vec<f64> = loops.iter().map(|l| l.width().0).collect();
     let worst = widths.iter().map(|w| (w / widths[0] - 1.0).abs() * 100.0).fold(0.0, f64::max);

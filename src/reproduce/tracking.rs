@@ -1,9 +1,8 @@
 //! Feedforward compensation, which the paper announces: tracking without it, with it, and with feedback on top.
 
-use rayon::prelude::*;
-
 use crate::feedforward::{Inverse, Limits, Trim};
 use crate::identify::loops::{Form, Identification, LoopRun};
+use crate::parallel;
 use crate::recording::figures::{self, Line};
 use crate::report::{BLUE, GREY, Panel, Series, VERMILION};
 use crate::scene::{Override, Program};
@@ -218,7 +217,7 @@ impl Taught {
     fn from(rig: &Rig) -> Result<Self, ReproduceError> {
         let run = rig.training()?;
         let models: Result<Vec<Identification>, ReproduceError> =
-            FORMS.par_iter().map(|form| fitted(FIGURE, std::slice::from_ref(&run), *form)).collect();
+            parallel::map(&FORMS, |form| fitted(FIGURE, std::slice::from_ref(&run), *form)).into_iter().collect();
         let best = models?.into_iter().min_by(|a, b| a.mean_square_mm2.total_cmp(&b.mean_square_mm2));
         let Line { slope, offset: offset_mm, .. } = figures::line_of_best_fit(&run.input_mm, &run.output_mm);
         let [low, high] = rig.training_mm;
@@ -244,7 +243,7 @@ impl Taught {
 
 /// Three rigs, three motions each.
 pub fn chapter() -> Result<Chapter, ReproduceError> {
-    let made: Result<Vec<(Vec<Row>, Panel)>, ReproduceError> = RIGS.par_iter().map(of_rig).collect();
+    let made: Result<Vec<(Vec<Row>, Panel)>, ReproduceError> = parallel::map(&RIGS, of_rig).into_iter().collect();
     let (rows, panels): (Vec<Vec<Row>>, Vec<Panel>) = made?.into_iter().unzip();
     let text = "A model is identified from a training run of three sines, none of them wanted later, and inverted along the \
                 wanted motion, which keeps clear of the closed coil and of the straight tube: what friction leaves there \

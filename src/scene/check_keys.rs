@@ -4,6 +4,7 @@ use toml::{Table, Value};
 
 use super::check::check_inputs;
 use super::differs::{muscle_key, one_written_out, set_the_same};
+use super::from_table::from_table;
 use super::overrides::{Override, calibration_key, calibration_names, child_at, entry_name};
 use super::{Scene, SceneError, SceneFile};
 use crate::effects::catalogue;
@@ -51,8 +52,8 @@ fn may_hold_number(scene: &Scene, key: &str) -> bool {
     if Override::number(key, 1.0).apply(&mut table).is_err() {
         return false;
     }
-    let read: Result<SceneFile, _> = table.try_into();
-    read.is_ok_and(|file| !key.starts_with("input.") || check_inputs(&file, &scene.path).is_ok())
+    from_table::<SceneFile>(&table)
+        .is_ok_and(|file| !key.starts_with("input.") || check_inputs(&file, &scene.path).is_ok())
 }
 
 /// Whether an effect of the scene, by its name or index, has this parameter.

@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 use super::check::Place;
 use super::check_muscles::check_make;
+use super::from_table::from_table;
 use super::overrides::coerced;
 use super::{CalibrateSpec, Each, MuscleSpec, MusclesSpec, SceneError, SceneFile};
 
@@ -32,8 +33,8 @@ fn make(common: &MusclesSpec, muscle: &MuscleSpec, file: &Path) -> Result<Muscle
     }
     let mut table = Table::try_from(common).map_err(|e| place.error(e.to_string(), "give keys of [muscles]"))?;
     put_over(&mut table, &muscle.differs);
-    let make: MusclesSpec = serde_path_to_error::deserialize(table).map_err(|e| {
-        let message = format!("{}: {}", e.path(), e.inner().message());
+    let make: MusclesSpec = from_table(&table).map_err(|misread| {
+        let message = format!("{}: {}", misread.key, misread.message);
         place.error(message, "give keys of [muscles], spelled as there: { tube.material.c1_pa = 3.1e5 }")
     })?;
     if muscle.cable.is_some() {

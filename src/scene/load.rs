@@ -9,6 +9,7 @@ use crate::nearest::did_you_mean;
 use crate::stock;
 
 use super::check_laws::{Candidate, SceneLaws};
+use super::from_table::from_table;
 use super::overrides::{Override, calibration_key, child_at, entry_name};
 use super::{CalibrateSpec, MusclesSpec, Program, SceneError, SceneFile, check, check_keys, check_laws, differs};
 
@@ -77,9 +78,9 @@ impl Scene {
             Ok(_) => {
                 let mut table: Table = text.parse().map_err(|e: toml::de::Error| syntax(e.to_string()))?;
                 overrides.iter().try_for_each(|o| o.apply(&mut table))?;
-                serde_path_to_error::deserialize(table).map_err(|e| SceneError::Override {
-                    key: e.path().to_string(),
-                    message: e.inner().message().to_owned(),
+                from_table(&table).map_err(|misread| SceneError::Override {
+                    key: misread.key,
+                    message: misread.message,
                     remedy: "`smam check SCENE --keys` lists the keys of the scene".to_owned(),
                 })?
             }

@@ -29,6 +29,7 @@ mod file;
 mod file_channels;
 mod file_muscles;
 mod file_standalone;
+mod from_table;
 mod load;
 mod overrides;
 mod program;

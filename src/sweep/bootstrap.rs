@@ -1,7 +1,7 @@
 //! Intervals by drawing samples anew.
 
+use crate::parallel;
 use rand::RngExt;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::sampling::stream;
@@ -14,21 +14,20 @@ pub struct Estimate {
     pub high: f64,
 }
 
-const ROUNDS: u64 = 500;
+const ROUNDS: usize = 500;
 
 /// Estimates of `of`, which makes numbers of samples picked by index, with percentile intervals of 500 bootstrap rounds
 /// (Efron 1979). The same for any number of threads.
 pub fn estimates(samples: usize, seed: u32, of: impl Fn(&[usize]) -> Vec<f64> + Sync) -> Vec<Estimate> {
     let all: Vec<usize> = (0..samples).collect();
     let values = of(&all);
-    let round = |round: u64| {
+    let round = |round: usize| {
         // Streams far beyond those of points and keys.
-        let mut random = stream(seed, u64::MAX / 2 + round);
+        let mut random = stream(seed, u64::MAX / 2 + round as u64);
         let picks: Vec<usize> = (0..samples).map(|_| random.random_range(0..samples)).collect();
         of(&picks)
     };
-    let rounds: Vec<Vec<f64>> =
-        if samples == 0 { Vec::new() } else { (0..ROUNDS).into_par_iter().map(round).collect() };
+    let rounds: Vec<Vec<f64>> = if samples == 0 { Vec::new() } else { parallel::map_indices(ROUNDS, round) };
     let interval = |(at, value): (usize, f64)| {
         let mut drawn: Vec<f64> = rounds.iter().map(|r| r[at]).filter(|v| v.is_finite()).collect();
         drawn.sort_by(f64::total_cmp);

@@ -85,7 +85,7 @@ impl<D> Default for RomSetting<D> {
 /// let run = RomRun::of_programs(&scene, &Schedule::even(1.0, 0.01));
 /// let c1 = rom.parameter("tube_c1_pa").ok_or("the bench has a tube")?;
 /// let setting = RomSetting { parameters: vec![(c1, Dual64::new(0.255e6, 1.0))], effects: Vec::new() };
-/// let series = rom.simulate(&run, &setting).ok_or("it diverges")?;
+/// let series = rom.simulate_over(&run, &setting).ok_or("it diverges")?;
 /// let elongation = rom.columns().position(|c| c == "elongation_mm").ok_or("an output")?;
 /// let end = series[elongation].last().ok_or("there are samples")?;
 /// // 2.6 mm, and 2.9 um less for each kPa of the silicone's C1.
@@ -188,7 +188,12 @@ impl Rom {
     }
 
     /// Simulates; returns each output at the run's times, in the unit of its column. `None` when it diverges.
-    pub fn simulate<D: Scalar>(&self, run: &RomRun, setting: &RomSetting<D>) -> Option<Vec<Vec<D>>> {
+    pub fn simulate(&self, run: &RomRun, setting: &RomSetting<f64>) -> Option<Vec<Vec<f64>>> {
+        self.simulate_over(run, setting)
+    }
+
+    /// The same over another type of number, as dual numbers, which carry derivatives.
+    pub fn simulate_over<D: Scalar>(&self, run: &RomRun, setting: &RomSetting<D>) -> Option<Vec<Vec<D>>> {
         if let Some(element) = &self.standalone {
             return Some(output::standalone_series(element, &self.outputs, run, setting));
         }

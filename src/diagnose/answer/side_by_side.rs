@@ -3,8 +3,7 @@
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 
-use rayon::prelude::*;
-
+use crate::parallel;
 use crate::system::measured_poses;
 use crate::system::observe::{Frame, MeasuredChannel, Observer, SceneGraph, SideBySide};
 use crate::system::{RunError, Schedule, run as run_simulation};
@@ -21,7 +20,7 @@ use crate::diagnose::full::full_simulation;
 /// A scene that the engine cannot play with the parameters found.
 pub fn side_by_side(outcome: &Outcome) -> Result<Vec<SideBySide>, DiagnoseError> {
     let (Some(baseline), Some(complete)) = (&outcome.baseline, &outcome.complete) else { return Ok(Vec::new()) };
-    outcome.case.runs.par_iter().map(|run| replay(outcome, run, [baseline, complete])).collect()
+    parallel::map(&outcome.case.runs, |run| replay(outcome, run, [baseline, complete])).into_iter().collect()
 }
 
 fn replay(outcome: &Outcome, run: &CaseRun, [baseline, complete]: [&Fit; 2]) -> Result<SideBySide, DiagnoseError> {

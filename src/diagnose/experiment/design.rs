@@ -1,12 +1,11 @@
 //! The input trajectory that discriminates best between open alternatives, within recorded strokes and speeds.
 
-use rayon::prelude::*;
-
 use super::discrimination::{Foreseen, More, Question};
 use super::programme::{INTERVAL_S, Stroke, chirp, held, sample, sine, strokes};
 use crate::diagnose::case::{Case, CaseRun, Noise};
 use crate::diagnose::diagnosis::NextExperiment;
 use crate::diagnose::fit::{Fit, Problem};
+use crate::parallel;
 use crate::recording::{Recording, RecordingError};
 use crate::system::RomRun;
 
@@ -127,14 +126,14 @@ pub(super) fn candidates(
     let inputs = recorded_inputs(case);
     let strokes = strokes(&inputs);
     let programmes = programmes(&strokes, fastest_hz(case, &strokes), duration_s)?;
-    let candidate = |(name, inputs): (&'static str, Recording)| -> Result<Option<Candidate>, RecordingError> {
-        let run = play(case, whole.noise, best, &inputs)?;
+    let candidate = |(name, inputs): &(&'static str, Recording)| -> Result<Option<Candidate>, RecordingError> {
+        let run = play(case, whole.noise, best, inputs)?;
         let foreseen = run.and_then(|run| question.foresee(&run));
-        Ok(foreseen.map(|foreseen| Candidate { name, inputs, foreseen }))
+        Ok(foreseen.map(|foreseen| Candidate { name, inputs: inputs.clone(), foreseen }))
     };
     let wanted = programmes.into_iter().enumerate().filter(|(i, (name, _))| wanted(*i, name));
     let wanted: Vec<_> = wanted.map(|(_, programme)| programme).collect();
-    let all: Vec<_> = wanted.into_par_iter().map(candidate).collect::<Result<_, _>>()?;
+    let all: Vec<_> = parallel::map(&wanted, candidate).into_iter().collect::<Result<_, _>>()?;
     Ok(all.into_iter().flatten().collect())
 }
 

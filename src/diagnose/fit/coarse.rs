@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 
-use rayon::prelude::*;
-
 use super::model::simulate;
 use super::problem::{Fit, Problem};
 use crate::diagnose::case::{CaseRun, Noise};
+use crate::parallel;
 use crate::recording::figures;
 
 /// Steps are longer by the first of these factors that does: one in a sampling interval where friction asks for four, or two.
@@ -20,7 +19,7 @@ impl<'a> Problem<'a> {
     /// correction: Stetter, Numer. Math. 29, 1978).
     pub fn coarse(&self, near: &Fit) -> Self {
         let longer = |run: &Cow<'a, CaseRun>| self.on_longer_steps(run, near).map_or_else(|| run.clone(), Cow::Owned);
-        Problem { case: self.case, runs: self.runs.par_iter().map(longer).collect(), noise: self.noise }
+        Problem { case: self.case, runs: parallel::map(&self.runs, longer), noise: self.noise }
     }
 
     fn on_longer_steps(&self, run: &CaseRun, near: &Fit) -> Option<CaseRun> {

@@ -4,11 +4,11 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::model::{Model, Probe, Sides, respond, simulate};
 use super::normal::{FitParameter, Rows};
 use crate::diagnose::case::{Case, CaseRun, Noise};
+use crate::parallel;
 
 /// A fitted model.
 #[derive(Clone, Debug)]
@@ -127,8 +127,7 @@ impl Problem<'_> {
             Some(self.subtract(run, &simulated))
         };
         // All runs are simulated even where one diverges: what a diagnosis has cost must not depend on which comes first.
-        let all: Vec<Option<_>> = self.runs.par_iter().map(one).collect();
-        all.into_iter().collect()
+        parallel::map(&self.runs, one).into_iter().collect()
     }
 
     /// Residuals at `x` and the Jacobian for the parameters `wanted`, one row per existing sample.
@@ -143,8 +142,7 @@ impl Problem<'_> {
                 .map(|(c, r)| self.weighted_rows(run, c, r, &response.sensitivities, &parameters[wanted.clone()]));
             Some(rows.collect())
         };
-        let parts: Vec<Option<Vec<Rows>>> = self.runs.par_iter().map(one).collect();
-        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let parts = parallel::map(&self.runs, one).into_iter().collect::<Option<Vec<_>>>()?;
         Rows::stack(&parts.concat())
     }
 

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
+use crate::parallel;
 use crate::recording::PiecewiseLinear;
 use crate::system::{InputSource, Schedule, Simulation, record};
 
@@ -31,7 +30,7 @@ pub struct FullRun {
 /// # Errors
 /// A scene that the engine cannot play with these parameters.
 pub fn play_full(case: &Case, fit: &Fit, noise: &[Noise]) -> Result<Vec<FullRun>, DiagnoseError> {
-    case.runs.par_iter().map(|run| play(case, fit, noise, run)).collect()
+    parallel::map(&case.runs, |run| play(case, fit, noise, run)).into_iter().collect()
 }
 
 /// The greatest difference of each channel over all runs.

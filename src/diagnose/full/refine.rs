@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 
-use rayon::prelude::*;
-
 use super::play::play_on_full;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Problem, difference, shifted, simulate};
+use crate::parallel;
 
 /// How often the full scene is asked at most, and the units of chi² for which it is asked again: 0.05 is two tenths of a standard
 /// error.
@@ -63,7 +62,7 @@ impl<'a> Played<'a> {
             let is_close = whole.is_little(&lacking);
             Some((shifted(run.as_ref().clone(), &lacking), is_close))
         };
-        let runs = whole.runs.par_iter().map(one).collect::<Option<Vec<_>>>()?;
+        let runs = parallel::map(&whole.runs, one).into_iter().collect::<Option<Vec<_>>>()?;
         let is_close = runs.iter().all(|(_, is_close)| *is_close);
         let runs = runs.into_iter().map(|(run, _)| Cow::Owned(run)).collect();
         let corrected = Problem { case: whole.case, runs, noise: whole.noise };

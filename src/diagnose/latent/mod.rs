@@ -14,11 +14,10 @@
 mod likelihood;
 mod stretches;
 
-use rayon::prelude::*;
-
 use crate::diagnose::fit::{Fit, Problem, Rows};
 use crate::diagnose::grammar::{Place, places};
 use crate::laws::Address;
+use crate::parallel;
 use likelihood::{Likelihood, Walk};
 use stretches::condensed;
 
@@ -76,11 +75,17 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let stretch_s = f64::max(longest_s / STRETCHES, lasts_s().sum::<f64>() / ALL_STRETCHES);
     let Some(runs) = condensed(problem, &settings, known, &single, stretch_s) else { return Vec::new() };
     let none = Likelihood::of(&runs, &Walk { ports: &[], variance_s: 0.0 });
-    let one = |(address, ports): (String, Vec<usize>)| {
-        let at = |pace: f64| Likelihood::of(&runs, &Walk { ports: &ports, variance_s: pace * pace / longest_s });
+    let one = |(address, ports): &(String, Vec<usize>)| {
+        let at = |pace: f64| Likelihood::of(&runs, &Walk { ports, variance_s: pace * pace / longest_s });
         let best = likeliest(&at);
-        let element = Address::parse(&address).map_or_else(|_| SENSOR.to_owned(), |a| a.element());
-        Latent { address, element, log_odds: none.cost - best.cost, left_sigma: best.left_sigma, left: best.left }
+        let element = Address::parse(address).map_or_else(|_| SENSOR.to_owned(), |a| a.element());
+        Latent {
+            address: address.clone(),
+            element,
+            log_odds: none.cost - best.cost,
+            left_sigma: best.left_sigma,
+            left: best.left,
+        }
     };
     let of_one = single.iter().enumerate().map(|(i, place)| (place.address.clone(), vec![i]));
     let members = |place: &Place| (0..single.len()).filter(|&i| single[i].port == place.port).collect();
@@ -88,7 +93,8 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let channels = problem.case.channels.iter().zip(single.len()..);
     let on_channels = channels.map(|(channel, i)| (format!("{SENSOR}.{}", channel.column), vec![i]));
     let sets: Vec<(String, Vec<usize>)> = of_one.chain(of_all).chain(on_channels).collect();
-    let mut found: Vec<Latent> = sets.into_par_iter().map(one).filter(|latent| latent.log_odds.is_finite()).collect();
+    let mut found: Vec<Latent> = parallel::map(&sets, one);
+    found.retain(|latent| latent.log_odds.is_finite());
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     found
 }

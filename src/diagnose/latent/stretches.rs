@@ -6,12 +6,12 @@
 use std::borrow::Cow;
 
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 
 use super::Place;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Problem, Rows};
 use crate::effects::Effect;
+use crate::parallel;
 use crate::system::{Linear, RomSetting};
 
 /// One run: measurements by stretch, and the response to states and signals there.
@@ -57,7 +57,8 @@ pub fn condensed(
         Some(*row)
     });
     let first_rows: Vec<usize> = std::iter::once(0).chain(ends_of_rows).collect();
-    let one = |(r, run): (usize, &Cow<CaseRun>)| {
+    let one = |r: usize| {
+        let run = &problem.runs[r];
         let ends = ends(&run.drive.times_s, stretch_s);
         let measured = measured(problem, run, (known, first_rows[r]), &ends);
         let linear = run.rom.linear(&run.drive, &settings[r], &at)?;
@@ -66,7 +67,7 @@ pub fn condensed(
         let maps = maps(problem, run, linear, &typical, &ends, &measured)?;
         Some(Condensed { measured, shared: 1 + known.jacobian.ncols(), start, maps })
     };
-    problem.runs.par_iter().enumerate().map(one).collect()
+    parallel::map_indices(problem.runs.len(), one).into_iter().collect()
 }
 
 /// Index after the last sample of each stretch. The first sample belongs to none.

@@ -1,10 +1,9 @@
 //! Candidates for one more effect: selection, joint refits, and the order in which they may win.
 
-use rayon::prelude::*;
-
 use super::screening::{Screened, Screening, least_gain, screen, start_values};
 use crate::diagnose::case::Step;
 use crate::diagnose::fit::{Fit, Placed, Problem, Sides, Variant};
+use crate::parallel;
 
 /// Maximum number of candidates refitted at every stage.
 const REFITTED: usize = 10;
@@ -60,12 +59,12 @@ fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
 /// Joint refits with each candidate added, best first; of several starts of one effect, the better. All are fitted
 /// roughly; those near the best are converged.
 pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
-    let rough: Vec<Option<Fit>> = candidates.par_iter().map(|s| add(problem, screening, s)).collect();
+    let rough: Vec<Option<Fit>> = parallel::map(candidates, |s| add(problem, screening, s));
     let rough = best_of_each(rough.into_iter().flatten().collect());
     let Some(best) = rough.first().map(|f| f.cost) else { return rough };
     let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
     let close = rough.iter().take_while(|f| f.cost <= near).count().min(FINISHED);
-    let finished: Vec<Option<Fit>> = rough[..close].par_iter().map(|f| problem.fit(&f.model, &f.x)).collect();
+    let finished: Vec<Option<Fit>> = parallel::map(&rough[..close], |f| problem.fit(&f.model, &f.x));
     let mut fits: Vec<Fit> = finished.into_iter().flatten().chain(rough[close..].iter().cloned()).collect();
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits
@@ -81,7 +80,7 @@ pub(in crate::diagnose) fn beside(problem: &Problem, fit: &Fit, variants: &[Vari
 pub(super) fn afresh(problem: &Problem, refits: Vec<Fit>) -> Vec<Fit> {
     let again = |f: &Fit| problem.fit_afresh(&f.model, &f.x, f.cost);
     let Some(best) = refits.first().and_then(again) else { return refits };
-    let others: Vec<Option<Fit>> = refits[1..].par_iter().take(FINISHED - 1).map(again).collect();
+    let others: Vec<Option<Fit>> = parallel::map(&refits[1..refits.len().min(FINISHED)], again);
     let mut fits = refits;
     fits[0] = best;
     for (fit, other) in fits[1..].iter_mut().zip(others) {

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::effects::Effect;
+use crate::parallel;
 
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, FitParameter, Probe, Problem, Rows, Sides, Variant, orthogonal, probe, simulate_many};
@@ -148,8 +149,7 @@ pub(super) fn signatures(
     variants: &[(&Variant, Option<f64>)],
 ) -> Vec<Option<DVector<f64>>> {
     let trials: Vec<Trial> = variants.iter().map(|(variant, size)| Trial::of(problem, fit, variant, *size)).collect();
-    let parts: Vec<Vec<Option<DVector<f64>>>> =
-        problem.runs.par_iter().map(|run| in_run(problem, fit, run, &trials)).collect();
+    let parts: Vec<Vec<Option<DVector<f64>>>> = parallel::map(&problem.runs, |run| in_run(problem, fit, run, &trials));
     let whole = |i: usize| {
         let parts = parts.iter().map(|run| run[i].as_ref()).collect::<Option<Vec<_>>>()?;
         let entries = parts.iter().flat_map(|part| part.iter().copied());

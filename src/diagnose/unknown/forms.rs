@@ -1,11 +1,10 @@
 //! Chooses among equally good fits, and the alternatives that an answer names.
 
-use rayon::prelude::*;
-
 use super::elsewhere::elsewhere;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
 use crate::diagnose::verdict::{self, misfit};
+use crate::parallel;
 
 /// Fits are called equally good within so many units of chi²: odds of one to twenty.
 pub(in crate::diagnose) const SAME: f64 = 6.0;
@@ -67,7 +66,7 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
         let tie = tie(open, fit, before);
         let rough = elsewhere(open, fit, tie);
         let named = other_forms(fit, rough.iter().take_while(|f| f.cost < fit.cost + NEARLY * tie));
-        named.par_iter().filter_map(|f| open.fit(&f.model, &f.x)).collect()
+        parallel::map(&named, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect()
     };
     let mut fits = others(&fit);
     let better = fits.iter().filter(|other| other.cost < fit.cost - SAME_LAW).min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -88,7 +87,7 @@ pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before:
     let noise = open.noise_cost();
     let near = noise + STILL_TO_COME * (first.cost - noise).max(0.0) + NEARLY * tie(open, first, before);
     let count = rough.iter().take(most).take_while(|fit| fit.cost <= near).count();
-    let others: Vec<Option<Fit>> = rough[..count].par_iter().skip(1).map(to_the_end).collect();
+    let others: Vec<Option<Fit>> = parallel::map(&rough[1..count.max(1)], to_the_end);
     for (fit, finished) in rough[1..].iter_mut().zip(others) {
         if let Some(finished) = finished {
             *fit = finished;

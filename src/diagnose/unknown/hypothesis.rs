@@ -1,7 +1,5 @@
 //! Explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
 
-use rayon::prelude::*;
-
 use super::forms::{CLEARLY, Criterion, equally_good, is_clearly_better, leaves_something, with_elsewhere};
 use super::listed::does_as_well;
 use super::stand_ins::other_places;
@@ -12,6 +10,7 @@ use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{Found, MOST_EFFECTS, least_gain, leaves_much, reweight};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
+use crate::parallel;
 
 /// Maximum number of laws in one answer.
 const MOST_LAWS: usize = 2;
@@ -202,8 +201,8 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
         return (found, noise.to_vec());
     };
     let open = reweight::open_runs(case, &renewed.noise);
-    let again = found.forms.last().map_or(&[][..], Vec::as_slice).par_iter().filter_map(|f| open.fit(&f.model, &f.x));
-    let mut fits: Vec<Fit> = again.collect();
+    let former = found.forms.last().map_or(&[][..], Vec::as_slice);
+    let mut fits: Vec<Fit> = parallel::map(former, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect();
     fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
@@ -315,11 +314,11 @@ pub(super) fn without_idle(open: &Problem, mut best: Fit, mut forms: Vec<Fit>) -
     let least = least_gain(open.samples());
     loop {
         let others = best.model.effects.len() - 1;
-        let fewer: Vec<Option<Fit>> = (0..others).into_par_iter().map(|i| without(&best, i)).collect();
+        let fewer: Vec<Option<Fit>> = parallel::map_indices(others, |i| without(&best, i));
         let idle = fewer.into_iter().enumerate().filter_map(|(i, fit)| Some((i, fit?)));
         let idle = idle.filter(|(_, fit)| fit.cost - best.cost < least).min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
         let Some((i, fit)) = idle else { return (best, forms) };
-        forms = forms.par_iter().filter_map(|form| without(form, i)).collect();
+        forms = parallel::map(&forms, |form| without(form, i)).into_iter().flatten().collect();
         best = fit;
     }
 }

@@ -8,13 +8,13 @@
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Place, places};
 use crate::effects::Effect;
 use crate::laws::Port;
+use crate::parallel;
 use crate::system::{Change, RomSetting};
 
 /// Ports of the constant signals.
@@ -32,7 +32,7 @@ pub(super) fn linear_rows(problem: &Problem, fit: &Fit) -> Vec<bool> {
     let asked: Vec<&Place> =
         all.iter().filter(|place| ASKED.contains(&place.port) && !place.is_of_several(&all)).collect();
     let one = |run: &Cow<CaseRun>| in_run(problem, fit, run, &asked);
-    let of_runs: Vec<Vec<Vec<bool>>> = problem.runs.par_iter().map(one).collect();
+    let of_runs: Vec<Vec<Vec<bool>>> = parallel::map(&problem.runs, one);
     let of_port = |p: usize| -> Vec<bool> { of_runs.iter().flat_map(|ports| ports[p].iter().copied()).collect() };
     let mut of_ports: Vec<Vec<bool>> = (0..asked.len()).map(of_port).collect();
     of_ports.sort_by_key(|linear| std::cmp::Reverse(count(linear)));

@@ -9,6 +9,7 @@ use super::shown::{Shown, Wanted, of_curve};
 use super::span::sizes;
 use crate::diagnose::fit::{Fit, Model, Rows, Sides, Underway, Variant};
 use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
+use crate::parallel;
 
 /// Scales tried for a shape, relative to the slot's.
 const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
@@ -85,7 +86,7 @@ impl Shown<'_> {
     fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
         let problem = &self.coarse;
         let begin = |candidate: &Candidate| Some(problem.go_on(self.begin(candidate)?, FIRST_STEPS));
-        let mut underway: Vec<Underway> = candidates.par_iter().filter_map(begin).collect();
+        let mut underway: Vec<Underway> = parallel::map(candidates, begin).into_iter().flatten().collect();
         underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         let finish = |(place, fit): (usize, Underway)| {
             if place >= going_on {

@@ -2,7 +2,6 @@
 //! whatever its shape?
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::linear_range::{basis, linear_rows, where_linear};
 use super::span::explained;
@@ -11,6 +10,7 @@ use crate::diagnose::fit::{Fit, FitParameter, Problem, Rows, orthogonal};
 use crate::diagnose::grammar::{Shape, Slot};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
+use crate::parallel;
 use crate::recording::parse_column;
 use crate::system::{Change, Signals};
 
@@ -152,7 +152,7 @@ impl<'a> Shown<'a> {
             })
             .collect();
         let of_runs: Vec<Vec<Option<Vec<f64>>>> =
-            self.coarse.runs.par_iter().enumerate().map(|(r, run)| self.in_run(r, run, &single)).collect();
+            parallel::map_indices(self.coarse.runs.len(), |r| self.in_run(r, &self.coarse.runs[r], &single));
         let whole = |i: usize| -> Option<DVector<f64>> {
             let mut entries = Vec::with_capacity(self.left.len());
             for run in &of_runs {
@@ -160,7 +160,7 @@ impl<'a> Shown<'a> {
             }
             Some(DVector::from_vec(entries))
         };
-        let signatures: Vec<Option<DVector<f64>>> = (0..single.len()).into_par_iter().map(whole).collect();
+        let signatures: Vec<Option<DVector<f64>>> = parallel::map_indices(single.len(), whole);
         let sum = |parts: &Vec<usize>| -> Option<DVector<f64>> {
             let mut sum = DVector::zeros(self.left.len());
             for &i in parts {
@@ -168,7 +168,7 @@ impl<'a> Shown<'a> {
             }
             Some(orthogonal(&self.basis, &where_linear(sum, &self.linear)))
         };
-        members.par_iter().map(sum).collect()
+        parallel::map(&members, sum)
     }
 
     /// The rows of each signature in one run.

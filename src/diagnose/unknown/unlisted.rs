@@ -4,13 +4,12 @@
 //! its port, and their best combination tells how much any law there could explain. All shapes, and the constant, are
 //! then screened around the best slots; the best candidates are refitted jointly with the calibration.
 
-use rayon::prelude::*;
-
 use super::forms::{finished, leaves_something};
 use super::shown::{Located, Shown};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
 use crate::diagnose::latent::{Latent, latents, likely};
+use crate::parallel;
 
 /// Maximum number of slots whose best shape is refitted. All shapes are tried around the best [`WIDENED`].
 const SLOTS: usize = 14;
@@ -44,8 +43,7 @@ impl Proposals {
     /// Refits the best of them with other weights or steps.
     pub fn again(self, problem: &Problem) -> Self {
         let best = &self.fits[..self.fits.len().min(FINISHED)];
-        let again = best.par_iter().filter_map(|f| problem.fit(&f.model, &f.x));
-        let mut fits: Vec<Fit> = again.collect();
+        let mut fits: Vec<Fit> = parallel::map(best, |f| problem.fit(&f.model, &f.x)).into_iter().flatten().collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         Self { fits }
     }

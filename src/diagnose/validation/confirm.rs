@@ -8,7 +8,7 @@ use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::full::{FullRun, agreement, play_full};
 use crate::diagnose::search::{self, Found, cross_validates};
 use crate::diagnose::verdict::{self, Confirmed, misfit};
-use rayon::prelude::*;
+use crate::parallel;
 
 /// What the held-out runs say about the answer. They choose nothing: if they show no gain, the answer stays, as
 /// incomplete.
@@ -79,7 +79,7 @@ pub(in crate::diagnose) fn prune(
     }
     while found.best.model.effects.len() > 1 {
         let without = |i: usize| open.fit(&found.best.model.without(i), &open.start_without(&found.best, i));
-        let fewer: Vec<Option<Fit>> = (0..found.best.model.effects.len()).into_par_iter().map(without).collect();
+        let fewer: Vec<Option<Fit>> = parallel::map_indices(found.best.model.effects.len(), without);
         let is_idle = |fewer: &Fit| !cross_validates(open, fewer, &found.best);
         let idle = fewer.into_iter().flatten().filter(is_idle).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(fewer) = idle else { break };

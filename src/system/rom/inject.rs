@@ -2,18 +2,17 @@
 //!
 //! A signal costs a product of a small matrix and a vector for each sample, whatever the model ([`Linear`]).
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::effects::Effect;
-use crate::scalar::Lanes;
 
 use super::linear::{Block, Linear};
 use super::output::Sensors;
 use super::{Rom, RomRun, RomSetting};
 
-/// Signals per batch.
-const SIGNALS: usize = 8;
-type Eight = Lanes<SIGNALS>;
+/// Signals per product of matrices.
+const TOGETHER: usize = 32;
 
 /// Signals at a port: a constant law, and its values at each sample of the run.
 #[derive(Clone, Debug)]
@@ -36,7 +35,7 @@ impl Rom {
             return ports.iter().map(|port| vec![None; port.values.len()]).collect();
         };
         let shown = self.shown_by_sensors(run, setting);
-        let mut changes = changes.map(|change| Some(shown(change)).filter(is_finite));
+        let mut changes = changes.into_iter().map(|change| Some(shown(change)).filter(is_finite));
         ports.iter().map(|port| changes.by_ref().take(port.values.len()).collect()).collect()
     }
 
@@ -68,53 +67,54 @@ fn is_finite(change: &Change) -> bool {
 }
 
 /// Responses to the signals at all ports of a linear model; `None` if it diverges.
-fn through(mut linear: Linear, signals: &[Signals]) -> Option<impl Iterator<Item = Change>> {
+fn through(mut linear: Linear, signals: &[Signals]) -> Option<Vec<Change>> {
     let each = signals.iter().enumerate();
-    let mut waves: Vec<Wave> = each
-        .flat_map(|(port, own)| own.values.chunks(SIGNALS).map(move |signals| (port, signals)))
-        .map(|(port, signals)| Wave::new(port, signals, linear.states.len(), linear.start(port)))
-        .collect();
+    let all: Vec<(usize, &[f64])> =
+        each.flat_map(|(port, own)| own.values.iter().map(move |signal| (port, &signal[..]))).collect();
+    let mut waves: Vec<Waves> = all.chunks(TOGETHER).map(|some| Waves::new(some, &linear)).collect();
     while let Some(block) = linear.next_block() {
-        waves.par_iter_mut().for_each(|wave| wave.go_on(&block));
+        waves.par_iter_mut().for_each(|waves| waves.go_on(&block));
     }
-    linear.is_sound().then(|| waves.into_iter().flat_map(|wave| wave.changes))
+    linear.is_sound().then(|| waves.into_iter().flat_map(|waves| waves.changes).collect())
 }
 
-/// Some signals at one port on their way.
-struct Wave<'a> {
-    port: usize,
-    signals: &'a [Vec<f64>],
+/// Some signals on their way, each with its port: a column of the matrices each.
+struct Waves<'a> {
+    signals: &'a [(usize, &'a [f64])],
     /// Of each number of the state what they have changed so far.
-    state: Vec<Eight>,
-    next: Vec<Eight>,
+    state: DMatrix<f64>,
+    next: DMatrix<f64>,
     changes: Vec<Change>,
 }
 
-impl<'a> Wave<'a> {
-    /// At the first sample, where what acts at its port comes to `start`.
-    fn new(port: usize, signals: &'a [Vec<f64>], states: usize, start: &[f64]) -> Self {
-        let samples = signals.first().map_or(0, Vec::len);
-        let outputs = start.len() - states;
-        let changes = vec![vec![Vec::with_capacity(samples); outputs]; signals.len()];
-        let none = Lanes([0.0; SIGNALS]);
-        let mut wave = Self { port, signals, state: vec![none; states], next: vec![none; states + outputs], changes };
-        wave.act(|signal| signal[0], start);
-        wave.note();
-        wave
+impl<'a> Waves<'a> {
+    /// At the first sample, where what acts at a port comes to its start.
+    fn new(signals: &'a [(usize, &'a [f64])], linear: &Linear) -> Self {
+        let (states, count) = (linear.states.len(), signals.len());
+        let outputs = linear.outputs();
+        let change = |(_, signal): &(usize, &[f64])| vec![Vec::with_capacity(signal.len()); outputs];
+        let changes = signals.iter().map(change).collect();
+        let [state, next] = [states, states + outputs].map(|rows| DMatrix::zeros(rows, count));
+        let mut waves = Self { signals, state, next, changes };
+        waves.act(|signal| signal[0], |port| linear.start(port));
+        waves.note();
+        waves
     }
 
-    /// What acts at the port, by what it comes to.
-    fn act(&mut self, acting: impl Fn(&[f64]) -> f64, column: &[f64]) {
-        let acting = Lanes(std::array::from_fn(|s| self.signals.get(s).map_or(0.0, |signal| acting(signal))));
-        self.next.iter_mut().zip(column).for_each(|(next, &slope)| *next = acting * slope);
+    /// What acts at the ports, by what it comes to there.
+    fn act<'b>(&mut self, acting: impl Fn(&[f64]) -> f64, column: impl Fn(usize) -> &'b [f64]) {
+        for (mut next, (port, signal)) in self.next.column_iter_mut().zip(self.signals) {
+            let acting = acting(signal);
+            next.iter_mut().zip(column(*port)).for_each(|(next, &slope)| *next = acting * slope);
+        }
     }
 
     /// Takes over state and outputs.
     fn note(&mut self) {
-        let (state, outputs) = self.next.split_at(self.state.len());
-        self.state.copy_from_slice(state);
-        for (s, change) in self.changes.iter_mut().enumerate() {
-            change.iter_mut().zip(outputs).for_each(|(series, Lanes(output))| series.push(output[s]));
+        let states = self.state.nrows();
+        self.state.copy_from(&self.next.rows(0, states));
+        for (change, next) in self.changes.iter_mut().zip(self.next.column_iter()) {
+            change.iter_mut().zip(next.iter().skip(states)).for_each(|(series, output)| series.push(*output));
         }
     }
 
@@ -122,10 +122,8 @@ impl<'a> Wave<'a> {
     fn go_on(&mut self, block: &Block) {
         for (i, matrix) in block.matrices.iter().enumerate() {
             let k = block.first + i;
-            self.act(|signal| 0.5 * (signal[k - 1] + signal[k]), block.column(i, self.port));
-            for (j, &number) in self.state.iter().enumerate() {
-                self.next.iter_mut().zip(&matrix.column(j)).for_each(|(next, &slope)| *next += number * slope);
-            }
+            self.act(|signal| 0.5 * (signal[k - 1] + signal[k]), |port| block.column(i, port));
+            self.next.gemm(1.0, matrix, &self.state, 1.0);
             self.note();
         }
     }
@@ -138,9 +136,10 @@ mod tests {
     use super::*;
     use crate::effects::{Element, EntryId, Fitted, Range};
     use crate::laws::{Carrier, LawTable, PORTS, PortSpec, Surroundings};
-    use crate::scalar::{Jet, blended_at_rest};
+    use crate::scalar::blended_at_rest;
     use crate::scene::Scene;
     use crate::system::Schedule;
+    use crate::system::rom::directions::D;
 
     const SWING_S: f64 = 1.0;
 
@@ -174,11 +173,11 @@ mod tests {
     /// matrices: where cables are about to go slack the last bit decides on the branch.
     fn exact(rom: &Rom, run: &RomRun, law: Effect<f64>) -> Vec<Vec<f64>> {
         let Effect { entry, element, channel, values } = law;
-        let mut values: Vec<Jet<1>> = values.into_iter().map(Jet::from).collect();
-        values[0].slopes = [1.0];
+        let mut values: Vec<D> = values.into_iter().map(D::from).collect();
+        values[0].slopes[0] = 1.0;
         let effects = vec![Effect { entry, element, channel, values }];
         let setting = RomSetting { parameters: Vec::new(), effects };
-        let series = blended_at_rest(|| rom.simulate(run, &setting)).expect("it does not diverge");
+        let series = blended_at_rest(|| rom.simulate_over(run, &setting)).expect("it does not diverge");
         series.into_iter().map(|channel| channel.into_iter().map(|x| x.slopes[0]).collect()).collect()
     }
 
@@ -199,13 +198,13 @@ mod tests {
             let at: Vec<Effect<f64>> = ports.iter().map(|spec| law(spec, false)).collect();
             let swing: Vec<f64> = run.times_s.iter().map(|t| (t / SWING_S).sin()).collect();
             let steady = vec![1.0; swing.len()];
-            let values = [vec![steady; SIGNALS], vec![swing]].concat();
+            let values = [vec![steady; TOGETHER], vec![swing]].concat();
             let signals: Vec<Signals> = at.iter().map(|at| Signals { at, values: values.clone() }).collect();
             let found = rom.injected(&run, &RomSetting::default(), &signals);
             let moving = rom.columns().position(|c| ["elongation_mm", "angle_deg", "bend_deg"].contains(&c));
             let moving = moving.expect("what moves");
             for (spec, found) in ports.iter().zip(found) {
-                let [steady, other, swinging] = [0, 7, 8].map(|i| found[i].as_ref().expect("finite"));
+                let [steady, other, swinging] = [0, TOGETHER - 1, TOGETHER].map(|i| found[i].as_ref().expect("finite"));
                 let port = (name, spec.element, spec.term);
                 assert_eq!(steady, other);
                 for (change, exact) in steady.iter().zip(exact(&rom, &run, law(spec, false))) {

@@ -84,6 +84,11 @@ impl Linear<'_> {
         column(&self.start, 0, port)
     }
 
+    /// Number of outputs that a response has.
+    pub fn outputs(&self) -> usize {
+        self.rom.outputs.len()
+    }
+
     /// The next intervals; none at the end of the run.
     pub(crate) fn next_block(&mut self) -> Option<Block> {
         let first = self.next;

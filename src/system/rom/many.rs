@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use crate::effects::{Effect, ElementKind};
+use crate::parallel;
 use crate::scalar::{Lanes, take_disagreement};
 use crate::system::PlantState;
 use crate::system::laws::Acts;
@@ -32,7 +33,7 @@ impl Rom {
     /// only in values in batches, groups on all threads.
     pub fn simulate_many(&self, run: &RomRun, settings: &[RomSetting<f64>]) -> Vec<Outputs> {
         if self.standalone.is_some() {
-            return settings.par_iter().map(|setting| self.simulate(run, setting)).collect();
+            return parallel::map(settings, |setting| self.simulate(run, setting));
         }
         let mut bodies: Vec<RomSetting<f64>> = Vec::with_capacity(settings.len());
         let mut body_of = Vec::with_capacity(settings.len());

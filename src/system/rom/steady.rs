@@ -21,7 +21,7 @@ impl Rom {
             parameters: setting.parameters.iter().map(|(p, x)| (p.clone(), D::constant(*x))).collect(),
             effects: setting.effects.iter().map(|effect| effect.lift(D::constant)).chain(acting).collect(),
         };
-        let series = blended_at_rest(|| self.simulate(run, &setting))?;
+        let series = blended_at_rest(|| self.simulate_over(run, &setting))?;
         let along = |i| series.iter().map(|channel| channel.iter().map(|x| x.slopes[i]).collect()).collect();
         Some((0..ports.len()).map(along).collect())
     }
