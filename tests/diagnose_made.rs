@@ -47,7 +47,7 @@ fn answer(folder: &Path) -> Diagnosis {
 /// A pull that the catalogue does not hold is imitated by three of its effects, but not as well as by one term.
 #[test]
 fn val_unknown_physics_is_called_so_and_modelled() {
-    let folder = specimen(Some(("hypothetical_force", "muscle", "force_n", 0.05)));
+    let folder = short_specimen(Some(("hypothetical_force", "muscle", "force_n", 0.05)));
     let d = answer(folder.path());
     assert_eq!(d.verdict, Verdict::UnknownPhysics);
     assert_eq!(d.location.element.as_deref(), Some("muscle"));
@@ -59,7 +59,7 @@ fn val_unknown_physics_is_called_so_and_modelled() {
 
 #[test]
 fn the_answer_is_the_same_on_one_thread_and_on_three() {
-    let folder = short_specimen_of_a_leak();
+    let folder = short_specimen(Some(LEAK));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         serde_json::to_string(&pool.install(|| answer(folder.path()))).expect("JSON")
@@ -85,12 +85,14 @@ fn first(recording: &Recording, rows: usize) -> Recording {
     Recording::new(recording.time_s()[..rows].to_vec(), channels).expect("increasing")
 }
 
-/// Recordings of a leak, cut to their first 20 s: enough for what is to be the same twice.
-fn short_specimen_of_a_leak() -> TempDir {
-    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+/// [`specimen`], cut to the first 20 s of every run: enough where nothing is slow.
+fn short_specimen(effect: Option<(&str, &str, &str, f64)>) -> TempDir {
+    let folder = specimen(effect);
     change(folder.path(), |r| first(r, r.time_s().partition_point(|t| *t < 20.0)));
     folder
 }
+
+const LEAK: (&str, &str, &str, f64) = ("leak", "line", "conductance_m3_s_pa", 1e-17);
 
 /// The recording with the values of one column changed.
 fn column(recording: &Recording, name: &str, mut with: impl FnMut(f64) -> f64) -> Recording {
@@ -136,7 +138,7 @@ fn a_short_run_is_too_short() {
 /// in the way of an answer.
 #[test]
 fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
-    let folder = specimen(Some(("leak", "line", "conductance_m3_s_pa", 1e-17)));
+    let folder = specimen(Some(LEAK));
     let mut row = 0;
     change(folder.path(), |r| {
         column(r, "pressure_kpa", |v| {
@@ -169,7 +171,7 @@ fn a_slower_sensor_and_a_run_without_outputs_do_no_harm() {
 /// A pressure that was declared and never recorded is a sensor to add, not one that the next run could be judged by.
 #[test]
 fn a_channel_that_no_run_has_is_left_out() {
-    let folder = short_specimen_of_a_leak();
+    let folder = short_specimen(Some(LEAK));
     change(folder.path(), |r| column(r, "pressure_kpa", |_| f64::NAN));
     let with_empty_cells = answer(folder.path());
     let left_out = "pressure_kpa: no run recorded it; the channel is left out";
@@ -394,7 +396,7 @@ fn a_candidate_law_of_the_scene_is_named_and_fitted() {
 /// channel shows.
 #[test]
 fn a_bent_channel_is_named_as_a_candidate_and_as_a_law() {
-    let folder = specimen(None);
+    let folder = short_specimen(None);
     let law = |a: f64, candidate: bool| {
         let text = format!(
             "law.bent={{port=\"sensor.pressure_kpa\", scales=\"1 - a*abs(reading)/1e6\", candidate={candidate}, \

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from score_table import OWN, page
 
-METHODS = ("sindy", "gp", "narx", "refit")
+METHODS = ("sindy", "gp", "narx", "operon", "refit")
 # Stands for a forecast of the holdout that is not finite: JSON has no infinity, and leaving the case out would flatter.
 NO_FORECAST = -1.0e6
 # Outputs of the rigs in the order in which a sealed answer lists their noise.
@@ -23,6 +23,8 @@ OUTPUTS = {
 }
 # Least gap between baseline and noise, in the noise's variance per sample, as `smam score` has it.
 LEAST_GAP = 0.02
+# What a rival says of a drawn law, but for the element: nothing that could be compared.
+NO_LAW = {"set_size": 0}
 REBUILD = "if smam is older than this script, build it (cargo build --release) and give --smam PATH"
 
 
@@ -168,6 +170,8 @@ def rival_row(row, path, sealed):
         raise ScoreError(f"{path}: no key {error}: {remedy}") from error
     except (TypeError, ValueError, ZeroDivisionError) as error:
         raise ScoreError(f"{path}: not the answer of a rival ({error}): {remedy}") from error
+    if row.get("law"):
+        place["law"] = {k: v if k == "hidden" else NO_LAW.get(k) for k, v in row["law"].items()}
     return own_row(row) | place
 
 

@@ -5,7 +5,7 @@ from statistics import median
 
 OWN = "smam"
 # Methods that name no effect, and the figures that are about names: without names these have no value.
-NAMES_NOTHING = ("narx", "refit")
+NAMES_NOTHING = ("narx", "operon", "refit")
 ABOUT_NAMES = (
     "probability",
     "element",
@@ -16,8 +16,11 @@ ABOUT_NAMES = (
     "set_size",
     "confidently_wrong",
 )
+# Those that give an element nevertheless, and the figures of drawn laws that only `smam diagnose` gives anything for.
+TELLS_ELEMENT = ("operon",)
+ABOUT_LAWS = ("law_port", "law_first", "law_set", "law_curve", "law_curve_beyond", "law_gap_larger")
 # How keys begin of figures that only `smam diagnose` has, and of its time, for which stands the median of each.
-LEFT_OUT = ("settled", "size_coverage", "time")
+LEFT_OUT = ("settled", "size_coverage", "time", "law_time")
 
 
 def page(figures, rows_of, left_out, is_noise_true):
@@ -54,10 +57,19 @@ def title(method):
 
 def value(method, figure):
     """A figure's value; None where it has no cases or a method has no such thing."""
-    if figure is None or figure["cases"] == 0 or (method in NAMES_NOTHING and figure["key"] in ABOUT_NAMES):
+    if figure is None or figure["cases"] == 0 or is_silent(method, figure["key"]):
         return None
     number = figure["value"]
     return number if number is not None and math.isfinite(number) else None
+
+
+def is_silent(method, key):
+    """Whether a method says nothing that a figure is about."""
+    if key in ABOUT_LAWS:
+        return method != OWN
+    if method in TELLS_ELEMENT and key in ("element", "law_element"):
+        return False
+    return method in NAMES_NOTHING and key in (*ABOUT_NAMES, "law_element", "law_certain")
 
 
 def cell(method, figure):
