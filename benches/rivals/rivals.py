@@ -18,7 +18,7 @@ from answer import as_json, holdout_figures, write_whole  # noqa: E402
 from case import CaseError, load_case, sealed_outputs  # noqa: E402
 from rows import channel_noise  # noqa: E402
 
-METHODS = ("sindy", "gp", "narx", "operon", "refit")
+METHODS = ("sindy", "gp", "narx", "latent", "operon", "refit")
 # What may go wrong with one case and leaves the others alone.
 MENDABLE = (CaseError, ValueError, LookupError, ArithmeticError, OSError)
 

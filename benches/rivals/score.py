@@ -12,7 +12,7 @@ from pathlib import Path
 
 from score_table import OWN, page
 
-METHODS = ("sindy", "gp", "narx", "operon", "refit")
+METHODS = ("sindy", "gp", "narx", "latent", "operon", "refit")
 # Stands for a forecast of the holdout that is not finite: JSON has no infinity, and leaving the case out would flatter.
 NO_FORECAST = -1.0e6
 # Outputs of the rigs in the order in which a sealed answer lists their noise.

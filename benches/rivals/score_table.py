@@ -5,7 +5,7 @@ from statistics import median
 
 OWN = "smam"
 # Methods that name no effect, and the figures that are about names: without names these have no value.
-NAMES_NOTHING = ("narx", "operon", "refit")
+NAMES_NOTHING = ("narx", "latent", "operon", "refit")
 ABOUT_NAMES = (
     "probability",
     "element",
@@ -17,7 +17,7 @@ ABOUT_NAMES = (
     "confidently_wrong",
 )
 # Those that give an element nevertheless, and the figures of drawn laws that only `smam diagnose` gives anything for.
-TELLS_ELEMENT = ("operon",)
+TELLS_ELEMENT = ("latent", "operon")
 ABOUT_LAWS = ("law_port", "law_first", "law_set", "law_curve", "law_curve_beyond", "law_gap_larger")
 # How keys begin of figures that only `smam diagnose` has, and of its time, for which stands the median of each.
 LEFT_OUT = ("settled", "size_coverage", "time", "law_time")
