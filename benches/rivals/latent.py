@@ -1,4 +1,4 @@
-"""An unknown signal at each port of the calibrated simulation (a latent force), and Gaussian processes for the likeliest.
+"""An unknown signal at each port of the calibrated simulation (a latent force), and Gaussian processes for the best.
 
 A signal that walks at random is sent into each port through the linearised rig; the port whose signal has most evidence
 is where something is missing (Alvarez, Luengo, Lawrence 2009). What the signal is there at its best becomes a sum of
