@@ -47,7 +47,7 @@ fn answer(folder: &Path) -> Diagnosis {
 /// A pull that the catalogue does not hold is imitated by three of its effects, but not as well as by one term.
 #[test]
 fn val_unknown_physics_is_called_so_and_modelled() {
-    let folder = short_specimen(Some(("hypothetical_force", "muscle", "force_n", 0.05)));
+    let folder = specimen(Some(("hypothetical_force", "muscle", "force_n", 0.05)));
     let d = answer(folder.path());
     assert_eq!(d.verdict, Verdict::UnknownPhysics);
     assert_eq!(d.location.element.as_deref(), Some("muscle"));
