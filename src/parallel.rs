@@ -1,7 +1,6 @@
 //! Work on all threads, its results in order.
 //!
-//! Every closure that goes through `rayon`'s iterators is compiled with all of their machinery, some hundred times over; here that is one
-//! call through a pointer.
+//! Every closure that goes through `rayon`'s iterators is compiled with all of their machinery; here that is one call through a pointer.
 
 use std::sync::{Mutex, PoisonError};
 

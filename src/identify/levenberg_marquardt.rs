@@ -3,8 +3,9 @@
 //! The crates looked at (`levenberg-marquardt`, `argmin`) have no bounds on the parameters; with them comes most of
 //! the rest of the method, so it stands here on nalgebra's Cholesky.
 
-use crate::parallel;
 use nalgebra::{DMatrix, DVector};
+
+use crate::parallel;
 
 /// Dampings tried for one step, each four times the last.
 const TRIES: usize = 16;

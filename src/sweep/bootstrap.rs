@@ -1,10 +1,10 @@
 //! Intervals by drawing samples anew.
 
-use crate::parallel;
 use rand::RngExt;
 use serde::Serialize;
 
 use super::sampling::stream;
+use crate::parallel;
 
 /// A number and the interval that holds it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

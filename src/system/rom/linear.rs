@@ -112,7 +112,7 @@ impl Linear<'_> {
     fn matrix(&self, state: &[Columns], interval: usize) -> DMatrix<f64> {
         let all = state.iter().flat_map(|c| c.of(interval)).copied();
         let states = self.states.len();
-        DMatrix::from_iterator(states + self.rom.outputs.len(), states, all)
+        DMatrix::from_iterator(states + self.outputs(), states, all)
     }
 }
 
