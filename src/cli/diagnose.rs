@@ -50,6 +50,9 @@ pub struct DiagnoseArguments {
     /// Leave a step out, to see what it is worth
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
+    /// Search to the end, whatever it costs: else steps that it can do without do not begin after about a minute, which a warning says
+    #[arg(long)]
+    thorough: bool,
     /// Of the bootstrap's draws; the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -101,6 +104,9 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     }
     if let Some(step) = arguments.without {
         case.leave_out(step.step());
+    }
+    if arguments.thorough {
+        case.search_thoroughly();
     }
     let results = Results::of(&arguments.dirs[0], "diagnose", arguments.out.as_deref())?;
     let out = &results.folder;

@@ -130,6 +130,7 @@ const HELD_OUT_ALONE: &str = "the open runs are explained down to their noise: w
 fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outcome, DiagnoseError> {
     let Explained { found, confirmed, proof, noise, after, excess, mut warnings, of_found } = explained;
     warnings.extend(of_found);
+    warnings.extend(case.effort.note());
     let whole = Problem { case: &case, runs: case.subset(RunSet::All), noise: &noise };
     let (complete, of_scene) = complete_fits(&case, &found, &noise);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;

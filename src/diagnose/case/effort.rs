@@ -1,32 +1,92 @@
-//! What a diagnosis has cost so far, counted so that it is the same on every machine and any number of threads.
+//! What a diagnosis has cost so far, counted so that it is the same on every machine and any number of threads; and what it
+//! does not begin any more once it has cost enough.
 
-use std::sync::Arc;
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// Samples that the reduced-order model has simulated.
+/// Samples simulated after which no optional step begins: about a minute on two cores for a pulley or a catheter, a third of
+/// that for a bench (docs/performance.md). What has begun goes on to its end, and what checks an answer is never optional.
+const ENOUGH: u64 = 60_000_000;
+
+/// A step that a search can do without, at the risk of another answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::diagnose) enum Optional {
+    WiderLaws,
+    SecondLaw,
+    SeveralAtOnce,
+    OtherBeginnings,
+    LawsBeside,
+}
+
+impl Optional {
+    fn words(self) -> &'static str {
+        match self {
+            Self::WiderLaws => "laws with memory or of two variables",
+            Self::SecondLaw => "a second law beside the first",
+            Self::SeveralAtOnce => "effects that explain something only together",
+            Self::OtherBeginnings => "effects in another order",
+            Self::LawsBeside => "laws beside the effects that were found",
+        }
+    }
+}
+
+/// Samples that the reduced-order model has simulated, and optional steps that were not begun.
 #[derive(Debug, Default)]
-pub struct Effort(Arc<AtomicU64>);
+pub struct Effort {
+    samples: Arc<AtomicU64>,
+    not_begun: Arc<Mutex<BTreeSet<Optional>>>,
+    is_thorough: bool,
+}
 
 impl Effort {
     pub(in crate::diagnose) fn add(&self, samples: usize) {
-        self.0.fetch_add(samples as u64, Ordering::Relaxed);
+        self.samples.fetch_add(samples as u64, Ordering::Relaxed);
     }
 
     /// The same wherever no simulation is under way.
     pub fn samples(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
+        self.samples.load(Ordering::Relaxed)
     }
 
     /// The same count, to look at from elsewhere.
     pub fn watched(&self) -> Self {
-        Self(Arc::clone(&self.0))
+        let (samples, not_begun) = (Arc::clone(&self.samples), Arc::clone(&self.not_begun));
+        Self { samples, not_begun, is_thorough: self.is_thorough }
+    }
+
+    /// Every step is worth its cost.
+    pub(in crate::diagnose) fn be_thorough(&mut self) {
+        self.is_thorough = true;
+    }
+
+    /// Whether an optional step may begin; if not, it is noted. Asked only where no simulation is under way.
+    pub(in crate::diagnose) fn allows(&self, step: Optional) -> bool {
+        let is_allowed = self.is_thorough || self.samples() < ENOUGH;
+        if !is_allowed {
+            self.not_begun.lock().unwrap_or_else(PoisonError::into_inner).insert(step);
+        }
+        is_allowed
+    }
+
+    /// What was not begun, for the reader of the answer; `None` if nothing.
+    pub(in crate::diagnose) fn note(&self) -> Option<String> {
+        let steps = self.not_begun.lock().unwrap_or_else(PoisonError::into_inner);
+        let words: Vec<&str> = steps.iter().map(|step| step.words()).collect();
+        (!words.is_empty()).then(|| {
+            format!(
+                "the search ended after {} million simulated samples without {}: --thorough goes on to the end",
+                ENOUGH / 1_000_000,
+                words.join(", ")
+            )
+        })
     }
 }
 
 /// A copy of a case is diagnosed by itself: its count begins at zero.
 impl Clone for Effort {
     fn clone(&self) -> Self {
-        Self::default()
+        Self { is_thorough: self.is_thorough, ..Self::default() }
     }
 }
 
@@ -40,5 +100,21 @@ mod tests {
         let (copy, watched) = (effort.clone(), effort.watched());
         effort.add(11);
         assert_eq!([effort.samples(), watched.samples(), copy.samples()], [11, 11, 0]);
+    }
+
+    #[test]
+    fn what_is_not_begun_is_said_unless_all_is_wanted() {
+        let mut effort = Effort::default();
+        assert!(effort.allows(Optional::SecondLaw) && effort.note().is_none());
+        effort.add(usize::try_from(ENOUGH).expect("a few millions"));
+        assert!(!effort.allows(Optional::SecondLaw) && !effort.allows(Optional::WiderLaws));
+        let note = effort.note().expect("something was left out");
+        assert!(
+            note.contains("laws with memory or of two variables, a second law") && note.contains("--thorough"),
+            "{note}"
+        );
+        effort.be_thorough();
+        let copy = effort.clone();
+        assert!(effort.allows(Optional::SeveralAtOnce) && copy.is_thorough && copy.note().is_none());
     }
 }

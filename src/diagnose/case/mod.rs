@@ -25,6 +25,7 @@ use crate::system::{Rom, RomParameter, RomRun, RomSetting};
 
 pub use ablation::Step;
 pub use effort::Effort;
+pub(in crate::diagnose) use effort::Optional;
 pub use noise::Noise;
 
 /// An output that was recorded.
@@ -173,6 +174,12 @@ impl Case {
     /// Whether joints were slack somewhere.
     pub(crate) fn goes_slack(&self) -> bool {
         self.runs.iter().any(|r| r.slack.iter().any(|samples| !samples.is_empty()))
+    }
+
+    /// Lets the search begin every step, whatever that costs. Otherwise those that it can do without do not begin any more once it has cost
+    /// about a minute, which the answer's warnings then say.
+    pub fn search_thoroughly(&mut self) {
+        self.effort.be_thorough();
     }
 
     /// How the recordings were treated, for the reader of the answer.

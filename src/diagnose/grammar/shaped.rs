@@ -7,7 +7,7 @@ use super::shapes::{P, P_RANGE, Shape};
 use super::slots::Slot;
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::Variant;
-use crate::effects::{Fitted, Range};
+use crate::effects::{Entry, Fitted, Range};
 use crate::laws::{LawTable, ParameterTable, Port, QUANTITIES};
 use crate::scene::Candidate;
 
@@ -58,6 +58,52 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     let placed = written(case, &table, &law, &parameters, size);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
+}
+
+/// A shape in a sum: at which scale of the variable, and how much of it there is to start with.
+#[derive(Clone, Copy, Debug)]
+pub struct Term<'a> {
+    pub shape: &'a Shape,
+    pub scale: f64,
+    pub size: f64,
+}
+
+/// Name of the size of a sum's second shape.
+pub const SECOND_SIZE: &str = "b";
+
+/// The law of a slot as a sum of two shapes that have no exponent, each with a size and a scale of its own.
+pub fn sum(case: &Case, slot: &Slot, terms: &[Term; 2]) -> Option<Variant> {
+    let Action { acts, unit, typical, around: known } = &slot.action;
+    let scale = slot.scale_name();
+    let names = [("a", scale.clone()), (SECOND_SIZE, format!("second_{scale}"))];
+    let text = |(term, (size, scale)): (&Term, &(&str, String))| {
+        format!("{size} * {}", spelled(term.shape.text, &slot.reading.text(&slot.variable, scale)))
+    };
+    let texts: Vec<String> = terms.iter().zip(&names).map(text).collect();
+    let of_size = Range { min: -1e3 * typical, max: 1e3 * typical };
+    let of_scale = Range { min: 0.02 * slot.scale, max: 50.0 * slot.scale };
+    let (mut parameter, mut fitted, mut begun) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+    for (term, (size, scale)) in terms.iter().zip(names) {
+        parameter.insert(size.to_owned(), number(*typical, Some(unit)));
+        parameter.insert(scale.clone(), number(term.scale, unit_of_scale(slot)));
+        begun.insert(size, term.size.clamp(of_size.min, of_size.max));
+        fitted.insert(size.to_owned(), Fitted { typical: *typical, range: of_size, is_fitted: true });
+        fitted.insert(scale, Fitted { typical: term.scale, range: of_scale, is_fitted: term.shape.has_scale });
+    }
+    let (adds, scales) = does(*acts, texts.join(" + "));
+    let (name, port) = (slot.name(), slot.address.clone());
+    let table = LawTable { name, port, adds, scales, parameter, ..LawTable::default() };
+    let law = table.law(known).ok()?;
+    let parameters: Vec<Fitted> = law.parameters.iter().map(|p| fitted.get(&p.name).copied()).collect::<Option<_>>()?;
+    let placed = written(case, &table, &law, &parameters, law.parameter("a")?);
+    let start = placed.spec().parameters.iter().map(|p| begun.get(p.key.as_str()).copied().unwrap_or(p.typical));
+    let values = start.collect();
+    Some(Variant { placed, values })
+}
+
+/// Whether the law of an effect is such a sum.
+pub fn is_sum(own: &Entry) -> bool {
+    own.unlisted().is_some() && own.parameters.iter().any(|p| p.key == SECOND_SIZE)
 }
 
 /// A slot's law as a curve: the sum of its basis shapes, each with its own size, at the slot's scale.

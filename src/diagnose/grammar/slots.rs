@@ -103,6 +103,11 @@ impl Slot {
         signal
     }
 
+    /// The same in all open runs, one after another.
+    pub fn signal_of_all(&self, shape: &Shape, scale: f64) -> Vec<f64> {
+        (0..self.series.len()).flat_map(|run| self.signal(run, shape, scale)).collect()
+    }
+
     fn more_shapes(&self) -> &'static [Shape] {
         let is_time = self.variable == Quantity::Time.spec().name();
         if is_time { &MORE_SHAPES_OF_TIME } else { &MORE_SHAPES }

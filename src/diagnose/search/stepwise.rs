@@ -4,6 +4,7 @@ use super::discrepancy::Described;
 use super::exchange::Exchange;
 use super::screening::{Screened, least_gain, screen};
 use super::way::{Bound, MOST_EFFECTS, Seen, Up, Way, climb, leaves_much, several_to_begin};
+use crate::diagnose::case::Optional;
 use crate::diagnose::fit::{Fit, Placed, Problem, Variant};
 
 /// A model with the alternatives refitted beside it.
@@ -132,7 +133,9 @@ impl Begun {
             return self.found();
         }
         for other in other_beginnings(&baseline, &self.way.first, &self.seen) {
-            if !leaves_much(problem, &baseline, &self.way.best) {
+            if !leaves_much(problem, &baseline, &self.way.best)
+                || !problem.case.effort.allows(Optional::OtherBeginnings)
+            {
                 break;
             }
             if !self.seen.is_new(&other) {
@@ -141,7 +144,9 @@ impl Begun {
             say(format!("once more, beginning with {}", other.model.title()));
             let mut way = Way::at(other, Vec::new());
             for most in 2..=MOST_EFFECTS {
-                way = climb(&mut exchange, &baseline, way, &mut self.seen, (Up::to(most), law), say);
+                // Several at once cost more than all else, and were tried on the first way.
+                let singly = Up { most, is_singly: true };
+                way = climb(&mut exchange, &baseline, way, &mut self.seen, (singly, law), say);
                 if self.seen.is_behind(&way.best) {
                     break;
                 }

@@ -5,6 +5,7 @@ use super::refits::{
     Absorbed, adds_branch, afresh, candidates, cross_validates, first_that_cross_validates, pick, refit,
 };
 use super::screening::{Screening, least_gain, screen};
+use crate::diagnose::case::Optional;
 use crate::diagnose::fit::{Fit, Problem};
 
 /// Maximum number of effects in one answer.
@@ -221,6 +222,9 @@ fn several_at_once(exchange: &mut Exchange, before: &Fit, refits: &[Fit], least:
         return None;
     }
     let mut best = refits.first().filter(|f| before.cost - f.cost > least)?.clone();
+    if !problem.case.effort.allows(Optional::SeveralAtOnce) {
+        return None;
+    }
     loop {
         let converged = exchange.converge(best, least, None, &|_| {});
         if before.cost - converged.best.cost > TOGETHER * left {

@@ -5,9 +5,9 @@ use super::listed::does_as_well;
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
 use super::unlisted::{Proposals, propose, propose_against};
-use crate::diagnose::case::{Case, Noise, RunSet, Step};
+use crate::diagnose::case::{Case, Noise, Optional, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
-use crate::diagnose::grammar::Reach;
+use crate::diagnose::grammar::{Reach, is_sum};
 use crate::diagnose::search::{Found, MOST_EFFECTS, least_gain, leaves_much, reweight};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 use crate::parallel;
@@ -86,7 +86,7 @@ pub(in crate::diagnose) fn one_law_from_effect(
 ) -> OneLaw {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let is_listed = two.best.model.effects.len() > 1 && !leaves_something(&open, &two.best);
-    if !tried.is_open || is_listed {
+    if !tried.is_open || is_listed || tried.is_enough(&open, &one.baseline) {
         return OneLaw::Part(Box::new(tried));
     }
     tried.instead = instead(&open, one, say);
@@ -175,11 +175,13 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
     let search = Search { open: &open, found, is_open, say };
     let instead = tried.instead.filter(is_simpler).and_then(|l| search.go_on(l));
-    let is_enough = instead
-        .as_ref()
-        .is_some_and(|l| is_explained(&open, &found.baseline, &l.best) && is_clearly_better(&open, found, &l.best));
-    let alone = if is_enough { None } else { search.from(&found.baseline, tried.known) };
-    let is_beside = is_open && !is_null && !is_enough && !is_all(&alone);
+    let is_enough = |lawful: &Option<Lawful>| {
+        let is_explained = |l: &&Lawful| is_explained(&open, &found.baseline, &l.best);
+        lawful.as_ref().filter(is_explained).is_some_and(|l| is_clearly_better(&open, found, &l.best))
+    };
+    let alone = if is_enough(&instead) { None } else { search.from(&found.baseline, tried.known) };
+    let is_beside = is_open && !is_null && !is_all(&alone) && !is_enough(&instead) && !is_enough(&alone);
+    let is_beside = is_beside && case.effort.allows(Optional::LawsBeside);
     let beside = if is_beside { search.from(&found.best, Known::default()) } else { None };
     let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
     let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
@@ -261,11 +263,14 @@ impl Search<'_> {
             if is_explained(open, &self.found.baseline, &here) || is_all || here.model.effects.len() >= MOST_EFFECTS {
                 break;
             }
+            if lawful.is_some() && !open.case.effort.allows(Optional::SecondLaw) {
+                break;
+            }
             let begun = if lawful.is_none() { known.plain.take() } else { known.beside(&here) };
             let begun = begun.map(|begun| begun.again(open));
             let Some(mut proposals) = begun.or_else(|| self.propose(&here, Reach::Plain)) else { break };
             let Some(first) = proposals.fits.first() else { break };
-            if lawful.is_none() && leaves_something(open, first) && self.may_be_wider(first) {
+            if lawful.is_none() && leaves_something(open, first) && !self.is_wide(first) && self.may_be_wider(first) {
                 proposals.fits = self.wider(&here, proposals.fits, known.wide.take());
             }
             let Some(first) = proposals.fits.first() else { break };
@@ -288,11 +293,19 @@ impl Search<'_> {
 
     /// Replaces plain laws by ones with memory, products or wider shapes where these are clearly better. Cheapest first.
     fn wider(&self, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>) -> Vec<Fit> {
-        let wide = known.map(|wide| wide.again(self.open)).or_else(|| self.propose(from, Reach::Wide));
+        let anew =
+            || if self.open.case.effort.allows(Optional::WiderLaws) { self.propose(from, Reach::Wide) } else { None };
+        let wide = known.map(|wide| wide.again(self.open)).or_else(anew);
         let Some(wide) = wide else { return plain };
         let criterion = Criterion::of(self.open, plain.first().into_iter().chain(wide.fits.first()));
         let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
         if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
+    }
+
+    /// Whether a fit has a law of two shapes that leaves next to nothing: none needs to be wider.
+    fn is_wide(&self, fit: &Fit) -> bool {
+        let is_sum = fit.model.effects.last().is_some_and(|law| is_sum(law.spec()));
+        is_sum && is_explained(self.open, &self.found.baseline, fit)
     }
 
     /// Maximum number of laws: fewer than the effects they replace, if those leave nothing.

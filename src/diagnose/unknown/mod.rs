@@ -14,6 +14,7 @@ mod shape_refits;
 mod shown;
 mod span;
 pub(super) mod stand_ins;
+mod sums;
 pub(super) mod tried;
 mod unlisted;
 

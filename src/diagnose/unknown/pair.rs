@@ -5,7 +5,7 @@ use super::hypothesis::{is_explained, renewed, without_idle};
 use super::listed::in_place_of;
 use super::tried::{Lawful, Tried};
 use super::unlisted::{Proposals, propose};
-use crate::diagnose::case::{Case, Noise, RunSet, Step};
+use crate::diagnose::case::{Case, Noise, Optional, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::{Found, beside, leaves_much};
@@ -37,9 +37,13 @@ pub(in crate::diagnose) fn pair(
     let first = tried.known.plain.as_ref().and_then(|p| p.fits.first()).cloned();
     // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
+    let is_asked = is_asked && !tried.is_enough(&open, &found.baseline);
     let Some(law) = first.filter(|_| is_asked && leaves_something(&open, &found.best)) else {
         return Pair::Part(Box::new(tried));
     };
+    if !case.effort.allows(Optional::WiderLaws) {
+        return Pair::Part(Box::new(tried));
+    }
     // One law that remembers or depends on two variables is simpler than two things.
     tried.known.wide = propose(&open, &found.baseline, Reach::Wide, say);
     // A bend of what a channel shows imitates anything that is still: a law in the rig comes before it.
@@ -59,6 +63,9 @@ pub(in crate::diagnose) fn pair(
         if is_enough {
             return Pair::Part(Box::new(tried));
         }
+    }
+    if !case.effort.allows(Optional::SecondLaw) {
+        return Pair::Part(Box::new(tried));
     }
     let second = propose(&open, &law, Reach::Plain, say);
     let lawful = with_partner(&open, (&found.baseline, &law), (second.as_ref(), variants), say);

@@ -7,7 +7,7 @@ use super::linear_range::{basis, linear_rows, where_linear};
 use super::span::explained;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, FitParameter, Problem, Rows, orthogonal};
-use crate::diagnose::grammar::{Shape, Slot};
+use crate::diagnose::grammar::{SECOND_SIZE, Shape, Slot};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
 use crate::parallel;
@@ -48,6 +48,14 @@ impl PartialEq for Wanted<'_> {
 /// An additional shape with its scale, beside those of a slot's basis.
 pub(super) type More = Option<(&'static Shape, f64)>;
 
+/// Numbers, among the fitted ones, of the sizes of an effect; a sum of shapes has one for each.
+fn sizes_of(fit: &Fit, effect: usize, calibration: usize) -> Vec<usize> {
+    let spec = fit.model.effects[effect].spec();
+    let is_size = |i: usize| i == 0 || spec.unlisted().is_some() && spec.parameters[i].key == SECOND_SIZE;
+    let places = fit.model.places().into_iter().enumerate();
+    places.filter(|(_, (own, i))| *own == effect && is_size(*i)).map(|(k, _)| calibration + k).collect()
+}
+
 /// Signatures that make up the curve of a slot.
 pub(super) fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
@@ -85,10 +93,11 @@ impl<'a> Shown<'a> {
         let (model, x) = (fit.model.without(last), problem.start_without(fit, last));
         let cost = problem.cost_at(&model, &x).unwrap_or(f64::INFINITY);
         let without = Fit { model, x, cost, ..fit.clone() };
-        let size = problem.case.parameters.len() + fit.model.places().iter().position(|p| *p == (last, 0))?;
+        let sizes = sizes_of(fit, last, problem.case.parameters.len());
         let known = problem.rows_of(fit)?;
-        let scale = problem.parameters(&fit.model)[size].scale;
-        let does = known.jacobian.column(size) * (fit.x[size] / scale);
+        let parameters = problem.parameters(&fit.model);
+        let response = |&size: &usize| known.jacobian.column(size) * (fit.x[size] / parameters[size].scale);
+        let does = sizes.iter().map(response).reduce(|sum, own| sum + own)?;
         let own = fit.x.len() - without.x.len();
         let jacobian = known.jacobian.remove_columns(fit.x.len() - own, own);
         Some(Self::along(problem, fit, without, jacobian, does))

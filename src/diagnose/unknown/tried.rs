@@ -1,7 +1,8 @@
 //! Laws found so far, kept for the stages that follow.
 
+use super::hypothesis::is_explained;
 use super::unlisted::Proposals;
-use crate::diagnose::fit::{Fit, Placed};
+use crate::diagnose::fit::{Fit, Placed, Problem};
 
 /// A model with a law, and the equally good alternatives.
 #[derive(Clone)]
@@ -33,6 +34,11 @@ pub(in crate::diagnose) struct Tried {
 }
 
 impl Tried {
+    /// Whether one law leaves too little to look for another.
+    pub(super) fn is_enough(&self, open: &Problem, baseline: &Fit) -> bool {
+        self.law.as_ref().is_some_and(|law| is_explained(open, baseline, law))
+    }
+
     /// Keeps laws that leave less than those known before; the search for several effects is bounded by them if they are clearly better than
     /// the best effects.
     pub(super) fn takes(&mut self, lawful: Lawful, is_better: bool) {

@@ -107,12 +107,34 @@ pub(super) fn propose_against(
     let more: Vec<&Slot> = wide.iter().copied().chain(parameters).collect();
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    if let Some(simple) = fits.first().filter(|fit| reach == Reach::Plain && leaves_something(problem, fit)) {
+        let other = wider_shapes(&shown, &all, &best, (&curves, simple), say);
+        fits.extend(other);
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
     if reach == Reach::Wide {
         fits.extend(bent(&shown, &all, &wide, &fits));
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
     Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
+}
+
+/// Refits with sums of two shapes, and with further shapes, at the slot whose curve explains what no simple shape does.
+fn wider_shapes(
+    shown: &Shown,
+    all: &[Slot],
+    best: &[&Slot],
+    (curves, simple): (&[Fit], &Fit),
+    say: &dyn Fn(String),
+) -> Vec<Fit> {
+    let mut fits = shown.sums(best, curves, simple);
+    let Some(first) = fits.first() else { return fits };
+    say(format!("{} as a sum of two shapes: chi2 {:.0} -> {:.0}", first.model.title(), simple.cost, first.cost));
+    if let Some(own) = best.iter().find(|slot| is_law_of(first, slot)) {
+        fits.extend(shown.refits(all, &[&own.bent()], SHAPES_OF_SLOT));
+    }
+    fits
 }
 
 /// Refits with further shapes at the slot of the best law, if that leaves something and the slot has had the simple ones alone.

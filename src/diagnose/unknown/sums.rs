@@ -1,0 +1,166 @@
+//! Laws of two shapes: tried where a curve over one slot's variable explains nearly everything, and no single shape does.
+
+use super::forms::{CLEARLY, Criterion};
+use super::shown::Shown;
+use super::unlisted::is_law_of;
+use crate::diagnose::fit::Fit;
+use crate::diagnose::grammar::{SHAPES, Shape, Slot, Term, sum};
+use crate::diagnose::search::leaves_much;
+use crate::parallel;
+
+/// Curves that are fitted to the end.
+const CURVES: usize = 2;
+/// Sums that are refitted, and scales tried for each of their shapes, relative to the slot's.
+const SUMS: usize = 6;
+const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+/// Values of a curve that sums are held against.
+const POINTS: usize = 400;
+
+impl Shown<'_> {
+    /// Rough fits with sums of two shapes at the slot whose curve explains nearly everything, if there is one. `curves`: rough
+    /// fits with a curve at each slot, cheapest first; `simple`: the best law of one shape.
+    pub(super) fn sums(&self, slots: &[&Slot], curves: &[Fit], simple: &Fit) -> Vec<Fit> {
+        let promising = curves.iter().filter(|curve| curve.cost < simple.cost).take(CURVES);
+        let explains = |rough: &Fit| {
+            let curve = self.problem.fit(&rough.model, &rough.x)?;
+            let slot = slots.iter().copied().find(|slot| is_law_of(&curve, slot))?;
+            let criterion = Criterion::of(self.problem, [simple, &curve]);
+            let is_better = criterion.at(&curve) < criterion.at(simple) - CLEARLY;
+            (is_better && !leaves_much(self.problem, &self.from, &curve)).then_some((slot, curve))
+        };
+        let Some((slot, curve)) = promising.into_iter().find_map(explains) else { return Vec::new() };
+        let known = self.from.x.len();
+        let terms = alike(slot, &curve.x[known..]);
+        let refit = |terms: &[Term; 2]| {
+            let own = sum(self.problem.case, slot, terms)?;
+            let model = self.from.model.plus(&own.placed, &own.values);
+            let fitted = model.fitted.last().into_iter().flatten().map(|&i| own.values[i]);
+            let x: Vec<f64> = curve.x[..known].iter().copied().chain(fitted).collect();
+            self.coarse.fit(&model, &x)
+        };
+        let mut fits: Vec<Fit> = parallel::map(&terms, refit).into_iter().flatten().collect();
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        fits
+    }
+}
+
+/// The sums of two shapes that come nearest to a curve where the slot's variable has been; each pair of shapes once.
+/// `sizes` are those of the slot's basis shapes.
+fn alike<'a>(slot: &Slot, sizes: &[f64]) -> Vec<[Term<'a>; 2]> {
+    let over = |shape: &Shape, scale: f64| -> Vec<f64> { visited(slot, shape, scale) };
+    let mut curve = vec![0.0; over(&SHAPES[0], slot.scale).len()];
+    for (shape, size) in slot.basis().zip(sizes) {
+        curve.iter_mut().zip(over(shape, slot.scale)).for_each(|(sum, y)| *sum += size * y);
+    }
+    let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
+    let each = SHAPES.iter().flat_map(|shape| scales(shape).iter().map(move |s| (shape, s * slot.scale)));
+    let all: Vec<(&Shape, f64, Vec<f64>)> = each.map(|(shape, scale)| (shape, scale, over(shape, scale))).collect();
+    let mut found: Vec<(f64, [Term; 2])> = Vec::new();
+    for (i, (first, first_scale, a)) in all.iter().enumerate() {
+        for (second, second_scale, b) in &all[i + 1..] {
+            if let Some((left, [own, other])) = nearest(&curve, a, b) {
+                let terms = [(*first, *first_scale, own), (*second, *second_scale, other)];
+                found.push((left, terms.map(|(shape, scale, size)| Term { shape, scale, size })));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best: Vec<[Term; 2]> = Vec::new();
+    for (_, terms) in found {
+        let texts = |terms: &[Term; 2]| terms.map(|term| term.shape.text);
+        if best.len() < SUMS && best.iter().all(|own| texts(own) != texts(&terms)) {
+            best.push(terms);
+        }
+    }
+    best
+}
+
+/// Values of a shape along the open runs, evenly thinned.
+fn visited(slot: &Slot, shape: &Shape, scale: f64) -> Vec<f64> {
+    let all = slot.signal_of_all(shape, scale);
+    let stride = all.len().div_ceil(POINTS).max(1);
+    all.into_iter().step_by(stride).collect()
+}
+
+/// What is left of a curve by the nearest combination of two others, and their sizes there; `None` if one is zero, or both are the same.
+fn nearest(curve: &[f64], a: &[f64], b: &[f64]) -> Option<(f64, [f64; 2])> {
+    let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
+    let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
+    let determinant = aa * bb - ab * ab;
+    if determinant <= SAME * aa * bb {
+        return None;
+    }
+    let (ca, cb) = (dot(curve, a), dot(curve, b));
+    let sizes = [(ca * bb - cb * ab) / determinant, (cb * aa - ca * ab) / determinant];
+    let left = curve.iter().zip(a.iter().zip(b)).map(|(y, (a, b))| (y - sizes[0] * a - sizes[1] * b).powi(2)).sum();
+    Some((left, sizes))
+}
+
+/// Two shapes are the same where the sine of the angle between them, squared, is smaller.
+const SAME: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::{Model, Problem};
+    use crate::diagnose::grammar::{Reach, slots};
+    use crate::diagnose::unknown::propose;
+    use crate::scene::Override;
+
+    const CHANNELS: [&str; 2] = ["elongation_mm", "pressure_kpa"];
+    const NOISE: [f64; 2] = [0.01, 1.0];
+
+    /// A pull that comes and goes once in the recording is no shape of the grammar, but nearly a sum of two.
+    #[test]
+    fn what_no_shape_follows_two_do() {
+        let wave = Override::law("muscle.pull adds 0.1 * sin(time_s/5.0)", "wave").expect("a law");
+        let mut case = made::recorded("muscle_bench", &[wave], &["plunger_mm"], &CHANNELS);
+        case.parameters.clear();
+        let noise = NOISE.map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let model = Model::baseline();
+        let baseline = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+        let said = std::cell::RefCell::new(Vec::new());
+        let proposals = propose(&problem, &baseline, Reach::Plain, &|line| said.borrow_mut().push(line));
+        let fits = proposals.expect("laws").fits;
+        let equations: Vec<&str> = fits[0].model.effects.iter().map(|e| e.spec().equation.as_str()).collect();
+        assert!(
+            matches!(equations[..], [own] if own.starts_with("muscle.pull adds a * ") && own.contains(" + b * ")),
+            "{equations:?} {said:?}"
+        );
+        let simple = fits.iter().filter(|f| !f.model.effects[0].spec().equation.contains(" + b * ")).map(|f| f.cost);
+        let simple = simple.fold(f64::INFINITY, f64::min);
+        assert!(fits[0].cost < 0.1 * simple, "{} {simple}", fits[0].cost);
+    }
+
+    /// A curve that is a sum is found, with its sizes.
+    #[test]
+    fn a_curve_that_is_a_sum_is_recognised() {
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &CHANNELS);
+        let noise = NOISE.map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let model = Model::baseline();
+        let baseline = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+        let all = slots(&case, &baseline, Reach::Plain);
+        let slot =
+            all.iter().find(|slot| slot.address == "muscle.pull" && slot.variable == "elongation_m").expect("a slot");
+        let shapes: Vec<&str> = slot.basis().map(|shape| shape.text).collect();
+        let sizes: Vec<f64> = shapes
+            .iter()
+            .map(|s| match *s {
+                "x^2" => 2.0,
+                "tanh(x)" => -0.5,
+                _ => 0.0,
+            })
+            .collect();
+        let best = alike(slot, &sizes);
+        let own: Vec<(&str, f64)> = best[0].iter().map(|term| (term.shape.text, term.size)).collect();
+        assert!(
+            matches!(own[..], [("x^2", a), ("tanh(x)", b)] if (a - 2.0).abs() < 1e-6 && (b + 0.5).abs() < 1e-6),
+            "{own:?}"
+        );
+        assert!(best.iter().all(|terms| sum(&case, slot, terms).is_some()));
+        assert!(nearest(&[1.0, 2.0], &[1.0, 1.0], &[2.0, 2.0]).is_none());
+    }
+}
