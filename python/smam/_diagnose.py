@@ -125,6 +125,7 @@ def diagnose(
     threads: int | None = None,
     rrd: bool = False,
     transfer: str | None = None,
+    thorough: bool = False,
 ) -> Diagnosis:
     """Finds what physics the scene of some recordings lacks.
 
@@ -138,6 +139,8 @@ def diagnose(
     ``out``: where to write. Left out, ``out/diagnose_NAME`` for a folder; what arrays come to is kept as long as the answer.
     ``rrd``: also a stream for the Rerun viewer.
     ``transfer``: a specimen that is predicted from the others with its stated conditions alone.
+    ``thorough``: begin every step of the search; otherwise those that it can do without do not begin after about a minute, and
+    ``warnings`` names them.
     Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
     """
     given = recorded(recordings, scene, Told(noise, inputs, holdout, conditions), "diagnose", out)
@@ -151,6 +154,8 @@ def diagnose(
         words.append("--rrd")
     if transfer is not None:
         words += ["--transfer", transfer]
+    if thorough:
+        words.append("--thorough")
     with given:
         call(words, also_fine=[1], private=given.private)
         return given.goes_with(_read(given.answer, given.runs, conditions))

@@ -265,7 +265,13 @@ fn judged(
 fn add_curves(whole: &Problem, complete: &Fit, effects: &mut [NamedEffect]) {
     for (at, placed) in complete.model.effects.iter().enumerate() {
         if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
-            own.curve = verdict::curve(whole.case, complete, at);
+            let curve = verdict::curve(whole.case, complete, at);
+            if complete.model.effects[..at].iter().any(|before| verdict::is_said(own, before)) {
+                let first = own.curve.take().zip(curve);
+                own.curve = first.and_then(|(first, curve)| verdict::together(&first, &curve, &own.acts));
+                continue;
+            }
+            own.curve = curve;
             if let Some(curve) = &mut own.curve {
                 curve.freehand = freehand::freehand(whole, complete, at, curve);
             }

@@ -90,6 +90,7 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
             if let Some(known) = effects.iter_mut().find(|e: &&mut NamedEffect| is_said(e, rival)) {
                 if is_best {
                     add_branch(known, parameters(source, at));
+                    written::add_law(known, placed, source, at);
                 }
                 continue;
             }

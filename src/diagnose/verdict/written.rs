@@ -1,7 +1,7 @@
 //! Describes the laws of an answer: port, variables, alternatives, curve.
 
 use crate::effects::WrittenLaw;
-use crate::laws::{Law, Symbol};
+use crate::laws::{Acts, Law, Symbol};
 
 use super::known_as;
 use crate::diagnose::case::Case;
@@ -29,6 +29,45 @@ pub fn describe(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize)
     }
     effect.acts = placed.spec().acts.word().to_owned();
     effect.variables.clone_from(&placed.spec().variables);
+}
+
+/// Adds a further law at the same port to an effect already named: what both do together.
+pub fn add_law(effect: &mut NamedEffect, placed: &Placed, fit: &Fit, at: usize) {
+    let Some(own) = written(placed).filter(|own| own.law.acts.word() == effect.acts) else { return };
+    let more = text(own, &values(fit, at));
+    let is_plain = ![&effect.law, &more].iter().any(|law| law.contains(';'));
+    effect.law = match own.law.acts {
+        Acts::Adds if is_plain => match more.strip_prefix('-') {
+            Some(less) => format!("{} - {less}", effect.law),
+            None => format!("{} + {more}", effect.law),
+        },
+        Acts::Scales if is_plain => format!("({}) * ({more})", effect.law),
+        _ => format!("{}; and {more}", effect.law),
+    };
+    for variable in own.law.variables().iter().map(|v| v.name()) {
+        if !effect.variables.contains(&variable) {
+            effect.variables.push(variable);
+        }
+    }
+    effect.known_as = None;
+}
+
+/// The curve of what two laws at one port do together; `None` if they are over different variables.
+pub fn together(one: &Curve, other: &Curve, acts: &str) -> Option<Curve> {
+    if one.variable != other.variable || one.x != other.x {
+        return None;
+    }
+    let is_sum = acts == Acts::Adds.word();
+    let half = |curve: &Curve, i: usize| 0.5 * (curve.high[i] - curve.low[i]);
+    let (mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, (a, b)) in one.y.iter().zip(&other.y).enumerate() {
+        let (value, slopes) = if is_sum { (a + b, [1.0, 1.0]) } else { (a * b, [*b, *a]) };
+        let width = (half(one, i) * slopes[0]).hypot(half(other, i) * slopes[1]);
+        y.push(value);
+        low.push(value - width);
+        high.push(value + width);
+    }
+    Some(Curve { variable: one.variable.clone(), x: one.x.clone(), y, low, high, freehand: None })
 }
 
 /// The port of an effect, as answers write it.
@@ -215,6 +254,25 @@ mod tests {
              parameter.a = { value = 1.0 }\nparameter.scale_s = { value = 1.0 }";
         assert_eq!(written(table, &[0.5, 20.0]), "1 + 0.5 * exp(-abs(time_s/20))");
         assert_eq!(written(table, &[-1.0 / 3.0, 2e-7]), "1 - 0.333333 * exp(-abs(time_s/2e-7))");
+    }
+
+    /// Two laws that scale multiply, two that add are a sum; the band is that of two independent ones.
+    #[test]
+    fn two_laws_at_one_port_have_one_curve() {
+        let curve = |y: [f64; 2], half: f64| Curve {
+            variable: "time_s".to_owned(),
+            x: vec![0.0, 1.0],
+            y: y.to_vec(),
+            low: y.map(|y| y - half).to_vec(),
+            high: y.map(|y| y + half).to_vec(),
+            freehand: None,
+        };
+        let (one, other) = (curve([1.0, 2.0], 0.3), curve([3.0, 4.0], 0.4));
+        let both = |acts: Acts| together(&one, &other, acts.word()).expect("over the same variable");
+        assert_eq!((both(Acts::Adds).y, both(Acts::Scales).y), (vec![4.0, 6.0], vec![3.0, 8.0]));
+        assert!((both(Acts::Adds).high[0] - 4.5).abs() < 1e-12);
+        assert!((both(Acts::Scales).low[1] - (8.0 - f64::hypot(0.3 * 4.0, 0.4 * 2.0))).abs() < 1e-12);
+        assert_eq!(together(&one, &Curve { variable: "speed_m_s".to_owned(), ..other.clone() }, "adds"), None);
     }
 
     /// States follow the expression: without them its variables are unknown.
