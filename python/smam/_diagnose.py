@@ -139,7 +139,7 @@ def diagnose(
     ``out``: where to write. Left out, ``out/diagnose_NAME`` for a folder; what arrays come to is kept as long as the answer.
     ``rrd``: also a stream for the Rerun viewer.
     ``transfer``: a specimen that is predicted from the others with its stated conditions alone.
-    ``thorough``: begin every step of the search; otherwise those that it can do without do not begin after about a minute, and
+    ``thorough``: begin every step of the search; otherwise those that it can do without do not begin after some two minutes, and
     ``warnings`` names them.
     Recordings that cannot be diagnosed give the verdict ``unusable_data``, not an error.
     """

@@ -50,7 +50,7 @@ pub struct DiagnoseArguments {
     /// Leave a step out, to see what it is worth
     #[arg(long, value_enum, value_name = "STEP")]
     without: Option<StepName>,
-    /// Search to the end, whatever it costs: else steps that it can do without do not begin after about a minute, which a warning says
+    /// Search to the end, whatever it costs: else steps that it can do without do not begin after some two minutes, which a warning says
     #[arg(long)]
     thorough: bool,
     /// Of the bootstrap's draws; the same seed gives the same answer

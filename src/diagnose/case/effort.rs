@@ -5,8 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Samples simulated after which no optional step begins: about a minute on two cores for a pulley or a catheter, a third of
-/// that for a bench (docs/performance.md). What has begun goes on to its end, and what checks an answer is never optional.
+/// Samples simulated after which no optional step begins: some two minutes on two cores for a pulley (ADR 0022). What has begun goes on to its end, and what checks an answer is never optional.
 const ENOUGH: u64 = 60_000_000;
 
 /// A step that a search can do without, at the risk of another answer.

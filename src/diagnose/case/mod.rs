@@ -177,7 +177,7 @@ impl Case {
     }
 
     /// Lets the search begin every step, whatever that costs. Otherwise those that it can do without do not begin any more once it has cost
-    /// about a minute, which the answer's warnings then say.
+    /// some two minutes, which the answer's warnings then say.
     pub fn search_thoroughly(&mut self) {
         self.effort.be_thorough();
     }

@@ -68,6 +68,8 @@ pub struct Term<'a> {
     pub size: f64,
 }
 
+/// What the scale of a sum's second shape is called before its name: no law of a user's has it by chance.
+const SECOND: &str = "second_";
 /// Name of the size of a sum's second shape.
 pub const SECOND_SIZE: &str = "b";
 
@@ -75,7 +77,7 @@ pub const SECOND_SIZE: &str = "b";
 pub fn sum(case: &Case, slot: &Slot, terms: &[Term; 2]) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
     let scale = slot.scale_name();
-    let names = [("a", scale.clone()), (SECOND_SIZE, format!("second_{scale}"))];
+    let names = [("a", scale.clone()), (SECOND_SIZE, format!("{SECOND}{scale}"))];
     let text = |(term, (size, scale)): (&Term, &(&str, String))| {
         format!("{size} * {}", spelled(term.shape.text, &slot.reading.text(&slot.variable, scale)))
     };
@@ -103,7 +105,7 @@ pub fn sum(case: &Case, slot: &Slot, terms: &[Term; 2]) -> Option<Variant> {
 
 /// Whether the law of an effect is such a sum.
 pub fn is_sum(own: &Entry) -> bool {
-    own.unlisted().is_some() && own.parameters.iter().any(|p| p.key == SECOND_SIZE)
+    own.unlisted().is_some() && own.parameters.iter().any(|p| p.key.starts_with(SECOND))
 }
 
 /// A slot's law as a curve: the sum of its basis shapes, each with its own size, at the slot's scale.

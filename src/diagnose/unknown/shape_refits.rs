@@ -12,7 +12,7 @@ use crate::diagnose::grammar::{Reading, Shape, Slot, curve, variant};
 use crate::parallel;
 
 /// Scales tried for a shape, relative to the slot's.
-const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
+pub(super) const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
 /// Sizes to start with are made smaller by this share, at most so many times, if they leave so many times what was there without the law.
 const SHORTEN: f64 = 0.25;
 const SHORTER: usize = 4;
@@ -27,9 +27,9 @@ const SIMPLEST: &str = "x";
 const NEARLY: f64 = 0.5;
 
 /// A model with one law more, its start values, and where among them the sizes of its shapes are.
-struct Candidate {
-    model: Model,
-    x: Vec<f64>,
+pub(super) struct Candidate {
+    pub model: Model,
+    pub x: Vec<f64>,
     sizes: Range<usize>,
 }
 
@@ -145,7 +145,7 @@ impl Shown<'_> {
     }
 
     /// A law added to the model; its first fitted parameters are so many sizes.
-    fn with(&self, own: &Variant, sizes: usize) -> Candidate {
+    pub(super) fn with(&self, own: &Variant, sizes: usize) -> Candidate {
         let model = self.from.model.plus(&own.placed, &own.values);
         let mut x = self.from.x.clone();
         x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));

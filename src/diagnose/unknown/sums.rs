@@ -1,6 +1,7 @@
 //! Laws of two shapes: tried where a curve over one slot's variable explains nearly everything, and no single shape does.
 
 use super::forms::{CLEARLY, Criterion};
+use super::shape_refits::{Candidate, SCALES};
 use super::shown::Shown;
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::Fit;
@@ -10,9 +11,8 @@ use crate::parallel;
 
 /// Curves that are fitted to the end.
 const CURVES: usize = 2;
-/// Sums that are refitted, and scales tried for each of their shapes, relative to the slot's.
+/// Sums that are refitted.
 const SUMS: usize = 6;
-const SCALES: [f64; 3] = [1.0, 0.4, 2.0];
 /// Values of a curve that sums are held against.
 const POINTS: usize = 400;
 
@@ -33,9 +33,8 @@ impl Shown<'_> {
         let terms = alike(slot, &curve.x[known..]);
         let refit = |terms: &[Term; 2]| {
             let own = sum(self.problem.case, slot, terms)?;
-            let model = self.from.model.plus(&own.placed, &own.values);
-            let fitted = model.fitted.last().into_iter().flatten().map(|&i| own.values[i]);
-            let x: Vec<f64> = curve.x[..known].iter().copied().chain(fitted).collect();
+            let Candidate { model, mut x, .. } = self.with(&own, terms.len());
+            x[..known].copy_from_slice(&curve.x[..known]);
             self.coarse.fit(&model, &x)
         };
         let mut fits: Vec<Fit> = parallel::map(&terms, refit).into_iter().flatten().collect();
