@@ -16,7 +16,7 @@ use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
 use super::changes::Changes;
-use super::files::{make_folder, write, write_page};
+use super::files::{Together, make_folder};
 use super::import::recordings;
 use super::results::{Results, name_of};
 
@@ -73,10 +73,12 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .collect::<Result<_, _>>()?;
     shown.iter().zip(&simulated).for_each(|(run, is)| warn_of_units(run, is, &set));
     let heading = format!("{}: measured, and simulated by {}", name_of(&arguments.dir), scene.file.name);
-    write_page(out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
+    let mut files = Together::default();
+    files.page(out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
     let pooled = pool(fits.iter());
     let json = to_json(&scene, &shown, &fits, &pooled, &report);
-    write(&out.join("compare.json"), &format!("{json:#}\n"))?;
+    files.text(&out.join("compare.json"), &format!("{json:#}\n"))?;
+    files.place()?;
     print_table(&shown, &fits);
     eprintln!("page: {}    figures: {}", out.join("compare.html").display(), out.join("compare.json").display());
     Ok(ExitCode::SUCCESS)

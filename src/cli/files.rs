@@ -1,8 +1,8 @@
 //! Writing whole files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use smam::files::{Held, hold_folder, write_whole};
+use smam::files::{Held, Staged, hold_folder, place_all, still_there, write_whole};
 use smam::report::HtmlPage;
 
 use super::CliError;
@@ -30,11 +30,36 @@ pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     write_whole(path, text).map_err(|source| CliError::Write { file: path.to_owned(), source })
 }
 
-/// Writes a page, and beside it the files of what it shows in part. Nothing is taken away: a folder that a user names may hold figures of
+/// Files of one result: none appears before all are on the disk. Nothing is taken away: a folder that a user names may hold figures of
 /// their own.
-pub fn write_page(folder: &Path, name: &str, page: &HtmlPage) -> Result<(), CliError> {
-    page.files().iter().try_for_each(|(path, text)| write(&folder.join(path), text))?;
-    write(&folder.join(name), &page.finish())
+#[derive(Default)]
+pub struct Together(Vec<Staged>);
+
+impl Together {
+    /// Adds a text.
+    pub fn text(&mut self, path: &Path, text: &str) -> Result<(), CliError> {
+        let staged = Staged::write(path, text.as_bytes());
+        self.0.push(staged.map_err(|source| CliError::Write { file: path.to_owned(), source })?);
+        Ok(())
+    }
+
+    /// Adds a page, and beside it the files of what it shows in part.
+    pub fn page(&mut self, folder: &Path, name: &str, page: &HtmlPage) -> Result<(), CliError> {
+        page.files().iter().try_for_each(|(path, text)| self.text(&folder.join(path), text))?;
+        self.text(&folder.join(name), &page.finish())
+    }
+
+    /// Gives all their names.
+    pub fn place(self) -> Result<(), CliError> {
+        place_all(self.0).map_err(|(file, source)| CliError::Write { file, source })
+    }
+}
+
+/// That what was written on the way stands there at the end.
+pub fn see_there(paths: &[PathBuf]) -> Result<(), CliError> {
+    paths
+        .iter()
+        .try_for_each(|path| still_there(path).map_err(|source| CliError::Write { file: path.to_owned(), source }))
 }
 
 /// Whether two paths lead to one file that is there.

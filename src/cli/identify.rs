@@ -13,7 +13,7 @@ use smam::identify::loops::{
 use smam::recording::{RecordingSet, Role, RunUse, read_recording};
 
 use super::CliError;
-use super::files::{take_folder, write, write_page};
+use super::files::{Together, take_folder};
 use super::identify_page::page;
 use super::results::Results;
 
@@ -84,13 +84,15 @@ pub fn identify(arguments: &IdentifyArguments) -> Result<ExitCode, CliError> {
         arguments.model.iter().map(|&form| identify_loops(&loops.fit, form, &options)).collect::<Result<_, _>>()?;
     let answers: Vec<Value> = found.iter().map(|f| answer(f, &loops)).collect();
     let whole = json!({ "format": 1, "recordings": loops.name, "seed": arguments.seed, "identified": answers });
-    write(&out.join("identify.json"), &format!("{whole:#}\n"))?;
-    write_page(out, "identify.html", &page(&found, &loops))?;
+    let mut files = Together::default();
     for identification in &found {
-        say(identification, &loops);
         let file = out.join(format!("{}.toml", identification.form.name()));
-        write(&file, &scene_table(identification)?)?;
+        files.text(&file, &scene_table(identification)?)?;
     }
+    files.page(out, "identify.html", &page(&found, &loops))?;
+    files.text(&out.join("identify.json"), &format!("{whole:#}\n"))?;
+    files.place()?;
+    found.iter().for_each(|identification| say(identification, &loops));
     say!("page: {}    figures: {}", out.join("identify.html").display(), out.join("identify.json").display());
     Ok(ExitCode::SUCCESS)
 }

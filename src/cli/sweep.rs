@@ -15,6 +15,7 @@ use smam::system::Concern;
 use super::CliError;
 use super::changes::laws;
 use super::diagnose::{threads, use_threads};
+use super::files::see_there;
 use super::interrupt::stop_flag;
 use super::sweep_page::write_page;
 use super::sweep_trouble::said_of_trouble;
@@ -132,6 +133,7 @@ fn finish(plan: &Plan, table: &Table, out: &Path, shard: Shard) -> Result<ExitCo
         found.write(out)?;
     }
     write_page(plan, table, out)?;
+    see_there(&["table.csv", "table.parquet"].map(|name| out.join(name)))?;
     for (index, error) in table.failed().take(5) {
         eprintln!("point {index} failed: {}", error.lines().next().unwrap_or(""));
     }

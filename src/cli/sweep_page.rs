@@ -6,7 +6,7 @@ use smam::report::{HtmlPage, figure_svg};
 use smam::sweep::{Goal, MeasureSpec, Plan, SamplingSpec, Sensitivity, Table, best, sensitivity};
 
 use super::CliError;
-use super::files::{write, write_page as file_page};
+use super::files::Together;
 use super::sweep_exploration::exploration;
 use super::sweep_panels::{bars, broken, front_panel, panels, scale_of, short};
 use super::sweep_trouble::{is_sound, said_of_trouble};
@@ -39,8 +39,9 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     if !file.objective.is_empty() {
         best_points(&mut page, plan, table, &best);
     }
+    let mut files = Together::default();
     if let Some(panel) = front_panel(plan, table, &best) {
-        write(&folder.join("front.svg"), &figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0))?;
+        files.text(&folder.join("front.svg"), &figure_svg(&[panel], SIZE.0, SIZE.1 + 100.0))?;
     }
     if let Some(found) = sensitivity(plan, table) {
         influences(&mut page, plan, &found);
@@ -58,8 +59,9 @@ pub fn write_page(plan: &Plan, table: &Table, folder: &Path) -> Result<(), CliEr
     page.figure(exploration(plan, table, &best), caption);
     page.heading("Extremes");
     page.table(&["measure", "least", "at", "greatest", "at"], &extremes(plan, table));
-    write(&folder.join("sweep.svg"), &figure_svg(&panels, SIZE.0, SIZE.1))?;
-    file_page(folder, "sweep.html", &page)
+    files.text(&folder.join("sweep.svg"), &figure_svg(&panels, SIZE.0, SIZE.1))?;
+    files.page(folder, "sweep.html", &page)?;
+    files.place()
 }
 
 /// Whether lines over the first key show the whole sweep.

@@ -9,5 +9,5 @@ mod whole;
 
 pub use hold::{Held, hold_folder};
 pub use read::{open, read_text};
-pub use whole::{Staged, Unfinished, part_name, write_whole, write_whole_bytes};
+pub use whole::{Staged, Unfinished, part_name, place_all, still_there, write_whole, write_whole_bytes};
 pub(crate) use whole::{put_in_place, temporary_beside};

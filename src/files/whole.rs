@@ -83,6 +83,48 @@ impl Staged {
     }
 }
 
+/// Gives files that belong together their names, in their order, and looks whether all stand there in the end: a folder
+/// that somebody takes away meanwhile comes back with a part of them otherwise, and nobody is told.
+///
+/// ```
+/// use smam::files::{Staged, place_all};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = tempfile::tempdir()?;
+/// let stage = |name: &str| Staged::write(&folder.path().join("out").join(name), b"text");
+/// let staged = vec![stage("figures.json")?, stage("page.html")?];
+/// std::fs::remove_dir_all(folder.path().join("out"))?;
+/// let (file, _) = place_all(staged).unwrap_err();
+/// assert_eq!(file.file_name().unwrap(), "figures.json");
+///
+/// place_all(vec![stage("figures.json")?, stage("page.html")?]).unwrap();
+/// assert!(folder.path().join("out/page.html").is_file());
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// The first file that cannot be named, or is not there in the end, and why.
+pub fn place_all(files: Vec<Staged>) -> Result<(), (PathBuf, io::Error)> {
+    let paths: Vec<PathBuf> = files.iter().map(|f| f.path.clone()).collect();
+    for file in files {
+        let path = file.path.clone();
+        file.place().map_err(|source| (path, source))?;
+    }
+    paths.into_iter().try_for_each(|path| still_there(&path).map_err(|source| (path, source)))
+}
+
+/// That a file stands where it was written.
+///
+/// # Errors
+/// It is gone again.
+pub fn still_there(path: &Path) -> io::Result<()> {
+    match path.is_file() {
+        true => Ok(()),
+        false => Err(io::Error::new(io::ErrorKind::NotFound, "it was written, and somebody took it away again")),
+    }
+}
+
 /// A file that somebody else writes, by its path: it has another name until it is complete. Dropped before, it is gone.
 #[derive(Debug)]
 pub struct Unfinished {

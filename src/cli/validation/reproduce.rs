@@ -10,7 +10,7 @@ use smam::report::figure_svg;
 use smam::reproduce::{FIGURES, Figure, Made, ReproduceError, Standing, cells, json, page};
 
 use crate::cli::CliError;
-use crate::cli::files::{take_folder, write, write_page};
+use crate::cli::files::{Together, take_folder};
 
 /// Of the pictures, px.
 const SIZE: (f64, f64) = (720.0, 300.0);
@@ -53,12 +53,14 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, CliError> {
     print(&made);
     let text = serde_json::to_string_pretty(&json(&made))
         .map_err(|source| CliError::Write { file: arguments.out.join("reproduce.json"), source: source.into() })?;
-    write(&arguments.out.join("reproduce.json"), &text)?;
-    write_page(&arguments.out, "reproduce.html", &page(&made))?;
+    let mut files = Together::default();
+    files.text(&arguments.out.join("reproduce.json"), &text)?;
+    files.page(&arguments.out, "reproduce.html", &page(&made))?;
     for (figure, chapter) in made.iter().filter(|(_, chapter)| !chapter.panels.is_empty()) {
         let svg = figure_svg(&chapter.panels, SIZE.0, SIZE.1);
-        write(&arguments.out.join(format!("{}.svg", figure.name)), &svg)?;
+        files.text(&arguments.out.join(format!("{}.svg", figure.name)), &svg)?;
     }
+    files.place()?;
     say!("{}", arguments.out.join("reproduce.html").display());
     Ok(ExitCode::SUCCESS)
 }

@@ -12,7 +12,7 @@ use smam::report::HtmlPage;
 use super::markdown_page::add_markdown;
 use super::proof_figure::{proof_panels, proof_svg};
 use crate::cli::CliError;
-use crate::cli::files::{write, write_page};
+use crate::cli::files::{Together, write};
 
 /// Arguments of `smam score`.
 #[derive(Args)]
@@ -133,10 +133,12 @@ fn html_page(rows: &[Row], tables: &str) -> HtmlPage {
 pub fn write_score(rows: &[Row], out: &Path) -> Result<(), CliError> {
     let figures = metrics(rows);
     write_rows(rows, &out.join("rows.jsonl"))?;
-    write(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(not_json)?))?;
     let page = page(rows, &figures);
-    write(&out.join("table.md"), &page)?;
-    write_page(out, "score.html", &html_page(rows, &page))?;
-    write(&out.join("proof.svg"), &proof_svg(rows))?;
+    let mut files = Together::default();
+    files.text(&out.join("score.json"), &format!("{}\n", serde_json::to_string_pretty(&figures).map_err(not_json)?))?;
+    files.text(&out.join("table.md"), &page)?;
+    files.page(out, "score.html", &html_page(rows, &page))?;
+    files.text(&out.join("proof.svg"), &proof_svg(rows))?;
+    files.place()?;
     crate::cli::print_text(&page)
 }

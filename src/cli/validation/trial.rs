@@ -15,7 +15,7 @@ use smam::trial::{Judgement, Row, TrialCase, plan, table, try_case, try_case_in}
 
 use super::markdown_page::add_markdown;
 use crate::cli::CliError;
-use crate::cli::files::{take_folder, write, write_page};
+use crate::cli::files::{Together, take_folder};
 
 /// The stock scenes that together can have every effect of the catalogue.
 const SCENES: [&str; 6] =
@@ -88,10 +88,12 @@ pub fn trial(arguments: &TrialArguments) -> Result<ExitCode, CliError> {
     let mut rows: Vec<Row> = cases.iter().filter_map(|c| row_of(c, &all)).cloned().collect();
     rows.sort_by(|a, b| a.scene.cmp(&b.scene));
     let text = table(&rows);
-    write(&arguments.out.join("trial.md"), &text)?;
+    let mut files = Together::default();
+    files.text(&arguments.out.join("trial.md"), &text)?;
     let mut page = HtmlPage::new(&format!("Trial of {} cases", rows.len()));
     add_markdown(&mut page, &text);
-    write_page(&arguments.out, "trial.html", &page)?;
+    files.page(&arguments.out, "trial.html", &page)?;
+    files.place()?;
     let wrong = rows.iter().filter(|r| r.judgement == Judgement::Wrong).count();
     let right = rows.iter().filter(|r| r.judgement == Judgement::Right).count();
     say!("{} cases: {right} right, {wrong} wrong; {}", rows.len(), arguments.out.join("trial.md").display());

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::outcome::Outcome;
 use crate::diagnose::error::DiagnoseError;
-use crate::files::Staged;
+use crate::files::{Staged, place_all};
 use crate::recording::{Recording, RowWriter};
 
 /// Written last: if it exists, the answer is complete.
@@ -55,10 +55,7 @@ pub fn write_answer_with(outcome: &Outcome, more: &[(&str, &str)], folder: &Path
     }
     staged.push(stage(LAST, format!("{json}\n").as_bytes())?);
     remove_former(folder)?;
-    staged.into_iter().try_for_each(|file| {
-        let path = file.path().to_owned();
-        file.place().map_err(|source| DiagnoseError::Write { file: path, source })
-    })
+    place_all(staged).map_err(|(file, source)| DiagnoseError::Write { file, source })
 }
 
 /// A specimen's name as part of a file's.
