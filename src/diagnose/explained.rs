@@ -55,7 +55,7 @@ pub(super) fn explain(
     let explained = without_misplaced(case, explained, seed, say)?;
     let mut explained = at_better_places(case, explained, seed)?;
     explained.warnings = [warnings, base.warnings, case.notes()].concat();
-    withhold_harm(case, &mut explained, seed, say);
+    withhold_harm(case, &mut explained, seed, say)?;
     describe_discrepancy(case, &mut explained, &variants, seed, say);
     hold_against_full_scene(case, &mut explained, seed, say);
     Ok(explained)
@@ -158,8 +158,10 @@ impl Search<'_> {
         listed: &mut Explained,
         tried: Tried,
     ) -> Result<Option<Explained>, DiagnoseError> {
-        let Explained { found, confirmed, excess, noise, .. } = &mut *listed;
-        let Some(found) = hypothesis::weigh_laws(case, noise, (found, *confirmed), *excess, tried, self.say) else {
+        let Explained { found, confirmed, proof, excess, noise, .. } = &mut *listed;
+        // What the held-out runs refuse leaves room for laws, however well it explains the open ones.
+        let confirmed = confirmed.and(harm::refused(case, noise, found, proof));
+        let Some(found) = hypothesis::weigh_laws(case, noise, (found, confirmed), *excess, tried, self.say) else {
             return Ok(None);
         };
         let noise = noise.clone();
@@ -228,9 +230,16 @@ fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Exp
 }
 
 /// Withdraws what predicts held-out runs worse than the calibration.
-fn withhold_harm(case: &Case, explained: &mut Explained, seed: u64, say: &dyn Fn(String)) {
-    let Explained { found, proof, noise, of_found, .. } = explained;
-    *found = harm::without(case, noise, found.clone(), proof, seed, (of_found, say));
+fn withhold_harm(case: &Case, explained: &mut Explained, seed: u64, say: &dyn Fn(String)) -> Result<(), DiagnoseError> {
+    let Explained { found, confirmed, proof, noise, after, excess, of_found, .. } = explained;
+    let (kept, of_kept) = harm::without(case, noise, found.clone(), proof, seed, (of_found, say));
+    *found = kept;
+    if of_kept == Confirmed::InPart {
+        let whole = Problem { case, runs: case.subset(RunSet::All), noise };
+        *confirmed = of_kept;
+        (*after, *excess) = misfit(&whole, found).ok_or_else(diverges)?;
+    }
+    Ok(())
 }
 
 /// Describes by further effects what the answer leaves, unless the held-out runs are predicted worse with them.

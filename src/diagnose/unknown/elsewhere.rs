@@ -8,7 +8,7 @@
 use super::shown::{Located, Shown};
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Placed, Problem};
-use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, slots, variant};
+use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, is_sum, slots, variant};
 use crate::diagnose::verdict;
 
 /// A slot may miss this share of what the effect does, or this many ties of chi²: a curve is not yet a law.
@@ -31,7 +31,10 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     }
     let located = shown.locate(&all, &all, more);
     let may_leave = f64::max(LEFT_SHARE * shown.whole(), LEFT_TIES * tie);
-    let does_the_same = |l: &&Located| l.gain > shown.whole() - may_leave && !is_place_of(fit, &l.slot);
+    // Of a sum, one of its shapes may do: with other weights, or once something else is modelled beside it.
+    let is_sum = fit.model.effects.last().is_some_and(|law| is_sum(law.spec()));
+    let is_other = |slot: &Slot| is_sum || !is_place_of(fit, slot);
+    let does_the_same = |l: &&Located| l.gain > shown.whole() - may_leave && is_other(&l.slot);
     let mut places = some_of_each(located.iter().filter(does_the_same).map(|l| &l.slot));
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
     places.extend(&bent);

@@ -1,5 +1,6 @@
 //! Do no harm: withholds answers that predict worse than the calibrated scene.
 
+use super::fewer::with_one_less;
 use super::prove;
 use crate::diagnose::case::{Case, CaseRun, Noise, RunSet, Step};
 use crate::diagnose::diagnosis::Proof;
@@ -8,10 +9,12 @@ use crate::diagnose::full::play_full;
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::Found;
 use crate::diagnose::unknown::{SAME, equally_good, propose};
+use crate::diagnose::verdict::Confirmed;
 
 /// Returns the answer if it does no harm. Otherwise, if cables go slack, the equally good fit (unlisted laws included)
-/// closest to the samples left out of the open runs. The held-out runs choose nothing; they can refuse twice, and after
-/// the second time the answer is located, not modelled. `proof` becomes that of the result.
+/// closest to the samples left out of the open runs; else what is left of several effects when those that are missed
+/// least go, one by one. The held-out runs choose nothing, they refuse; what they refuse to the last is located, not
+/// modelled. `proof` becomes that of the result, and an answer that lost effects is one in part.
 pub(in crate::diagnose) fn without(
     case: &Case,
     noise: &[Noise],
@@ -19,25 +22,42 @@ pub(in crate::diagnose) fn without(
     proof: &mut Proof,
     seed: u64,
     (warnings, say): (&mut Vec<String>, &dyn Fn(String)),
-) -> Found {
-    if found.best.model.effects.is_empty() || !is_harmful(case, noise, &found.baseline, &found.best, proof) {
-        return found;
+) -> (Found, Confirmed) {
+    if refused(case, noise, &found, proof) == Confirmed::Yes {
+        return (found, Confirmed::Yes);
     }
     warnings.push(format!(
         "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
         found.best.model.title()
     ));
-    let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise };
+    let [held_out, open] = [RunSet::HeldOut, RunSet::Open].map(|runs| Problem { case, runs: case.subset(runs), noise });
+    let harmless = |other: &Found| {
+        prove::prove(&held_out, &other.baseline, &other.best, seed)
+            .filter(|proof| refused(case, noise, other, proof) == Confirmed::Yes)
+    };
     let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
-    if let Some(other) = other {
-        let renewed = prove::prove(&held_out, &other.baseline, &other.best, seed);
-        if let Some(renewed) = renewed.filter(|p| !is_harmful(case, noise, &other.baseline, &other.best, p)) {
-            *proof = renewed;
-            return other;
-        }
+    if let Some((other, renewed)) = other.and_then(|other| harmless(&other).map(|proof| (other, proof))) {
+        *proof = renewed;
+        return (other, Confirmed::Yes);
+    }
+    let fewer = std::iter::successors(with_one_less(&open, &found), |fewer| with_one_less(&open, fewer));
+    let kept = fewer.into_iter().find_map(|fewer| harmless(&fewer).map(|proof| (fewer, proof)));
+    if let Some((fewer, renewed)) = kept {
+        warnings.push(format!("{} alone does not, and stays", fewer.best.model.title()));
+        *proof = renewed;
+        return (fewer, Confirmed::InPart);
     }
     withhold(&mut found, proof);
-    found
+    (found, Confirmed::Yes)
+}
+
+/// Whether the held-out runs refuse an answer with this proof; one that names nothing is not asked.
+pub(in crate::diagnose) fn refused(case: &Case, noise: &[Noise], found: &Found, proof: &Proof) -> Confirmed {
+    let names_nothing = found.best.model.effects.is_empty();
+    match names_nothing || !is_harmful(case, noise, &found.baseline, &found.best, proof) {
+        true => Confirmed::Yes,
+        false => Confirmed::InPart,
+    }
 }
 
 /// Removes the answer: located, not modelled.
@@ -181,7 +201,7 @@ fn gain_and_loss(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit) -> Opt
 }
 
 /// Sum of squared residuals at the samples left out of the runs; `None` if the fit cannot be simulated.
-fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
+pub(super) fn left_out(problem: &Problem, fit: &Fit) -> Option<f64> {
     let each = problem.runs.iter().map(|run| at_left_out(problem.case, run, problem.noise, fit));
     each.sum()
 }
@@ -204,9 +224,10 @@ mod tests {
     use super::*;
     use crate::diagnose::case::made;
     use crate::diagnose::diagnosis::ChannelProof;
-    use crate::diagnose::fit::Model;
+    use crate::diagnose::fit::{Model, Placed};
     use crate::diagnose::grammar;
     use crate::diagnose::search::Begun;
+    use crate::effects::{Element, ElementKind, find};
     use crate::scene::Override;
 
     /// A muscle without area after two seconds: the scene.toml that holds this law could not be run.
@@ -239,5 +260,42 @@ mod tests {
         assert_eq!((proof.gap_closed, proof.channels["elongation_mm"].rmse_corrected), (0.0, 0.2));
         let [warning] = &warnings[..] else { panic!("{warnings:?}") };
         assert!(warning.starts_with("the full scene cannot be played with worn in muscle"), "{warning}");
+    }
+
+    /// A gauge that reads too much, and a bubble that nobody needs, refused together.
+    #[test]
+    fn of_several_effects_what_the_held_out_runs_bear_stays() {
+        let (inputs, outputs) = (["plunger_mm"], ["elongation_mm", "pressure_kpa"]);
+        let mut case = made::recorded_for("muscle_bench", [&[], &[]], &inputs, &outputs);
+        case.parameters.clear();
+        case.runs.iter_mut().for_each(|run| run.measured[1].iter_mut().for_each(|p| *p *= 1.05));
+        case.runs[1].is_held_out = true;
+        let noise = [0.01, 1.0].map(Noise::white);
+        let open = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |model: &Model| open.fit(model, &open.start(model, None)).expect("played");
+        let plus = |model: Model, name: &str, element, channel: Option<&str>| {
+            let entry = find(name).expect("of the catalogue");
+            let (element, channel) = (Element::of(element, 0, 1), channel.map(str::to_owned));
+            model.plus(&Placed { entry, element, channel }, &entry.typical())
+        };
+        let both = plus(Model::baseline(), "sensor_gain", ElementKind::Sensor, Some(outputs[1]));
+        let both = plus(both, "trapped_air", ElementKind::Line, None);
+        let (baseline, best) = (fit(&Model::baseline()), fit(&both));
+        let mut found = Begun::with_one(&open, baseline, &[], &|_| {}).found();
+        (found.rivals_against, found.rivals, found.best) = (best.cost, vec![Vec::new(); 2], best);
+
+        let mut proof = Proof { gap_closed: -1.0, gain_ci95: [-2.0, -1.0], ..Proof::default() };
+        let mut warnings = Vec::new();
+        let (kept, confirmed) = without(&case, &noise, found.clone(), &mut proof, 1, (&mut warnings, &|_| {}));
+        assert_eq!(kept.best.model.effects, found.best.model.effects[..1]);
+        assert!(confirmed == Confirmed::InPart && kept.withheld.is_none() && proof.gap_closed > 0.99, "{proof:?}");
+        let [refused, stays] = &warnings[..] else { panic!("{warnings:?}") };
+        assert!(refused.contains("+ trapped_air in line predicts the held-out runs worse"), "{refused}");
+        assert_eq!(stays, "sensor_gain on pressure_kpa alone does not, and stays");
+
+        // Nothing is left of one.
+        let mut proof = Proof { gap_closed: -1.0, gain_ci95: [-2.0, -1.0], ..Proof::default() };
+        let (kept, confirmed) = without(&case, &noise, kept, &mut proof, 1, (&mut warnings, &|_| {}));
+        assert!(confirmed == Confirmed::Yes && kept.withheld.is_some() && kept.best.model.effects.is_empty());
     }
 }

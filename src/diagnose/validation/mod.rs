@@ -5,6 +5,7 @@
 
 pub(super) mod confirm;
 pub(super) mod consistency;
+mod fewer;
 pub(super) mod harm;
 pub(super) mod preflight;
 pub(super) mod prove;
