@@ -1,6 +1,7 @@
 """One case as a rival sees it: recordings, stated noise, the calibrated scene played over every run."""
 
 import csv
+import json
 import os
 import subprocess
 import tempfile
@@ -33,6 +34,10 @@ class CaseError(Exception):
     """Something about a case that its user can mend."""
 
 
+class NotForThisCase(CaseError):
+    """A method that has no answer to a case of this kind."""
+
+
 @dataclass
 class Run:
     """One recording and what the calibrated scene makes of its inputs; columns by name, in their own units."""
@@ -61,6 +66,8 @@ class Case:
     runs: list
     holdout: Run
     numbers: dict
+    # Where the hidden law stands: only for a method that is told.
+    given_port: str | None = None
 
 
 def load_case(cases, name, diagnoses, smam):
@@ -81,6 +88,15 @@ def load_case(cases, name, diagnoses, smam):
     for run in [*runs, holdout]:
         play(run, baseline, numbers, list(outputs), smam)
     return Case(name, scene, list(outputs), outputs, runs, holdout, numbers)
+
+
+def hidden_port(sealed, name):
+    """The port of the drawn law of a case, from its sealed answer."""
+    try:
+        secrets = json.loads((sealed / f"{name}.json").read_text())["secrets"]
+        return next(secret["law"]["place"] for secret in secrets if secret.get("law"))
+    except (OSError, ValueError, LookupError, StopIteration) as error:
+        raise CaseError(f"{sealed / name}.json holds no drawn law ({type(error).__name__}): `ude` is told its port") from error
 
 
 def sealed_outputs(cases, name, outputs):

@@ -5,7 +5,7 @@ from statistics import median
 
 OWN = "smam"
 # Methods that name no effect, and the figures that are about names: without names these have no value.
-NAMES_NOTHING = ("narx", "latent", "operon", "refit")
+NAMES_NOTHING = ("narx", "latent", "operon", "refit", "ude")
 ABOUT_NAMES = (
     "probability",
     "element",
@@ -19,6 +19,8 @@ ABOUT_NAMES = (
 # Those that give an element nevertheless, and the figures of drawn laws that only `smam diagnose` gives anything for.
 TELLS_ELEMENT = ("latent", "operon")
 ABOUT_LAWS = ("law_port", "law_first", "law_set", "law_curve", "law_curve_beyond", "law_gap_larger")
+# Those that are told that a law is missing, and where: they detect nothing.
+TOLD = ("ude",)
 # How keys begin of figures that only `smam diagnose` has, and of its time, for which stands the median of each.
 LEFT_OUT = ("settled", "size_coverage", "time", "law_time")
 
@@ -67,6 +69,8 @@ def is_silent(method, key):
     """Whether a method says nothing that a figure is about."""
     if key in ABOUT_LAWS:
         return method != OWN
+    if method in TOLD and key in ("law_detection", "detection"):
+        return True
     if method in TELLS_ELEMENT and key in ("element", "law_element"):
         return False
     return method in NAMES_NOTHING and key in (*ABOUT_NAMES, "law_element", "law_certain")
