@@ -96,7 +96,8 @@ def hidden_port(sealed, name):
         secrets = json.loads((sealed / f"{name}.json").read_text())["secrets"]
         return next(secret["law"]["place"] for secret in secrets if secret.get("law"))
     except (OSError, ValueError, LookupError, StopIteration) as error:
-        raise CaseError(f"{sealed / name}.json holds no drawn law ({type(error).__name__}): `ude` is told its port") from error
+        message = f"{sealed / name}.json holds no drawn law ({type(error).__name__}): `ude` is told its port"
+        raise CaseError(message) from error
 
 
 def sealed_outputs(cases, name, outputs):

@@ -27,7 +27,22 @@ def answer(case, seed):
 def expressions(problem, place, seed):
     """Expressions of every length for the signal there."""
     signal, states = problem.signal_and_states(place)
-    regressor = SymbolicRegressor(
+    regressor = genetic_programming(seed)
+    regressor.fit(states, signal)
+
+    def name(match):
+        return f"[{label(problem.scaler.names[int(match[1]) - 1])}]"
+
+    def law(model):
+        words = re.sub(r"X(\d+)", name, regressor.get_model_string(model["tree"], 4))
+        return Law(place, lambda q: regressor.evaluate_model(model["tree"], q), words, model["length"])
+
+    return [law(model) for model in regressor.pareto_front_]
+
+
+def genetic_programming(seed):
+    """What turns values into expressions of every length."""
+    return SymbolicRegressor(
         allowed_symbols=SYMBOLS,
         objectives=["r2", "length"],
         max_length=LENGTH,
@@ -39,13 +54,3 @@ def expressions(problem, place, seed):
         n_threads=1,
         random_state=seed,
     )
-    regressor.fit(states, signal)
-
-    def name(match):
-        return f"[{label(problem.scaler.names[int(match[1]) - 1])}]"
-
-    def law(model):
-        words = re.sub(r"X(\d+)", name, regressor.get_model_string(model["tree"], 4))
-        return Law(place, lambda q: regressor.evaluate_model(model["tree"], q), words, model["length"])
-
-    return [law(model) for model in regressor.pareto_front_]

@@ -49,7 +49,7 @@ def parse():
         "--out", type=Path, default=Path("out/rivals"), help="METHOD/NAME.json go here; existing ones stay"
     )
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
-    parser.add_argument("--sealed", type=Path, help="opened sealed answers NAME.json: where `ude` reads the port of the law")
+    parser.add_argument("--sealed", type=Path, help="opened sealed answers NAME.json: `ude` reads the law's port there")
     parser.add_argument("--smam", default="smam", help="the program")
     parser.add_argument("--seed", type=int, default=1)
     return parser.parse_args()

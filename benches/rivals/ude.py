@@ -1,7 +1,7 @@
 """A universal differential equation: the bench's own equations with a small network at the right port, which is given.
 
-The network sees time, pressure, elongation, its rate and the flow, and is trained through the equations together with the
-calibrated numbers (Rackauckas et al. 2020). What it has become is then told as an expression by genetic programming.
+The network sees time, pressure, elongation, its rate and the flow, and is trained through the equations together with
+the calibrated numbers (Rackauckas et al. 2020). What it has become is then told as an expression by genetic programming.
 
 The line and the wall settle within microseconds, so the equations are stepped implicitly: each step a few of Newton's
 through which jax takes derivatives. A forecast is the calibrated scene plus what the network changes.
@@ -14,13 +14,12 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from pyoperon.sklearn import SymbolicRegressor
 from scipy.optimize import minimize
 
 from answer import Answer
 from case import NotForThisCase, evenly_driven
 from noise import block_means
-from operon import EVALUATIONS, LENGTH, MOST_S, POPULATION, SYMBOLS
+from operon import genetic_programming
 from rig import Rig
 from rows import channel_noise
 
@@ -31,7 +30,8 @@ NEWTON_STEPS = 4
 WIDTH = 8
 ROUNDS = 300
 ROUNDS_TO_CHOOSE = 100
-# Prior deviations: of a weight (the one is taken that foretells a run that was not trained on), and of a calibrated number's logarithm.
+# Prior deviations: of a weight (what foretells best a run that was not trained on is taken), and of a calibrated
+# number's logarithm.
 WEIGHT_SDS = (0.3, 3.0)
 NUMBER_SD = 0.3
 # What a network of weights near one adds, as a share of what is usual there; of a coefficient it changes so much.
@@ -277,18 +277,7 @@ class Problem:
         seen = [np.asarray(self.play(flat, drive.t - drive.t[0], drive.plunger_m)[1]) for drive in self.runs]
         inputs = np.concatenate(seen)
         target = np.asarray(jax.vmap(lambda q: self.network(layers, q))(jnp.asarray(inputs))) / self.size
-        regressor = SymbolicRegressor(
-            allowed_symbols=SYMBOLS,
-            objectives=["r2", "length"],
-            max_length=LENGTH,
-            population_size=POPULATION,
-            pool_size=POPULATION,
-            max_evaluations=EVALUATIONS,
-            max_time=MOST_S,
-            optimizer_iterations=3,
-            n_threads=1,
-            random_state=seed,
-        )
+        regressor = genetic_programming(seed)
         regressor.fit(inputs, target)
         words = regressor.get_model_string(regressor.model_, 4)
         return re.sub(r"X(\d+)", lambda m: f"[{INPUTS[int(m[1]) - 1]}]", words)
