@@ -16,11 +16,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from answer import as_json, holdout_figures, write_whole  # noqa: E402
 from case import CaseError, NotForThisCase, hidden_port, load_case, sealed_outputs  # noqa: E402
+from methods import METHODS, TOLD  # noqa: E402
 from rows import channel_noise  # noqa: E402
 
-METHODS = ("sindy", "gp", "narx", "latent", "operon", "refit")
-# Told where the law is, and for the bench alone: not among those that answer if none is named.
-TOLD = ("ude",)
 # What may go wrong with one case and leaves the others alone.
 MENDABLE = (CaseError, ValueError, LookupError, ArithmeticError, OSError)
 

@@ -10,11 +10,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from methods import METHODS, TOLD
 from score_table import OWN, page
 
-METHODS = ("sindy", "gp", "narx", "latent", "operon", "refit")
-# Only if it is named.
-TOLD = ("ude",)
 # Stands for a forecast of the holdout that is not finite: JSON has no infinity, and leaving the case out would flatter.
 NO_FORECAST = -1.0e6
 # Outputs of the rigs in the order in which a sealed answer lists their noise.

@@ -3,6 +3,8 @@
 import math
 from statistics import median
 
+from methods import TOLD
+
 OWN = "smam"
 # Methods that name no effect, and the figures that are about names: without names these have no value.
 NAMES_NOTHING = ("narx", "latent", "operon", "refit", "ude")
@@ -19,8 +21,6 @@ ABOUT_NAMES = (
 # Those that give an element nevertheless, and the figures of drawn laws that only `smam diagnose` gives anything for.
 TELLS_ELEMENT = ("latent", "operon")
 ABOUT_LAWS = ("law_port", "law_first", "law_set", "law_curve", "law_curve_beyond", "law_gap_larger")
-# Those that are told that a law is missing, and where: they detect nothing.
-TOLD = ("ude",)
 # How keys begin of figures that only `smam diagnose` has, and of its time, for which stands the median of each.
 LEFT_OUT = ("settled", "size_coverage", "time", "law_time")
 

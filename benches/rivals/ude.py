@@ -1,7 +1,8 @@
 """A universal differential equation: the bench's own equations with a small network at the right port, which is given.
 
 The network sees time, pressure, elongation, its rate and the flow, and is trained through the equations together with
-the calibrated numbers (Rackauckas et al. 2020). What it has become is then told as an expression by genetic programming.
+the calibrated numbers (Rackauckas et al. 2020). What it has become is then told as an expression by genetic
+programming.
 
 The line and the wall settle within microseconds, so the equations are stepped implicitly: each step a few of Newton's
 through which jax takes derivatives. A forecast is the calibrated scene plus what the network changes.
@@ -48,6 +49,7 @@ SCALES = (
     "muscle.damping",
 )
 INPUTS = ("time", "pressure", "elongation", "elongation_rate", "flow")
+SHAPES = ((WIDTH, len(INPUTS)), (WIDTH,), (WIDTH, WIDTH), (WIDTH,), (WIDTH,), (1,))
 CALIBRATED = ("c1", "upstream", "m0", "m1", "presliding")
 DAMPING_N_S_M = 0.1
 STRING_N = 0.05
@@ -150,28 +152,20 @@ class Problem:
             "plunger": np.ptp(self.runs[0].plunger_m),
         }
         self.size = TYPICAL * usual.get(port, 1.0)
+        bare = np.zeros(len(CALIBRATED) + sum(int(np.prod(shape)) for shape in SHAPES))
+        for drive in (*self.runs, self.holdout):
+            drive.plain = {c: np.asarray(v) for c, v in self.shown(bare, drive).items()}
 
     def start(self, random):
-        """Weights that add nearly nothing, and the calibrated numbers as they are."""
-        n = len(INPUTS)
-        layers = [
-            random.normal(size=(WIDTH, n)) / np.sqrt(n),
-            np.zeros(WIDTH),
-            random.normal(size=(WIDTH, WIDTH)) / np.sqrt(WIDTH),
-            np.zeros(WIDTH),
-            1e-3 * random.normal(size=WIDTH),
-            np.zeros(1),
-        ]
-        self.shapes = [layer.shape for layer in layers]
-        flat = np.concatenate([np.zeros(len(CALIBRATED)), *[layer.ravel() for layer in layers]])
-        for drive in self.runs:
-            drive.plain = {c: np.asarray(v) for c, v in self.shown(np.zeros_like(flat), drive).items()}
-        return flat
+        """Calibrated numbers as they are, and weights that add nearly nothing."""
+        spreads = (len(INPUTS) ** -0.5, 0.0, WIDTH**-0.5, 0.0, 1e-3, 0.0)
+        layers = [s * random.normal(size=n) if s > 0.0 else np.zeros(n) for s, n in zip(spreads, SHAPES)]
+        return np.concatenate([np.zeros(len(CALIBRATED)), *map(np.ravel, layers)])
 
     def unpack(self, flat):
         """Logarithms of the calibrated numbers, and the layers."""
         layers, at = [], len(CALIBRATED)
-        for shape in self.shapes:
+        for shape in SHAPES:
             count = int(np.prod(shape))
             layers.append(flat[at : at + count].reshape(shape))
             at += count
@@ -266,8 +260,8 @@ class Problem:
     def correction(self, flat):
         """What the network and the refitted numbers add on the holdout, by sample."""
         drive = self.holdout
-        own, plain = self.shown(flat, drive), self.shown(np.zeros_like(flat), drive)
-        changes = {c: np.asarray(own[c] - plain[c]) for c in self.case.outputs}
+        own = self.shown(flat, drive)
+        changes = {c: np.asarray(own[c] - drive.plain[c]) for c in self.case.outputs}
         return {c: np.interp(drive.run.time_s, drive.at, change) for c, change in changes.items()}
 
     def expression(self, flat, seed):
