@@ -160,7 +160,8 @@ impl Search<'_> {
     ) -> Result<Option<Explained>, DiagnoseError> {
         let Explained { found, confirmed, proof, excess, noise, .. } = &mut *listed;
         // What the held-out runs refuse leaves room for laws, however well it explains the open ones.
-        let confirmed = confirmed.and(harm::refused(case, noise, found, proof));
+        let is_refused = harm::is_refused(case, noise, found, proof);
+        let confirmed = if is_refused { Confirmed::InPart } else { *confirmed };
         let Some(found) = hypothesis::weigh_laws(case, noise, (found, confirmed), *excess, tried, self.say) else {
             return Ok(None);
         };

@@ -23,7 +23,7 @@ pub(in crate::diagnose) fn without(
     seed: u64,
     (warnings, say): (&mut Vec<String>, &dyn Fn(String)),
 ) -> (Found, Confirmed) {
-    if refused(case, noise, &found, proof) == Confirmed::Yes {
+    if !is_refused(case, noise, &found, proof) {
         return (found, Confirmed::Yes);
     }
     warnings.push(format!(
@@ -31,18 +31,17 @@ pub(in crate::diagnose) fn without(
         found.best.model.title()
     ));
     let [held_out, open] = [RunSet::HeldOut, RunSet::Open].map(|runs| Problem { case, runs: case.subset(runs), noise });
-    let harmless = |other: &Found| {
-        prove::prove(&held_out, &other.baseline, &other.best, seed)
-            .filter(|proof| refused(case, noise, other, proof) == Confirmed::Yes)
+    let harmless = |other: Found| {
+        let renewed = prove::prove(&held_out, &other.baseline, &other.best, seed)?;
+        (!is_refused(case, noise, &other, &renewed)).then_some((other, renewed))
     };
     let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
-    if let Some((other, renewed)) = other.and_then(|other| harmless(&other).map(|proof| (other, proof))) {
+    if let Some((other, renewed)) = other.and_then(harmless) {
         *proof = renewed;
         return (other, Confirmed::Yes);
     }
-    let fewer = std::iter::successors(with_one_less(&open, &found), |fewer| with_one_less(&open, fewer));
-    let kept = fewer.into_iter().find_map(|fewer| harmless(&fewer).map(|proof| (fewer, proof)));
-    if let Some((fewer, renewed)) = kept {
+    let mut fewer = std::iter::successors(with_one_less(&open, &found), |fewer| with_one_less(&open, fewer));
+    if let Some((fewer, renewed)) = fewer.find_map(harmless) {
         warnings.push(format!("{} alone does not, and stays", fewer.best.model.title()));
         *proof = renewed;
         return (fewer, Confirmed::InPart);
@@ -52,12 +51,8 @@ pub(in crate::diagnose) fn without(
 }
 
 /// Whether the held-out runs refuse an answer with this proof; one that names nothing is not asked.
-pub(in crate::diagnose) fn refused(case: &Case, noise: &[Noise], found: &Found, proof: &Proof) -> Confirmed {
-    let names_nothing = found.best.model.effects.is_empty();
-    match names_nothing || !is_harmful(case, noise, &found.baseline, &found.best, proof) {
-        true => Confirmed::Yes,
-        false => Confirmed::InPart,
-    }
+pub(in crate::diagnose) fn is_refused(case: &Case, noise: &[Noise], found: &Found, proof: &Proof) -> bool {
+    !found.best.model.effects.is_empty() && is_harmful(case, noise, &found.baseline, &found.best, proof)
 }
 
 /// Removes the answer: located, not modelled.
