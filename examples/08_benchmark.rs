@@ -11,7 +11,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use smam::conceal::{Drawn, Hiding, Rig, Secret, draw, write_case};
-use smam::diagnose::{Case, Options, diagnose};
+use smam::diagnose::{Case, calibrated_scene};
 use smam::identify::{RecordedRun, load_runs, replay};
 use smam::recording::{Recording, RecordingSet, Run, RunUse};
 
@@ -50,10 +50,8 @@ fn write(drawn: &Drawn, out: &Path) -> Result<(), Box<dyn Error>> {
     }
     let set = RecordingSet::load(&own)?;
     let runs = load_runs(&set, &set.runs, &mut |_| {})?;
-    // The scene that a diagnosis compares its own answer with.
-    let outcome = diagnose(Case::load(&[&own], None, &[])?, Options { seed: 1 }, &|_| {})?;
     let scene = own.join("calibrated/scene.toml");
-    fs::write(&scene, outcome.baseline_text().ok_or("these recordings cannot be diagnosed")??)?;
+    fs::write(&scene, calibrated_scene(Case::load(&[&own], None, &[])?)?)?;
     let simulate = |run: &RecordedRun| simulate(rig, &scene, run);
     for run in &runs {
         simulate(run)?.write_csv(&own.join("calibrated").join(&run.run.file))?;

@@ -41,7 +41,7 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
-pub use answer::{Outcome, write_answer, write_answer_with};
+pub use answer::{Outcome, calibrated_scene, write_answer, write_answer_with};
 pub use case::{Case, Step};
 pub use diagnosis::{
     Balance, ChannelProof, Curve, Detection, Diagnosis, DiscrepancyTerm, Estimate, Form, Freehand, Location,

@@ -13,5 +13,5 @@ pub(super) mod summary;
 pub(super) mod warnings;
 
 pub use files::{write_answer, write_answer_with};
-pub use outcome::Outcome;
+pub use outcome::{Outcome, calibrated_scene};
 pub use side_by_side::side_by_side;

@@ -2,10 +2,12 @@
 
 use crate::diagnose::case::{Case, Noise};
 use crate::diagnose::diagnosis::Diagnosis;
-use crate::diagnose::fit::Fit;
+use crate::diagnose::error::DiagnoseError;
+use crate::diagnose::fit::{Fit, baseline};
 use crate::diagnose::full::fitted_scene;
 use crate::effects::Effect;
 use crate::recording::Recording;
+use crate::scene::SceneError;
 
 /// A diagnosis with the data for report and scenes.
 pub struct Outcome {
@@ -32,7 +34,7 @@ impl Outcome {
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
-    pub fn scene_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
+    pub fn scene_text(&self) -> Option<Result<String, SceneError>> {
         self.scene_text_of(self.case.specimens().first().copied())
     }
 
@@ -40,7 +42,7 @@ impl Outcome {
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
-    pub(crate) fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, crate::scene::SceneError>> {
+    pub(crate) fn scene_text_of(&self, specimen: Option<&str>) -> Option<Result<String, SceneError>> {
         let fit = self.complete.as_ref()?;
         Some(fitted_scene(&self.case, fit, specimen, "corrected", &self.diagnosis.summary))
     }
@@ -50,10 +52,22 @@ impl Outcome {
     ///
     /// # Errors
     /// A fitted number that the scene's own checks refuse.
-    pub fn baseline_text(&self) -> Option<Result<String, crate::scene::SceneError>> {
+    pub fn baseline_text(&self) -> Option<Result<String, SceneError>> {
         let nothing_added = self.complete.as_ref().filter(|fit| fit.model.effects.is_empty());
         let fit = nothing_added.or(self.baseline.as_ref())?;
-        let specimen = self.case.specimens().first().copied();
-        Some(fitted_scene(&self.case, fit, specimen, "calibrated", "Calibrated, nothing added"))
+        Some(calibrated(&self.case, fit))
     }
+}
+
+/// A case's scene as text, its own calibration fitted to the open runs and nothing added: what a diagnosis begins with.
+///
+/// # Errors
+/// A scene that diverges, and a fitted number that its own checks refuse.
+pub fn calibrated_scene(mut case: Case) -> Result<String, DiagnoseError> {
+    let base = baseline::baseline(&mut case)?;
+    Ok(calibrated(&case, &base.fit)?)
+}
+
+fn calibrated(case: &Case, fit: &Fit) -> Result<String, SceneError> {
+    fitted_scene(case, fit, case.specimens().first().copied(), "calibrated", "Calibrated, nothing added")
 }

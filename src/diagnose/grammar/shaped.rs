@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::acting::{Action, does, written};
-use super::shapes::{P, P_RANGE, Shape};
-use super::slots::Slot;
+use super::shapes::{P_RANGE, Shape};
+use super::slots::{SCALE, Slot};
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::Variant;
 use crate::effects::{Entry, Fitted, Range};
@@ -24,8 +24,8 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
     if !slot.is_constant() {
         parameter.insert(name.clone(), number(scale, unit_of_scale(slot)));
     }
-    if shape.has_number {
-        parameter.insert("p".to_owned(), number(P, Some("1")));
+    if let Some(start) = shape.start {
+        parameter.insert("p".to_owned(), number(start, Some("1")));
     }
     let more = slot.reading.parameter(&slot.variable);
     parameter.extend(more.iter().map(|(name, table, _)| (name.clone(), table.clone())));
@@ -46,7 +46,7 @@ pub fn variant(case: &Case, slot: &Slot, shape: &Shape, scales: f64) -> Option<V
         .iter()
         .map(|p| match (p.name.as_str(), &more) {
             ("a", _) => Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true },
-            ("p", _) => Fitted { typical: P, range: P_RANGE, is_fitted: true },
+            ("p", _) => Fitted { typical: p.value, range: P_RANGE, is_fitted: true },
             (own, Some((name, table, is_fitted))) if own == name => around(table.value, *is_fitted),
             _ => Fitted {
                 typical: scale,
@@ -106,6 +106,13 @@ pub fn sum(case: &Case, slot: &Slot, terms: &[Term; 2]) -> Option<Variant> {
 /// Whether the law of an effect is such a sum.
 pub fn is_sum(own: &Entry) -> bool {
     own.unlisted().is_some() && own.parameters.iter().any(|p| p.key.starts_with(SECOND))
+}
+
+/// Scales of the two shapes of such a sum, given its parameters' values.
+pub fn scales_of_sum(own: &Entry, values: &[f64]) -> Option<[f64; 2]> {
+    let scale =
+        |start: &str| own.parameters.iter().zip(values).find(|(p, _)| p.key.starts_with(start)).map(|(_, v)| *v);
+    Some([scale(SCALE)?, scale(SECOND)?])
 }
 
 /// A slot's law as a curve: the sum of its basis shapes, each with its own size, at the slot's scale.

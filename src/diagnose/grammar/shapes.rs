@@ -12,16 +12,16 @@ pub struct Shape {
     pub has_scale: bool,
     /// Whether it is one of the basis shapes of curves.
     pub is_basis: bool,
-    /// Whether it has a fitted exponent or place `p`.
-    pub has_number: bool,
+    /// Where its exponent or place `p` starts, if it has one; it is fitted, and the function has this value.
+    pub start: Option<f64>,
 }
 
 const fn shape(text: &'static str, at: fn(f64) -> f64, has_scale: bool, is_basis: bool) -> Shape {
-    Shape { text, at, has_scale, is_basis, has_number: false }
+    Shape { text, at, has_scale, is_basis, start: None }
 }
 
-const fn with_number(text: &'static str, at: fn(f64) -> f64, has_scale: bool) -> Shape {
-    Shape { text, at, has_scale, is_basis: true, has_number: true }
+const fn with_number(text: &'static str, at: fn(f64) -> f64, has_scale: bool, start: f64) -> Shape {
+    Shape { text, at, has_scale, is_basis: true, start: Some(start) }
 }
 
 /// The shape of a constant: a parameter of the rig that differs from the scene.
@@ -45,16 +45,21 @@ pub const SHAPES: [Shape; 14] = [
     shape("(x > 1)", |x| f64::from(u8::from(x > 1.0)), true, false),
 ];
 
-/// Shapes tried if no other leaves only noise. `p` is fitted; the function has its start value [`P`].
-pub const MORE_SHAPES: [Shape; 4] = [
-    with_number("abs(x)^p", |x| x.abs().powf(P), false),
-    with_number("x*abs(x)^p", |x| x * x.abs().powf(P), false),
+/// Exponents below and above one to start with: a fit that starts on the wrong side of a straight line stays there.
+const ROOT: f64 = 0.5;
+const POWER: f64 = 1.5;
+const PLACE: f64 = 1.5;
+/// Shapes tried if no other leaves only noise. Of those with the same text, the one that promises more is refitted.
+pub const MORE_SHAPES: [Shape; 6] = [
+    with_number("abs(x)^p", |x| x.abs().powf(POWER), false, POWER),
+    with_number("abs(x)^p", |x| x.abs().powf(ROOT), false, ROOT),
+    with_number("sign(x)*abs(x)^p", |x| x.signum() * x.abs().powf(POWER), false, POWER),
+    with_number("sign(x)*abs(x)^p", |x| x.signum() * x.abs().powf(ROOT), false, ROOT),
     shape("sin(x)", f64::sin, true, true),
-    with_number("exp(-(x - p)^2)", |x| (-(x - P).powi(2)).exp(), true),
+    with_number("exp(-(x - p)^2)", |x| (-(x - PLACE).powi(2)).exp(), true, PLACE),
 ];
 /// Those that are monotonic from a run's beginning: ageing, warming, softening. Something that comes and goes with the
 /// clock is an event of one run, not a law.
-pub const MORE_SHAPES_OF_TIME: [Shape; 1] = [MORE_SHAPES[0]];
-pub const P: f64 = 1.5;
+pub const MORE_SHAPES_OF_TIME: [Shape; 2] = [MORE_SHAPES[0], MORE_SHAPES[1]];
 /// What `p` may be.
 pub const P_RANGE: Range = Range { min: 0.1, max: 4.0 };

@@ -129,7 +129,7 @@ impl Slot {
 
     /// Name of the parameter that scales its variable.
     pub fn scale_name(&self) -> String {
-        format!("scale{}", ending(&self.variable))
+        format!("{SCALE}{}", ending(&self.variable))
     }
 
     /// Name of its law.
@@ -137,6 +137,9 @@ impl Slot {
         format!("{}{}", self.address.replace('.', "_"), self.reading.word())
     }
 }
+
+/// What the scale of a law's variable is called before its unit.
+pub const SCALE: &str = "scale";
 
 impl PartialEq for Slot {
     fn eq(&self, other: &Self) -> bool {
@@ -207,15 +210,27 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
     readings(variable, &known).into_iter().filter_map(slot).collect()
 }
 
-/// Slots of constants. Constants that add to the fluid are left out: a steady flow or pressure is physics, not a
-/// parameter.
+/// Slots of constants that are parameters of the rig. Those that add to the fluid or pull are left out: a steady flow or
+/// pressure is physics.
 fn constants(case: &Case) -> Vec<Slot> {
+    constants_at(case, is_parameter)
+}
+
+/// Slots of steady flows, pressures and forces.
+pub fn steady(case: &Case) -> Vec<Slot> {
+    let mut slots = constants_at(case, |port| !is_parameter(port));
+    slots.retain(|slot| case.has_clock || !slot.needs_clock());
+    slots
+}
+
+fn is_parameter(port: Port) -> bool {
+    port == Port::RestLength || action(port).is_some_and(|(acts, ..)| acts == Acts::Scales)
+}
+
+fn constants_at(case: &Case, is_wanted: impl Fn(Port) -> bool) -> Vec<Slot> {
     let open = || case.runs.iter().filter(|run| !run.is_held_out);
-    let is_number = |spec: &&PortSpec| {
-        action(spec.port).is_some_and(|(acts, ..)| acts == Acts::Scales) || spec.port == Port::RestLength
-    };
-    let each =
-        PORTS.iter().filter(is_number).flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
+    let wanted = PORTS.iter().filter(|spec| is_wanted(spec.port));
+    let each = wanted.flat_map(|spec| addresses(case, spec).into_iter().map(|a| (spec.port, a)));
     let slot = |(port, address): (Port, String)| {
         let action = Action::at(port)?;
         let injected = injected(case, &address, &action)?;

@@ -6,9 +6,10 @@
 //! correlates with it in these runs.
 
 use super::shown::{Located, Shown};
+use super::sums::shapes_of_sum;
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Placed, Problem};
-use crate::diagnose::grammar::{Reach, Reading, Shape, Slot, is_sum, slots, variant};
+use crate::diagnose::grammar::{Reach, Reading, SCALE, Shape, Slot, is_sum, slots, steady, variant};
 use crate::diagnose::verdict;
 
 /// A slot may miss this share of what the effect does, or this many ties of chi²: a curve is not yet a law.
@@ -36,9 +37,19 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let is_other = |slot: &Slot| is_sum || !is_place_of(fit, slot);
     let does_the_same = |l: &&Located| l.gain > shown.whole() - may_leave && is_other(&l.slot);
     let mut places = some_of_each(located.iter().filter(does_the_same).map(|l| &l.slot));
+    let summed = own.and_then(|own| Some((own, shapes_of_sum(problem, fit, own)?)));
+    let mut sums = summed.map_or_else(Vec::new, |(own, shapes)| {
+        let is_like_it = |slot: &&&Slot| slot.variable == own.variable && slot.address != own.address;
+        let at: Vec<&Slot> = places.iter().filter(is_like_it).copied().collect();
+        shown.sums_elsewhere(&all, &at, &shapes)
+    });
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
     places.extend(&bent);
-    shown.refits(&all, &places, SHAPES)
+    // What looks alike may well have the same shape there.
+    let mut fits = shown.refits_with(&all, &places, SHAPES, more.map_or("", |(shape, _)| shape.text));
+    fits.append(&mut sums);
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits
 }
 
 /// The first slots, a few per address; first ones of all addresses come before second ones.
@@ -59,7 +70,9 @@ fn some_of_each<'a>(slots: impl Iterator<Item = &'a Slot>) -> Vec<&'a Slot> {
 /// Whether a slot has the port and variable of the last effect.
 fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
     let is_listed_there = |e: &Placed| {
-        let is_over = e.spec().variables.contains(&slot.variable) && slot.reading == Reading::Plain;
+        let variables = &e.spec().variables;
+        let is_over_own = variables.contains(&slot.variable) || variables.is_empty() && slot.is_constant();
+        let is_over = is_over_own && slot.reading == Reading::Plain;
         // No curve of what is there now is a place for what remembers.
         e.spec().unlisted().is_none() && !e.spec().remembers && is_over && slot.address == verdict::port(e)
     };
@@ -77,7 +90,7 @@ fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f
     let shape = slot.shapes().iter().find(is_its)?;
     let values = &fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values;
     let parameters = &fit.model.effects[last].spec().parameters;
-    let scale = parameters.iter().position(|p| p.key.starts_with("scale"))?;
+    let scale = parameters.iter().position(|p| p.key.starts_with(SCALE))?;
     Some((shape, values[scale]))
 }
 
@@ -90,6 +103,7 @@ fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
     let Some(own) = last.spec().unlisted() else {
         let is_over_own = |slot: &Slot| last.spec().variables.contains(&slot.variable);
         plain.retain(|slot| slot.is_constant() || is_over_own(slot));
+        plain.extend(steady(problem.case));
         if last.spec().remembers {
             let wide = slots(problem.case, fit, Reach::Wide).into_iter();
             plain.extend(wide.filter(|slot| slot.reading.remembers() && is_over_own(slot)));
@@ -119,6 +133,7 @@ mod tests {
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::Model;
+    use crate::diagnose::grammar::{SHAPES, Term, sum};
     use crate::effects::{Element, find};
     use crate::laws::Quantity;
     use crate::scene::Override;
@@ -198,5 +213,58 @@ mod tests {
             law.is_some_and(|own| own.law.name == "line_pressure_drop_product")
         };
         assert!(others.iter().any(is_product), "{} others", others.len());
+    }
+
+    /// What is lost at the syringe is nearly what is lost behind the line, whatever its shape.
+    #[test]
+    fn a_sum_of_two_shapes_has_other_places_as_that_sum() {
+        let hidden = Override::law("line.outflow adds 4e-11*(time_s/10.0)^2 - 6e-11*tanh(time_s/4.0)", "hidden");
+        let channels = ["elongation_mm", "pressure_kpa"];
+        let mut case = made::recorded("muscle_bench", &[hidden.expect("a law")], &["plunger_mm"], &channels);
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
+        let baseline = fit(&Model::baseline());
+        let all = slots(&case, &baseline, Reach::Plain);
+        let slot = all.iter().find(|slot| slot.address == "line.outflow" && slot.variable == "time_s").expect("a slot");
+        let shape = |text: &str| SHAPES.iter().find(|shape| shape.text == text).expect("a shape");
+        let terms = [("x^2", 4e-11), ("tanh(x)", -6e-11)];
+        let terms = terms.map(|(text, size)| Term { shape: shape(text), scale: slot.scale, size });
+        let own = sum(&case, slot, &terms).expect("a law");
+        let answered = fit(&Model::baseline().plus(&own.placed, &own.values));
+        let known = shapes_of_sum(&problem, &answered, slot).expect("its shapes");
+        assert_eq!(known.map(|(shape, _)| shape.text), ["x^2", "tanh(x)"]);
+        let others = elsewhere(&problem, &answered, 6.0);
+        let is_sum_at_syringe = |fit: &&Fit| {
+            let last = fit.model.effects.last();
+            last.is_some_and(|law| is_sum(law.spec()) && verdict::port(law) == "syringe.flow")
+        };
+        let other = others.iter().find(is_sum_at_syringe).expect("a sum at the syringe");
+        let explained = baseline.cost - answered.cost;
+        assert!(other.cost - answered.cost < 0.03 * explained, "{} {} {}", other.cost, answered.cost, baseline.cost);
+    }
+
+    /// A steady loss behind the line is as well one at the syringe.
+    #[test]
+    fn a_steady_flow_has_other_places() {
+        let lost = Override::law("syringe.flow adds -2e-12", "lost").expect("a law");
+        let channels = ["elongation_mm", "pressure_kpa"];
+        let mut case = made::recorded("muscle_bench", &[lost], &["plunger_mm"], &channels);
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let entry = find("thermal_expansion").expect("of the catalogue");
+        let placed = Placed { entry, element: Element::of(entry.element, 0, 1), channel: None };
+        let model = Model::baseline().plus(&placed, &[-1e-12]);
+        let answered = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+        let others = elsewhere(&problem, &answered, 6.0);
+        let is_steady_at_syringe = |fit: &&Fit| {
+            let last = fit.model.effects.last();
+            let is_constant = |law: &Placed| law.spec().unlisted().is_some_and(|own| own.law.variables().is_empty());
+            last.is_some_and(|law| is_constant(law) && verdict::port(law) == "syringe.flow")
+        };
+        let other = others.iter().find(is_steady_at_syringe).expect("a steady flow at the syringe");
+        assert!(other.cost < answered.cost + 6.0, "{} {}", other.cost, answered.cost);
     }
 }

@@ -1,6 +1,7 @@
 //! Explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
 
 use super::forms::{CLEARLY, Criterion, equally_good, is_clearly_better, leaves_something, with_elsewhere};
+use super::grown::grown;
 use super::listed::does_as_well;
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
@@ -44,7 +45,8 @@ pub(in crate::diagnose) fn one_law(
     let Some(proposals) = propose(&open, &found.baseline, Reach::Plain, say) else { return nothing };
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
         .map(|(best, forms)| Lawful { best, forms })
-        .filter(|lawful| may_end_search(&open, found, &lawful.best));
+        .filter(|lawful| may_end_search(&open, found, &lawful.best))
+        .map(|lawful| with_more_to_it(&open, lawful, &found.baseline, say));
     let known = Known { plain: Some(proposals), ..Known::default() };
     let is_all = alone.as_ref().is_some_and(|lawful| !leaves_something(&open, &lawful.best));
     let law = alone.as_ref().map(|lawful| lawful.best.clone());
@@ -53,6 +55,23 @@ pub(in crate::diagnose) fn one_law(
         Some(lawful) => all(case, noise, (found, variants), (lawful, tried), say),
         None => OneLaw::Part(Box::new(tried)),
     }
+}
+
+/// A simple law, or one with memory or a product in its place if that explains all that it leaves.
+fn with_more_to_it(open: &Problem, simple: Lawful, baseline: &Fit, say: &dyn Fn(String)) -> Lawful {
+    if !may_grow(open, baseline, &simple.best) || !open.case.effort.allows(Optional::WiderLaws) {
+        return simple;
+    }
+    let fits = grown(open, &simple.best, baseline.cost);
+    let more = equally_good(open, &fits, baseline.cost).filter(|(best, _)| !leaves_something(open, best));
+    let Some((best, forms)) = more else { return simple };
+    say(format!("more to it than {}: chi2 {:.0} -> {:.0}", simple.best.model.title(), simple.best.cost, best.cost));
+    Lawful { best, forms }
+}
+
+/// Whether a law leaves something, but too little to look for another one beside it.
+fn may_grow(open: &Problem, baseline: &Fit, simple: &Fit) -> bool {
+    leaves_something(open, simple) && is_explained(open, baseline, simple)
 }
 
 /// A law that explains everything, unless a listed effect does as well.
@@ -293,13 +312,20 @@ impl Search<'_> {
 
     /// Replaces plain laws by ones with memory, products or wider shapes where these are clearly better. Cheapest first.
     fn wider(&self, from: &Fit, plain: Vec<Fit>, known: Option<Proposals>) -> Vec<Fit> {
-        let anew =
-            || if self.open.case.effort.allows(Optional::WiderLaws) { self.propose(from, Reach::Wide) } else { None };
-        let wide = known.map(|wide| wide.again(self.open)).or_else(anew);
-        let Some(wide) = wide else { return plain };
-        let criterion = Criterion::of(self.open, plain.first().into_iter().chain(wide.fits.first()));
+        if known.is_none() && !self.open.case.effort.allows(Optional::WiderLaws) {
+            return plain;
+        }
+        let simple = plain.first().filter(|simple| may_grow(self.open, &self.found.baseline, simple));
+        let mut wide = simple.map_or_else(Vec::new, |simple| grown(self.open, simple, from.cost));
+        let is_all = wide.first().is_some_and(|fit| !leaves_something(self.open, fit));
+        if !is_all {
+            let anew = known.map(|wide| wide.again(self.open)).or_else(|| self.propose(from, Reach::Wide));
+            wide.extend(anew.into_iter().flat_map(|anew| anew.fits));
+            wide.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        }
+        let criterion = Criterion::of(self.open, plain.first().into_iter().chain(wide.first()));
         let best = |fits: &[Fit]| fits.iter().map(|f| criterion.at(f)).fold(f64::INFINITY, f64::min);
-        if best(&wide.fits) < best(&plain) - CLEARLY { wide.fits } else { plain }
+        if best(&wide) < best(&plain) - CLEARLY { wide } else { plain }
     }
 
     /// Whether a fit has a law of two shapes that leaves next to nothing: none needs to be wider.

@@ -5,6 +5,7 @@
 mod elsewhere;
 mod forms;
 pub(super) mod freehand;
+mod grown;
 pub(super) mod hypothesis;
 mod linear_range;
 mod listed;

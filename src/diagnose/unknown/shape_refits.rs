@@ -19,7 +19,7 @@ const SHORTER: usize = 4;
 const FAR_OFF: f64 = 30.0;
 /// Steps of every refit; number of refits that continue, and their further steps.
 const FIRST_STEPS: usize = 4;
-const GOING_ON: usize = 8;
+pub(super) const GOING_ON: usize = 8;
 const MORE_STEPS: usize = 20;
 
 /// The shape that a slot's law has before any other, and the share of the most promising one's gain that it must promise.
@@ -37,7 +37,12 @@ impl Shown<'_> {
     /// Joint rough refits with a law at each slot in its most promising shapes, at most so many per slot; cheapest
     /// first.
     pub fn refits(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Fit> {
-        self.refitted(&self.shapes(all, best, most), GOING_ON)
+        self.refits_with(all, best, most, SIMPLEST)
+    }
+
+    /// The same, with a shape that every slot has if it promises nearly as much as the best there.
+    pub fn refits_with(&self, all: &[Slot], best: &[&Slot], most: usize, always: &str) -> Vec<Fit> {
+        self.refitted(&self.shapes(all, best, most, always), GOING_ON)
     }
 
     /// The same with a free curve at each slot. None is converged, because a curve is not an answer.
@@ -83,7 +88,7 @@ impl Shown<'_> {
     }
 
     /// Rough fits; the best `going_on` of them continue, and their chi² is exact.
-    fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
+    pub(super) fn refitted(&self, candidates: &[Candidate], going_on: usize) -> Vec<Fit> {
         let problem = &self.coarse;
         let begin = |candidate: &Candidate| Some(problem.go_on(self.begin(candidate)?, FIRST_STEPS));
         let mut underway: Vec<Underway> = parallel::map(candidates, begin).into_iter().flatten().collect();
@@ -100,9 +105,9 @@ impl Shown<'_> {
         fits
     }
 
-    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit. The simplest one is among them if it
-    /// promises nearly as much: a shape that is steeper by its extremes may promise more, and leave the model in another valley.
-    fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize) -> Vec<Candidate> {
+    /// The most promising shapes of these slots, at most so many per slot, as candidates for a refit. The simplest one and `always` are among
+    /// them if they promise nearly as much: a shape that is steeper by its extremes may promise more, and leave the model in another valley.
+    fn shapes(&self, all: &[Slot], best: &[&Slot], most: usize, always: &str) -> Vec<Candidate> {
         let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
         let wanted: Vec<Wanted> = best
             .iter()
@@ -122,13 +127,14 @@ impl Shown<'_> {
             .collect();
         promised.sort_by(|a, b| b.0.total_cmp(&a.0));
         let top = |slot: &Slot| promised.iter().find(|(.., w)| w.slot == slot).map_or(0.0, |(gain, ..)| *gain);
-        let is_simplest = |gain: f64, w: &Wanted| w.shape.text == SIMPLEST && gain > NEARLY * top(w.slot);
+        let is_one = |w: &Wanted| [SIMPLEST, always].contains(&w.shape.text);
+        let is_taken = |gain: f64, w: &Wanted| is_one(w) && gain > NEARLY * top(w.slot);
         let mut taken: Vec<Wanted> = Vec::new();
         let mut candidates = Vec::new();
         for &(gain, size, w) in &promised {
             let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
             let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
-            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_simplest(gain, &w)) {
+            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_taken(gain, &w)) {
                 continue;
             }
             taken.push(w);

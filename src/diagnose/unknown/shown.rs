@@ -89,6 +89,20 @@ impl<'a> Shown<'a> {
     /// The response of the last effect of a fit. `None` if the model cannot be simulated, or the effect's size is not
     /// fitted.
     pub fn last_effect(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
+        Self::without_last(problem, fit, |response, _| response)
+    }
+
+    /// The response of the last effect together with what the fit leaves: what another law has to explain in its place.
+    pub fn in_place_of_last(problem: &'a Problem<'a>, fit: &'a Fit) -> Option<Self> {
+        Self::without_last(problem, fit, |response, residual| response + residual)
+    }
+
+    /// What is to be explained follows from the response of the last effect and the residual.
+    fn without_last(
+        problem: &'a Problem<'a>,
+        fit: &'a Fit,
+        left: impl FnOnce(DVector<f64>, DVector<f64>) -> DVector<f64>,
+    ) -> Option<Self> {
         let last = fit.model.effects.len().checked_sub(1)?;
         let (model, x) = (fit.model.without(last), problem.start_without(fit, last));
         let cost = problem.cost_at(&model, &x).unwrap_or(f64::INFINITY);
@@ -100,7 +114,7 @@ impl<'a> Shown<'a> {
         let does = sizes.iter().map(response).reduce(|sum, own| sum + own)?;
         let own = fit.x.len() - without.x.len();
         let jacobian = known.jacobian.remove_columns(fit.x.len() - own, own);
-        Some(Self::along(problem, fit, without, jacobian, does))
+        Some(Self::along(problem, fit, without, jacobian, left(does, known.residual)))
     }
 
     /// The misfit `left` along the runs of a fit, with the Jacobian of the model that laws are added to.

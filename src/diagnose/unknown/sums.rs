@@ -1,18 +1,22 @@
 //! Laws of two shapes: tried where a curve over one slot's variable explains nearly everything, and no single shape does.
 
+use nalgebra::DVector;
+
 use super::forms::{CLEARLY, Criterion};
-use super::shape_refits::{Candidate, SCALES};
-use super::shown::Shown;
+use super::shape_refits::{Candidate, GOING_ON, SCALES};
+use super::shown::{Shown, Wanted};
+use super::span::sizes;
 use super::unlisted::is_law_of;
-use crate::diagnose::fit::Fit;
-use crate::diagnose::grammar::{SHAPES, Shape, Slot, Term, sum};
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::grammar::{SHAPES, Shape, Slot, Term, scales_of_sum, sum};
 use crate::diagnose::search::leaves_much;
 use crate::parallel;
 
 /// Curves that are fitted to the end.
 const CURVES: usize = 2;
-/// Sums that are refitted.
+/// Sums that are refitted, and that go on: they are alike, and shapes with an exponent are to be converged beside them.
 const SUMS: usize = 6;
+const BEST: usize = 2;
 /// Values of a curve that sums are held against.
 const POINTS: usize = 400;
 
@@ -39,8 +43,44 @@ impl Shown<'_> {
         };
         let mut fits: Vec<Fit> = parallel::map(&terms, refit).into_iter().flatten().collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        fits.truncate(BEST);
         fits
     }
+
+    /// Rough fits with a sum of the same two shapes at each of some slots.
+    pub(super) fn sums_elsewhere(&self, all: &[Slot], places: &[&Slot], shapes: &ScaledShapes) -> Vec<Fit> {
+        let each = |slot| shapes.map(|(shape, scale)| Wanted { slot, shape, scale });
+        let wanted: Vec<Wanted> = places.iter().flat_map(|&slot| each(slot)).collect();
+        let signatures = self.signatures(all, &wanted);
+        let candidate = |(slot, own): (&&Slot, &[Option<DVector<f64>>])| {
+            let own: Vec<DVector<f64>> = own.iter().cloned().collect::<Option<_>>()?;
+            let found = sizes(&own, &self.left);
+            let term = |i: usize| Term { shape: shapes[i].0, scale: shapes[i].1, size: found[i] * slot.action.typical };
+            Some(self.with(&sum(self.problem.case, slot, &[term(0), term(1)])?, shapes.len()))
+        };
+        let candidates: Vec<Candidate> = places.iter().zip(signatures.chunks(2)).filter_map(candidate).collect();
+        self.refitted(&candidates, GOING_ON)
+    }
+}
+
+/// Two shapes, each at its scale of the variable.
+pub(super) type ScaledShapes = [(&'static Shape, f64); 2];
+
+/// The shapes of the last law of a fit, if that is a sum at this slot.
+pub(super) fn shapes_of_sum(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<ScaledShapes> {
+    let last = fit.model.effects.len().checked_sub(1)?;
+    let own = fit.model.effects[last].spec();
+    let law = &own.unlisted()?.law;
+    let values = &fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values;
+    let [first, second] = scales_of_sum(own, values)?;
+    let pairs = SHAPES.iter().enumerate().flat_map(|(i, a)| SHAPES[i + 1..].iter().map(move |b| (a, b)));
+    let is_its = |(a, b): &(&Shape, &Shape)| {
+        let term = |shape| Term { shape, scale: slot.scale, size: slot.action.typical };
+        let other = sum(problem.case, slot, &[term(a), term(b)]);
+        other.and_then(|other| other.placed.spec().unlisted()).is_some_and(|o| o.law.expression == law.expression)
+    };
+    let (a, b) = pairs.into_iter().find(is_its)?;
+    Some([(a, first), (b, second)])
 }
 
 /// The sums of two shapes that come nearest to a curve where the slot's variable has been; each pair of shapes once.

@@ -120,7 +120,8 @@ pub(super) fn propose_against(
     Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
 }
 
-/// Refits with sums of two shapes, and with further shapes, at the slot whose curve explains what no simple shape does.
+/// Refits with sums of two shapes at the slot whose curve explains what no simple shape does, and with further shapes there, or else at the
+/// slot of the best simple law.
 fn wider_shapes(
     shown: &Shown,
     all: &[Slot],
@@ -129,9 +130,11 @@ fn wider_shapes(
     say: &dyn Fn(String),
 ) -> Vec<Fit> {
     let mut fits = shown.sums(best, curves, simple);
-    let Some(first) = fits.first() else { return fits };
-    say(format!("{} as a sum of two shapes: chi2 {:.0} -> {:.0}", first.model.title(), simple.cost, first.cost));
-    if let Some(own) = best.iter().find(|slot| is_law_of(first, slot)) {
+    let first = fits.first().unwrap_or(simple);
+    if first.cost < simple.cost {
+        say(format!("{} as a sum of two shapes: chi2 {:.0} -> {:.0}", first.model.title(), simple.cost, first.cost));
+    }
+    if let Some(own) = best.iter().find(|slot| is_law_of(first, slot) && !slot.is_constant()) {
         fits.extend(shown.refits(all, &[&own.bent()], SHAPES_OF_SLOT));
     }
     fits

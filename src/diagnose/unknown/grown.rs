@@ -1,0 +1,85 @@
+//! A simple law that nearly explains the misfit, with more to it: its variable remembered, or in a product with another.
+//!
+//! Where the scene is far off, derivatives at the calibration point elsewhere. The simple law has brought the model
+//! near, so what is missing is looked for along its runs, at its own place.
+
+use super::forms::{CLEARLY, Criterion, finished};
+use super::shown::Shown;
+use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
+use crate::diagnose::verdict;
+
+/// Maximum number of slots refitted, shapes for each, and refits that are converged.
+const SLOTS: usize = 8;
+const SHAPES: usize = 3;
+const FINISHED: usize = 4;
+
+/// Fits with a law that remembers or is a product, in place of the last law of a fit, if one is clearly better. Cheapest first; `before`: chi²
+/// without a law.
+pub(super) fn grown(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit> {
+    let all = slots(problem.case, simple, Reach::Wide);
+    let own: Vec<Slot> = all.iter().filter(|slot| grows_from(simple, slot)).cloned().collect();
+    let Some(shown) = Shown::in_place_of_last(problem, simple).filter(|_| !own.is_empty()) else { return Vec::new() };
+    let located = shown.locate(&all, &own, None);
+    let best: Vec<&Slot> = located.iter().take(SLOTS).map(|l| &l.slot).collect();
+    let fits = finished(problem, shown.refits(&all, &best, SHAPES), FINISHED, before);
+    let criterion = Criterion::of(problem, fits.first().into_iter().chain([simple]));
+    let is_better = fits.first().is_some_and(|fit| criterion.at(fit) < criterion.at(simple) - CLEARLY);
+    if is_better { fits } else { Vec::new() }
+}
+
+/// Whether a slot is at the place of the last law of a fit, over its variable and more than that.
+fn grows_from(simple: &Fit, slot: &Slot) -> bool {
+    let Some(last) = simple.model.effects.last() else { return false };
+    let Some(own) = last.spec().unlisted() else { return false };
+    let variables: Vec<String> = own.law.variables().iter().map(|v| v.name()).collect();
+    let is_own = |name: &String| variables.contains(name);
+    let by = match slot.reading {
+        Reading::Times(other, _) => Some(other.spec().name()),
+        _ => None,
+    };
+    slot.reading != Reading::Plain
+        && own.law.states.is_empty()
+        && slot.address == verdict::port(last)
+        && (is_own(&slot.variable) || by.as_ref().is_some_and(is_own))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::Model;
+    use crate::diagnose::grammar::variant;
+    use crate::scene::Override;
+
+    /// A compliance that changes with time and pressure: over time alone it is nearly explained, and grows into the product.
+    #[test]
+    fn a_law_of_one_variable_grows_into_a_product() {
+        let hidden = "line.compliance scales 1 + 0.6*(time_s/20.0)*(pressure_pa/1e6)";
+        let hidden = Override::law(hidden, "hidden").expect("a law");
+        let channels = ["elongation_mm", "pressure_kpa"];
+        let mut case = made::recorded("muscle_bench", &[hidden], &["plunger_mm"], &channels);
+        case.parameters.clear();
+        let noise = [0.01, 1.0].map(Noise::white);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
+        let baseline = fit(&Model::baseline());
+        let all = slots(&case, &baseline, Reach::Plain);
+        let law = |address: &str, variable: &str| {
+            let slot = all.iter().find(|slot| slot.address == address && slot.variable == variable).expect("a slot");
+            let own = variant(&case, slot, &slot.shapes()[0], 1.0).expect("a law");
+            fit(&Model::baseline().plus(&own.placed, &own.values))
+        };
+        let simple = law("line.compliance", "time_s");
+        assert!(simple.cost < 0.5 * baseline.cost, "{} {}", simple.cost, baseline.cost);
+        let more = grown(&problem, &simple, baseline.cost);
+        let law_of = |fit: &Fit| fit.model.effects[0].spec().unlisted().expect("a law").law.clone();
+        let own = law_of(&more[0]);
+        let variables: Vec<String> = own.variables().iter().map(|v| v.name()).collect();
+        assert_eq!(own.address.to_string(), "line.compliance");
+        assert!(["time_s", "pressure_pa"].iter().all(|v| variables.iter().any(|own| own == v)), "{variables:?}");
+        assert!(more[0].cost < 0.05 * simple.cost, "{} {}", more[0].cost, simple.cost);
+        // The product itself has nothing to grow into.
+        assert!(grown(&problem, &more[0], baseline.cost).is_empty());
+    }
+}
