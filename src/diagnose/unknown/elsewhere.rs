@@ -39,7 +39,9 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let mut places = some_of_each(located.iter().filter(does_the_same).map(|l| &l.slot));
     let summed = own.and_then(|own| Some((own, shapes_of_sum(problem, fit, own)?)));
     let mut sums = summed.map_or_else(Vec::new, |(own, shapes)| {
-        let is_like_it = |slot: &&&Slot| slot.variable == own.variable && slot.address != own.address;
+        let is_like_it = |slot: &&&Slot| {
+            (&slot.variable, &slot.reading) == (&own.variable, &own.reading) && slot.address != own.address
+        };
         let at: Vec<&Slot> = places.iter().filter(is_like_it).copied().collect();
         shown.sums_elsewhere(&all, &at, &shapes)
     });

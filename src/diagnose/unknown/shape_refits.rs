@@ -127,14 +127,14 @@ impl Shown<'_> {
             .collect();
         promised.sort_by(|a, b| b.0.total_cmp(&a.0));
         let top = |slot: &Slot| promised.iter().find(|(.., w)| w.slot == slot).map_or(0.0, |(gain, ..)| *gain);
-        let is_one = |w: &Wanted| [SIMPLEST, always].contains(&w.shape.text);
-        let is_taken = |gain: f64, w: &Wanted| is_one(w) && gain > NEARLY * top(w.slot);
+        let is_extra =
+            |gain: f64, w: &Wanted| [SIMPLEST, always].contains(&w.shape.text) && gain > NEARLY * top(w.slot);
         let mut taken: Vec<Wanted> = Vec::new();
         let mut candidates = Vec::new();
         for &(gain, size, w) in &promised {
             let is_same = |t: &&Wanted| t.slot == w.slot && t.shape.text == w.shape.text;
             let of_slot = taken.iter().filter(|t| t.slot == w.slot).count();
-            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_taken(gain, &w)) {
+            if taken.iter().any(|t| is_same(&t)) || (of_slot >= most && !is_extra(gain, &w)) {
                 continue;
             }
             taken.push(w);

@@ -58,7 +58,8 @@ impl Shown<'_> {
             let term = |i: usize| Term { shape: shapes[i].0, scale: shapes[i].1, size: found[i] * slot.action.typical };
             Some(self.with(&sum(self.problem.case, slot, &[term(0), term(1)])?, shapes.len()))
         };
-        let candidates: Vec<Candidate> = places.iter().zip(signatures.chunks(2)).filter_map(candidate).collect();
+        let candidates: Vec<Candidate> =
+            places.iter().zip(signatures.chunks(shapes.len())).filter_map(candidate).collect();
         self.refitted(&candidates, GOING_ON)
     }
 }
@@ -73,13 +74,13 @@ pub(super) fn shapes_of_sum(problem: &Problem, fit: &Fit, slot: &Slot) -> Option
     let law = &own.unlisted()?.law;
     let values = &fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values;
     let [first, second] = scales_of_sum(own, values)?;
-    let pairs = SHAPES.iter().enumerate().flat_map(|(i, a)| SHAPES[i + 1..].iter().map(move |b| (a, b)));
+    let mut pairs = SHAPES.iter().enumerate().flat_map(|(i, a)| SHAPES[i + 1..].iter().map(move |b| (a, b)));
     let is_its = |(a, b): &(&Shape, &Shape)| {
         let term = |shape| Term { shape, scale: slot.scale, size: slot.action.typical };
         let other = sum(problem.case, slot, &[term(a), term(b)]);
         other.and_then(|other| other.placed.spec().unlisted()).is_some_and(|o| o.law.expression == law.expression)
     };
-    let (a, b) = pairs.into_iter().find(is_its)?;
+    let (a, b) = pairs.find(is_its)?;
     Some([(a, first), (b, second)])
 }
 
