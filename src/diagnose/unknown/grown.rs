@@ -1,9 +1,11 @@
-//! A simple law that nearly explains the misfit, with more to it: its variable remembered, or in a product with another.
+//! A simple law that nearly explains the misfit: as simple at another place, or with more to it, its variable remembered
+//! or in a product with another.
 //!
 //! Where the scene is far off, derivatives at the calibration point elsewhere. The simple law has brought the model
-//! near, so what is missing is looked for along its runs, at its own place.
+//! near, so what is missing is looked for along its runs: first where the sensors hardly tell its place from another
+//! one, then at its own.
 
-use super::forms::{CLEARLY, Criterion, finished};
+use super::forms::{CLEARLY, Criterion, finished, leaves_something, with_elsewhere};
 use super::shown::Shown;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
@@ -14,9 +16,20 @@ const SLOTS: usize = 8;
 const SHAPES: usize = 3;
 const FINISHED: usize = 4;
 
+/// Fits that leave nothing where a simple law leaves little: the law at another place, or what it grows into. Cheapest
+/// first, and empty where neither is found; `before`: chi² without a law.
+pub(super) fn completed(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit> {
+    let mut moved = with_elsewhere(problem, simple.clone(), before);
+    moved.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    match moved.first() {
+        Some(best) if leaves_something(problem, best) => grown(problem, best, before),
+        _ => moved,
+    }
+}
+
 /// Fits with a law that remembers or is a product, in place of the last law of a fit, if one is clearly better. Cheapest first; `before`: chi²
 /// without a law.
-pub(super) fn grown(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit> {
+fn grown(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit> {
     let all = slots(problem.case, simple, Reach::Wide);
     let own: Vec<Slot> = all.iter().filter(|slot| grows_from(simple, slot)).cloned().collect();
     let Some(shown) = Shown::in_place_of_last(problem, simple).filter(|_| !own.is_empty()) else { return Vec::new() };

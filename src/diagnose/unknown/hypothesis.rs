@@ -1,7 +1,7 @@
 //! Explains what the catalogue cannot, by laws that the grammar proposes. Uses the open runs only.
 
 use super::forms::{CLEARLY, Criterion, equally_good, is_clearly_better, leaves_something, with_elsewhere};
-use super::grown::grown;
+use super::grown::completed;
 use super::listed::does_as_well;
 use super::stand_ins::other_places;
 use super::tried::{Known, Lawful, Tried};
@@ -57,15 +57,15 @@ pub(in crate::diagnose) fn one_law(
     }
 }
 
-/// A simple law, or one with memory or a product in its place if that explains all that it leaves.
+/// A simple law, or the same elsewhere or one with memory or a product in its place if that explains all that it leaves.
 fn with_more_to_it(open: &Problem, simple: Lawful, baseline: &Fit, say: &dyn Fn(String)) -> Lawful {
     if !may_grow(open, baseline, &simple.best) || !open.case.effort.allows(Optional::WiderLaws) {
         return simple;
     }
-    let fits = grown(open, &simple.best, baseline.cost);
+    let fits = completed(open, &simple.best, baseline.cost);
     let more = equally_good(open, &fits, baseline.cost).filter(|(best, _)| !leaves_something(open, best));
     let Some((best, forms)) = more else { return simple };
-    say(format!("more to it than {}: chi2 {:.0} -> {:.0}", simple.best.model.title(), simple.best.cost, best.cost));
+    say(format!("instead of {}: chi2 {:.0} -> {:.0}", simple.best.model.title(), simple.best.cost, best.cost));
     Lawful { best, forms }
 }
 
@@ -316,7 +316,7 @@ impl Search<'_> {
             return plain;
         }
         let simple = plain.first().filter(|simple| may_grow(self.open, &self.found.baseline, simple));
-        let mut wide = simple.map_or_else(Vec::new, |simple| grown(self.open, simple, from.cost));
+        let mut wide = simple.map_or_else(Vec::new, |simple| completed(self.open, simple, from.cost));
         let is_all = wide.first().is_some_and(|fit| !leaves_something(self.open, fit));
         if !is_all {
             let anew = known.map(|wide| wide.again(self.open)).or_else(|| self.propose(from, Reach::Wide));
