@@ -19,6 +19,33 @@ where_it_can() {
     [ "$status" -eq 0 ] || { echo "$* failed (exit code $status)" >&2; exit 1; }
 }
 
+# venv FOLDER PACKAGE...: a Python environment, unless it is there. None where there is no python3 venv, or no network.
+venv() {
+    local folder=$1
+    shift
+    if [ -e "$folder/complete" ]; then return; fi
+    rm -rf "$folder"
+    if python3 -m venv "$folder" && "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; then
+        touch "$folder/complete"
+    else
+        rm -rf "$folder"
+    fi
+}
+
+# Programs and libraries of others to hold this one against. They come from PyPI while Rust works.
+tools=$target/book-tools
+peers=$target/peers
+viewer=$target/rerun-$rerun_version
+browser=$target/browser
+mkdir -p "$target"
+{
+    venv "$tools" --require-hashes -r docs/requirements.txt
+    venv "$peers" mcap==1.6.0 mcap-ros2-support==0.6.0 jsonschema==4.26.0
+    venv "$viewer" "rerun-sdk==$rerun_version" pillow
+    venv "$browser" playwright==1.65.2
+} &
+environments=$!
+
 say "format"
 cargo fmt --check
 
@@ -37,12 +64,9 @@ RUSTDOCFLAGS=-Dwarnings cargo doc --release --no-deps --no-default-features --fe
 say "what it is built from: licences, sources, pins, no unsafe code"
 python3 -B tests/dependencies/check.py
 
+wait "$environments"
+
 say "the book's links, data and spelling"
-tools=$target/book-tools
-if [ ! -x "$tools/bin/mdbook" ]; then
-    { python3 -m venv "$tools" && "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r docs/requirements.txt; } ||
-        rm -rf "$tools"
-fi
 # Its commands are run at the end, when there is a program.
 if [ -x "$tools/bin/typos" ]; then
     python3 -B docs/check_docs.py --typos "$tools/bin/typos"
@@ -51,11 +75,6 @@ else
 fi
 
 say "libraries of others, to hold bags and schemas against"
-peers=$target/peers
-if [ ! -x "$peers/bin/python" ]; then
-    { python3 -m venv "$peers" && "$peers/bin/python" -m pip install --quiet --disable-pip-version-check \
-        mcap==1.6.0 mcap-ros2-support==0.6.0 jsonschema==4.26.0; } || rm -rf "$peers"
-fi
 if [ -x "$peers/bin/python" ]; then
     SMAM_PEER_PYTHON=$(realpath "$peers/bin")/python
     export SMAM_PEER_PYTHON
@@ -110,31 +129,19 @@ for file in out/bending_catheter.csv out/bending_catheter.rrd; do
 done
 
 say "what it wrote, read by the viewer's own program"
-venv=$target/rerun-$rerun_version
-if [ ! -x "$venv/bin/rerun" ]; then
-    { python3 -m venv "$venv" && "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "rerun-sdk==$rerun_version"; } ||
-        rm -rf "$venv"
-fi
-if [ -x "$venv/bin/rerun" ]; then
-    "$venv/bin/rerun" rrd verify out/bending_catheter.rrd
+if [ -x "$viewer/bin/rerun" ]; then
+    "$viewer/bin/rerun" rrd verify out/bending_catheter.rrd
     echo "ok    rerun $rerun_version reads it"
+    say "and as a picture"
+    "$viewer/bin/python" tests/viewer/check.py --rrd out/bending_catheter.rrd --csv out/bending_catheter.csv ${SMAM_REQUIRE_PICTURE:+--require-picture}
+elif [ -n "${SMAM_REQUIRE_PICTURE:-}" ]; then
+    echo "rerun-sdk $rerun_version could not be installed" >&2
+    exit 1
 else
     echo "skipped: rerun-sdk $rerun_version could not be installed (no python3 venv, or no network)"
 fi
 
-say "and as a picture"
-# Pillow is for this alone.
-if [ -x "$venv/bin/rerun" ] && { [ -e "$venv/pillow" ] || { "$venv/bin/python" -m pip install --quiet --disable-pip-version-check pillow && touch "$venv/pillow"; }; }; then
-    "$venv/bin/python" tests/viewer/check.py --rrd out/bending_catheter.rrd --csv out/bending_catheter.csv ${SMAM_REQUIRE_PICTURE:+--require-picture}
-else
-    echo "skipped: the viewer's library or pillow could not be installed"
-fi
-
 say "the HTML pages, explored in a browser"
-browser=$target/browser
-if [ ! -x "$browser/bin/python" ]; then
-    { python3 -m venv "$browser" && "$browser/bin/python" -m pip install --quiet --disable-pip-version-check playwright==1.65.2; } || rm -rf "$browser"
-fi
 if [ -x "$browser/bin/python" ]; then
     where_it_can SMAM_REQUIRE_BROWSER "$browser/bin/python" -B tests/pages/check.py --smam "$smam"
 elif [ -n "${SMAM_REQUIRE_BROWSER:-}" ]; then

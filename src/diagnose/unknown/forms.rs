@@ -99,8 +99,7 @@ pub(super) fn finished(open: &Problem, mut rough: Vec<Fit>, most: usize, before:
 
 /// Models within this chi² are equally good. `before`: chi² without the last effect.
 pub(super) fn tie(open: &Problem, fit: &Fit, before: f64) -> f64 {
-    let left = misfit::left(open, fit).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
-    SAME * verdict::unit(before - fit.cost, left)
+    SAME * verdict::unit(before - fit.cost, misfit::left_beyond_noise(open, fit))
 }
 
 /// The simplest of the fits that the data cannot distinguish, and the others. Fits cheapest first; `before`: chi²
