@@ -52,7 +52,7 @@ pub(in crate::diagnose) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::made;
+    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::{Model, Placed};
     use crate::diagnose::grammar::{Reach, slots, variant};
     use crate::effects::{Element, ElementKind, find};
@@ -61,9 +61,11 @@ mod tests {
     #[test]
     fn beside_a_law_what_may_be_left_unseen_counts() {
         let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &[Noise::white(0.02)] };
         let fit = |placed: &Placed, values: &[f64]| {
             let model = Model::baseline().plus(placed, values);
-            Fit { model, x: Vec::new(), cost: 0.0, covariance: DMatrix::zeros(0, 0), on_bound: Vec::new() }
+            let x = problem.start(&model, None);
+            Fit { covariance: DMatrix::zeros(x.len(), x.len()), model, x, cost: 0.0, on_bound: Vec::new() }
         };
         let (entry, element) = (find("leak").expect("of the catalogue"), Element::of(ElementKind::Line, 0, 1));
         let leak = fit(&Placed { entry, element, channel: None }, &[1e-17]);
