@@ -8,6 +8,8 @@ mod coarse;
 mod descent;
 mod folds;
 pub(super) mod intervals;
+#[cfg(test)]
+pub(super) mod made;
 mod model;
 mod normal;
 mod problem;

@@ -134,7 +134,7 @@ fn alike(problem: &Problem, fit: &Fit) -> Vec<Slot> {
 mod tests {
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
-    use crate::diagnose::fit::Model;
+    use crate::diagnose::fit::{Model, made::Bench};
     use crate::diagnose::grammar::{SHAPES, Term, sum};
     use crate::effects::{Element, find};
     use crate::laws::Quantity;
@@ -145,17 +145,12 @@ mod tests {
     #[test]
     fn a_mere_number_has_other_places() {
         let softer = Override::parse("hydraulics.upstream_compliance_m3_pa=9e-15").expect("a key");
-        let channels = ["elongation_mm", "pressure_kpa"];
-        let mut case = made::recorded("muscle_bench", &[softer], &["plunger_mm"], &channels);
-        case.parameters.clear();
-        let noise = [0.01, 1.0].map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
-        let baseline = fit(&Model::baseline());
-        let all = slots(&case, &baseline, Reach::Plain);
+        let bench = Bench::with(&[softer]);
+        let (problem, baseline) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &baseline, Reach::Plain);
         let of_line = all.iter().find(|slot| slot.is_constant() && slot.address == "line.compliance").expect("a slot");
-        let own = variant(&case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
-        let answered = fit(&Model::baseline().plus(&own.placed, &[0.05]));
+        let own = variant(&bench.case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
+        let answered = bench.fit(&Model::baseline().plus(&own.placed, &[0.05]));
         let others = elsewhere(&problem, &answered, 6.0);
         let as_good = others.iter().filter(|fit| fit.cost < answered.cost + 6.0);
         let last = as_good.filter_map(|fit| fit.model.effects.last());
@@ -188,17 +183,12 @@ mod tests {
     /// A resistance that grows with time is a pressure drop over time and flow.
     #[test]
     fn a_law_of_a_coefficient_has_the_product_that_says_the_same() {
-        let channels = ["elongation_mm", "pressure_kpa"];
-        let mut case = made::recorded("muscle_bench", &[], &["plunger_mm"], &channels);
-        case.parameters.clear();
-        let noise = [0.01, 1.0].map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let baseline = Model::baseline();
-        let fit = problem.fit(&baseline, &problem.start(&baseline, None)).expect("it does not diverge");
-        let all = slots(&case, &fit, Reach::Plain);
+        let bench = Bench::with(&[]);
+        let (problem, fit) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &fit, Reach::Plain);
         let of_line = all.iter().find(|slot| slot.variable == "time_s" && slot.address == "line.resistance");
         let of_line = of_line.expect("a slot");
-        let own = variant(&case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
+        let own = variant(&bench.case, of_line, &of_line.shapes()[0], 1.0).expect("a law");
         let model = Model::baseline().plus(&own.placed, &own.values);
         let x = problem.start(&model, None);
         let answered = Fit { model, x, cost: 0.0, ..fit };
@@ -220,21 +210,15 @@ mod tests {
     /// What is lost at the syringe is nearly what is lost behind the line, whatever its shape.
     #[test]
     fn a_sum_of_two_shapes_has_other_places_as_that_sum() {
-        let hidden = Override::law("line.outflow adds 4e-11*(time_s/10.0)^2 - 6e-11*tanh(time_s/4.0)", "hidden");
-        let channels = ["elongation_mm", "pressure_kpa"];
-        let mut case = made::recorded("muscle_bench", &[hidden.expect("a law")], &["plunger_mm"], &channels);
-        case.parameters.clear();
-        let noise = [0.01, 1.0].map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
-        let baseline = fit(&Model::baseline());
-        let all = slots(&case, &baseline, Reach::Plain);
+        let bench = Bench::hiding("line.outflow adds 4e-11*(time_s/10.0)^2 - 6e-11*tanh(time_s/4.0)");
+        let (problem, baseline) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &baseline, Reach::Plain);
         let slot = all.iter().find(|slot| slot.address == "line.outflow" && slot.variable == "time_s").expect("a slot");
         let shape = |text: &str| SHAPES.iter().find(|shape| shape.text == text).expect("a shape");
         let terms = [("x^2", 4e-11), ("tanh(x)", -6e-11)];
         let terms = terms.map(|(text, size)| Term { shape: shape(text), scale: slot.scale, size });
-        let own = sum(&case, slot, &terms).expect("a law");
-        let answered = fit(&Model::baseline().plus(&own.placed, &own.values));
+        let own = sum(&bench.case, slot, &terms).expect("a law");
+        let answered = bench.fit(&Model::baseline().plus(&own.placed, &own.values));
         let known = shapes_of_sum(&problem, &answered, slot).expect("its shapes");
         assert_eq!(known.map(|(shape, _)| shape.text), ["x^2", "tanh(x)"]);
         let others = elsewhere(&problem, &answered, 6.0);
@@ -250,16 +234,12 @@ mod tests {
     /// A steady loss behind the line is as well one at the syringe.
     #[test]
     fn a_steady_flow_has_other_places() {
-        let lost = Override::law("syringe.flow adds -2e-12", "lost").expect("a law");
-        let channels = ["elongation_mm", "pressure_kpa"];
-        let mut case = made::recorded("muscle_bench", &[lost], &["plunger_mm"], &channels);
-        case.parameters.clear();
-        let noise = [0.01, 1.0].map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let bench = Bench::hiding("syringe.flow adds -2e-12");
+        let problem = bench.open();
         let entry = find("thermal_expansion").expect("of the catalogue");
         let placed = Placed { entry, element: Element::of(entry.element, 0, 1), channel: None };
         let model = Model::baseline().plus(&placed, &[-1e-12]);
-        let answered = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+        let answered = bench.fit(&model);
         let others = elsewhere(&problem, &answered, 6.0);
         let is_steady_at_syringe = |fit: &&Fit| {
             let last = fit.model.effects.last();

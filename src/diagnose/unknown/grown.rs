@@ -60,42 +60,15 @@ fn grows_from(simple: &Fit, slot: &Slot) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Case, Noise, RunSet, made};
-    use crate::diagnose::fit::Model;
+    use crate::diagnose::fit::{Model, made::Bench};
     use crate::diagnose::grammar::variant;
     use crate::laws::Law;
-    use crate::scene::Override;
 
-    /// Recordings without noise of a bench without a calibration, which hides a law.
-    struct Bench {
-        case: Case,
-        noise: [Noise; 2],
-    }
-
-    impl Bench {
-        fn hiding(law: &str) -> Self {
-            let hidden = Override::law(law, "hidden").expect("a law");
-            let channels = ["elongation_mm", "pressure_kpa"];
-            let mut case = made::recorded("muscle_bench", &[hidden], &["plunger_mm"], &channels);
-            case.parameters.clear();
-            Self { case, noise: [0.01, 1.0].map(Noise::white) }
-        }
-
-        fn open(&self) -> Problem<'_> {
-            Problem { case: &self.case, runs: self.case.subset(RunSet::Open), noise: &self.noise }
-        }
-
-        fn fit(&self, model: &Model) -> Fit {
-            let problem = self.open();
-            problem.fit(model, &problem.start(model, None)).expect("it does not diverge")
-        }
-
-        fn over_time(&self, address: &str, from: &Fit) -> Fit {
-            let all = slots(&self.case, from, Reach::Plain);
-            let slot = all.iter().find(|slot| slot.address == address && slot.variable == "time_s").expect("a slot");
-            let own = variant(&self.case, slot, &slot.shapes()[0], 1.0).expect("a law");
-            self.fit(&Model::baseline().plus(&own.placed, &own.values))
-        }
+    fn over_time(bench: &Bench, address: &str, from: &Fit) -> Fit {
+        let all = slots(&bench.case, from, Reach::Plain);
+        let slot = all.iter().find(|slot| slot.address == address && slot.variable == "time_s").expect("a slot");
+        let own = variant(&bench.case, slot, &slot.shapes()[0], 1.0).expect("a law");
+        bench.fit(&Model::baseline().plus(&own.placed, &own.values))
     }
 
     fn law_of(fit: &Fit) -> Law {
@@ -107,8 +80,8 @@ mod tests {
     fn a_simple_law_is_moved_before_it_grows() {
         let bench = Bench::hiding("syringe.compliance scales 1 + 0.6*(time_s/20.0)");
         let problem = bench.open();
-        let baseline = bench.fit(&Model::baseline());
-        let simple = bench.over_time("line.compliance", &baseline);
+        let baseline = bench.baseline();
+        let simple = over_time(&bench, "line.compliance", &baseline);
         assert!(simple.cost < 0.1 * baseline.cost, "{} {}", simple.cost, baseline.cost);
         let moved = completed(&problem, &simple, baseline.cost);
         let own = law_of(&moved[0]);
@@ -121,8 +94,8 @@ mod tests {
     fn a_law_of_one_variable_grows_into_a_product() {
         let bench = Bench::hiding("line.compliance scales 1 + 0.6*(time_s/20.0)*(pressure_pa/1e6)");
         let problem = bench.open();
-        let baseline = bench.fit(&Model::baseline());
-        let simple = bench.over_time("line.compliance", &baseline);
+        let baseline = bench.baseline();
+        let simple = over_time(&bench, "line.compliance", &baseline);
         assert!(simple.cost < 0.5 * baseline.cost, "{} {}", simple.cost, baseline.cost);
         let more = grown(&problem, &simple, baseline.cost);
         let own = law_of(&more[0]);

@@ -62,27 +62,20 @@ fn is_likelier(open: &Problem, latents: &[Latent], bare: &Fit, with: &Fit) -> bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::made;
-    use crate::diagnose::fit::{Model, Placed};
+    use crate::diagnose::fit::{Model, Placed, made::Bench};
     use crate::effects::{Element, ElementKind, find};
     use crate::scene::Override;
 
-    const CHANNELS: [&str; 2] = ["elongation_mm", "pressure_kpa"];
-
     /// What replaces a gain error of the pressure gauge; `None` if it stays.
-    fn instead_of_a_gain(mut case: Case) -> Option<String> {
-        case.parameters.clear();
-        let noise = [0.01, 1.0].map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let fit = |model: &Model| problem.fit(model, &problem.start(model, None)).expect("it does not diverge");
+    fn instead_of_a_gain(bench: &Bench) -> Option<String> {
         let entry = find("sensor_gain").expect("of the catalogue");
         let element = Element::of(ElementKind::Sensor, 0, 1);
-        let gain = Placed { entry, element, channel: Some(CHANNELS[1].to_owned()) };
-        let (baseline, best) = (fit(&Model::baseline()), fit(&Model::baseline().plus(&gain, &entry.typical())));
+        let gain = Placed { entry, element, channel: Some(Bench::CHANNELS[1].to_owned()) };
+        let (baseline, best) = (bench.baseline(), bench.fit(&Model::baseline().plus(&gain, &entry.typical())));
         let rivals_against = best.cost;
         let (rivals, screened, forms) = (vec![Vec::new()], Vec::new(), Vec::new());
         let found = Found { baseline, best, rivals, rivals_against, screened, forms, withheld: None, described: None };
-        let other = exchanged(&case, &noise, &found, &|_| {})?;
+        let other = exchanged(&bench.case, &bench.noise, &found, &|_| {})?;
         let last = other.best.model.effects.last().expect("a law");
         Some(format!("{} over {:?}", verdict::port(last), last.spec().variables))
     }
@@ -92,11 +85,10 @@ mod tests {
     #[test]
     fn an_effect_gives_way_to_a_law_where_something_is_missing() {
         let grows = Override::parse("muscles.tube.area_growth_1_m=4.0").expect("a key");
-        let widened = made::recorded("muscle_bench", &[grows], &["plunger_mm"], &CHANNELS);
-        let instead = instead_of_a_gain(widened).expect("a law");
+        let instead = instead_of_a_gain(&Bench::with(&[grows])).expect("a law");
         assert!(instead.starts_with("muscle."), "{instead}");
-        let mut off = made::recorded("muscle_bench", &[], &["plunger_mm"], &CHANNELS);
-        off.runs.iter_mut().for_each(|run| run.measured[1].iter_mut().for_each(|p| *p *= 1.05));
-        assert_eq!(instead_of_a_gain(off), None);
+        let mut off = Bench::with(&[]);
+        off.case.runs.iter_mut().for_each(|run| run.measured[1].iter_mut().for_each(|p| *p *= 1.05));
+        assert_eq!(instead_of_a_gain(&off), None);
     }
 }

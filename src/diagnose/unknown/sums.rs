@@ -142,25 +142,15 @@ const SAME: f64 = 1e-6;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, RunSet, made};
-    use crate::diagnose::fit::{Model, Problem};
+    use crate::diagnose::fit::made::Bench;
     use crate::diagnose::grammar::{Reach, slots};
     use crate::diagnose::unknown::propose;
-    use crate::scene::Override;
-
-    const CHANNELS: [&str; 2] = ["elongation_mm", "pressure_kpa"];
-    const NOISE: [f64; 2] = [0.01, 1.0];
 
     /// A pull that comes and goes once in the recording is no shape of the grammar, but nearly a sum of two.
     #[test]
     fn what_no_shape_follows_two_do() {
-        let wave = Override::law("muscle.pull adds 0.1 * sin(time_s/5.0)", "wave").expect("a law");
-        let mut case = made::recorded("muscle_bench", &[wave], &["plunger_mm"], &CHANNELS);
-        case.parameters.clear();
-        let noise = NOISE.map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let model = Model::baseline();
-        let baseline = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
+        let bench = Bench::hiding("muscle.pull adds 0.1 * sin(time_s/5.0)");
+        let (problem, baseline) = (bench.open(), bench.baseline());
         let said = std::cell::RefCell::new(Vec::new());
         let proposals = propose(&problem, &baseline, Reach::Plain, &|line| said.borrow_mut().push(line));
         let fits = proposals.expect("laws").fits;
@@ -177,12 +167,8 @@ mod tests {
     /// A curve that is a sum is found, with its sizes.
     #[test]
     fn a_curve_that_is_a_sum_is_recognised() {
-        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &CHANNELS);
-        let noise = NOISE.map(Noise::white);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
-        let model = Model::baseline();
-        let baseline = problem.fit(&model, &problem.start(&model, None)).expect("it does not diverge");
-        let all = slots(&case, &baseline, Reach::Plain);
+        let bench = Bench::with(&[]);
+        let all = slots(&bench.case, &bench.baseline(), Reach::Plain);
         let slot =
             all.iter().find(|slot| slot.address == "muscle.pull" && slot.variable == "elongation_m").expect("a slot");
         let shapes: Vec<&str> = slot.basis().map(|shape| shape.text).collect();
@@ -200,7 +186,7 @@ mod tests {
             matches!(own[..], [("x^2", a), ("tanh(x)", b)] if (a - 2.0).abs() < 1e-6 && (b + 0.5).abs() < 1e-6),
             "{own:?}"
         );
-        assert!(best.iter().all(|terms| sum(&case, slot, terms).is_some()));
+        assert!(best.iter().all(|terms| sum(&bench.case, slot, terms).is_some()));
         assert!(nearest(&[1.0, 2.0], &[1.0, 1.0], &[2.0, 2.0]).is_none());
     }
 }
