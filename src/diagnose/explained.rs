@@ -6,7 +6,8 @@ use super::diagnosis::Proof;
 use super::error::DiagnoseError;
 use super::fit::{Fit, Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, discrepancy, reweight};
-use super::unknown::hypothesis::{self, OneLaw};
+use super::unknown::hypothesis;
+use super::unknown::one_law::{OneLaw, one_law, one_law_from_effect};
 use super::unknown::pair::{self, Pair};
 use super::unknown::tried::Tried;
 use super::unknown::{misplaced, stand_ins};
@@ -44,7 +45,7 @@ pub(super) fn explain(
     let variants = candidates::variants(case);
     let begun = Begun::with_one(&reweight::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
     let search = Search { variants: &variants, seed, say };
-    let explained = match hypothesis::one_law(case, &base.noise, (&begun.found(), &variants), say) {
+    let explained = match one_law(case, &base.noise, (&begun.found(), &variants), say) {
         OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
         OneLaw::Listed(fit, tried) => {
             let begun = search.from(case, &base.noise, (base.fit, fit));
@@ -86,12 +87,11 @@ impl Search<'_> {
         let one = begun.found();
         let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 2, self.say);
         let two = begun.found();
-        let (begun, tried) =
-            match hypothesis::one_law_from_effect(case, &noise, (&one, &two, self.variants), tried, self.say) {
-                OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
-                OneLaw::Listed(fit, tried) => (self.from(case, &noise, (two.baseline, fit)), *tried),
-                OneLaw::Part(tried) => (begun, *tried),
-            };
+        let (begun, tried) = match one_law_from_effect(case, &noise, (&one, &two, self.variants), tried, self.say) {
+            OneLaw::All(found, noise) => return proven(case, *found, noise, self.seed),
+            OneLaw::Listed(fit, tried) => (self.from(case, &noise, (two.baseline, fit)), *tried),
+            OneLaw::Part(tried) => (begun, *tried),
+        };
         let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
             Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
             Pair::Listed(two, tried) => (self.from(case, &noise, (begun.found().baseline, two)), *tried),

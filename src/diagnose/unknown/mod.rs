@@ -10,6 +10,7 @@ pub(super) mod hypothesis;
 mod linear_range;
 mod listed;
 pub(super) mod misplaced;
+pub(super) mod one_law;
 pub(super) mod pair;
 mod shape_refits;
 mod shown;

@@ -1,8 +1,9 @@
 //! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
 use super::forms::{equally_good, is_clearly_better, leaves_something};
-use super::hypothesis::{is_explained, renewed, without_idle};
+use super::hypothesis::{is_explained, without_idle};
 use super::listed::in_place_of;
+use super::one_law::renewed;
 use super::tried::{Lawful, Tried};
 use super::unlisted::{Proposals, propose};
 use crate::diagnose::case::{Case, Noise, Optional, RunSet, Step};

@@ -3,6 +3,7 @@
 use super::hypothesis::is_explained;
 use super::unlisted::Proposals;
 use crate::diagnose::fit::{Fit, Placed, Problem};
+use crate::diagnose::search::Found;
 
 /// A model with a law, and the equally good alternatives.
 #[derive(Clone)]
@@ -31,6 +32,15 @@ pub(in crate::diagnose) struct Tried {
     pub instead: Option<Lawful>,
     /// Whether single laws were tried and none explains everything.
     pub is_open: bool,
+}
+
+impl Lawful {
+    /// The answer with the law in its place.
+    pub fn beside(self, found: &Found) -> Found {
+        let rivals = vec![Vec::new(); self.best.model.effects.len()];
+        let found = Found { rivals_against: self.best.cost, best: self.best, rivals, ..found.clone() };
+        found.with_last_forms(self.forms)
+    }
 }
 
 impl Tried {
