@@ -52,27 +52,19 @@ pub(in crate::diagnose) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::case::{Noise, RunSet, made};
     use crate::diagnose::fit::{Model, Placed};
-    use crate::diagnose::grammar::{Reach, slots, variant};
     use crate::effects::{Element, ElementKind, find};
     use nalgebra::DMatrix;
 
     #[test]
     fn beside_a_law_what_may_be_left_unseen_counts() {
-        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
-        let problem = Problem { case: &case, runs: case.subset(RunSet::All), noise: &[Noise::white(0.02)] };
-        let fit = |placed: &Placed, values: &[f64]| {
-            let model = Model::baseline().plus(placed, values);
-            let x = problem.start(&model, None);
-            Fit { covariance: DMatrix::zeros(x.len(), x.len()), model, x, cost: 0.0, on_bound: Vec::new() }
+        let with = |name: &str, kind: ElementKind| {
+            let entry = find(name).expect("of the catalogue");
+            let placed = Placed { entry, element: Element::of(kind, 0, 1), channel: None };
+            let model = Model::baseline().plus(&placed, &entry.typical());
+            Fit { model, x: Vec::new(), cost: 0.0, covariance: DMatrix::zeros(0, 0), on_bound: Vec::new() }
         };
-        let (entry, element) = (find("leak").expect("of the catalogue"), Element::of(ElementKind::Line, 0, 1));
-        let leak = fit(&Placed { entry, element, channel: None }, &[1e-17]);
-        let all = slots(&case, &leak, Reach::Plain);
-        let slot = all.iter().find(|slot| slot.address == "line.outflow").expect("a slot");
-        let law = variant(&case, slot, &slot.shapes()[0], 1.0).expect("a law");
-        let law = fit(&law.placed, &law.values);
+        let (leak, law) = (with("leak", ElementKind::Line), with("hypothetical_force", ElementKind::Muscle));
         let excess = |best: f64| Excess { baseline: 1.0, best, error: 0.01 };
         assert_eq!([&leak, &law].map(|fit| excess(0.02).left(fit, 1000)), [20.0, 30.0]);
         // Less than noise is nothing.
