@@ -213,7 +213,6 @@ fn a_logger_that_loses_samples_makes_no_false_alarm() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (name, drawn) = concealed(Hiding::Nothing, case, folder.path());
         assert!(drawn.truth.decoys.contains(&Decoy::UnevenSampling));
-        cut(&folder.path().join(&name), 25.0);
         let d = answer(&folder.path().join(name));
         assert_eq!(d.verdict, Verdict::Adequate, "{case:?}: {}", d.summary);
         let left = d.detection.excess_chi2_per_sample;

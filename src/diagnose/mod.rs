@@ -135,7 +135,7 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let (complete, of_scene) = complete_fits(&case, &found, &noise);
     let before = whole.residuals(&found.baseline.model, &found.baseline.x).ok_or_else(diverges)?;
     let left_by_scene = misfit::left(&whole, found.corrected()).map_or(excess.best, |(left, _)| left);
-    let left = excess.left(&found.best, whole.samples());
+    let left = misfit::left_beyond_noise(&whole, &found.best);
     let Said { verdict, is_modelled, effects, contradicted } =
         said(&case, (&found, &complete, left), (confirmed, excess), &noise, &mut warnings);
     warnings.extend(figures::on_bounds(&case, &complete));

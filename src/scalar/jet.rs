@@ -49,23 +49,14 @@ impl<const N: usize> Jet<N> {
         self.map(value, |own| if own == 0.0 { 0.0 } else { own * slope })
     }
 
-    // Plain loops, as in lanes: `array::map` and `from_fn` are compiled anew for every closure.
     #[inline(always)]
-    fn map(mut self, value: f64, slope: impl Fn(f64) -> f64) -> Self {
-        self.value = value;
-        for own in &mut self.slopes {
-            *own = slope(*own);
-        }
-        self
+    fn map(self, value: f64, slope: impl Fn(f64) -> f64) -> Self {
+        Self { value, slopes: self.slopes.map(slope) }
     }
 
     #[inline(always)]
-    fn zip(mut self, other: Self, value: f64, slope: impl Fn(f64, f64) -> f64) -> Self {
-        self.value = value;
-        for (own, other) in self.slopes.iter_mut().zip(&other.slopes) {
-            *own = slope(*own, *other);
-        }
-        self
+    fn zip(self, other: Self, value: f64, slope: impl Fn(f64, f64) -> f64) -> Self {
+        Self { value, slopes: std::array::from_fn(|i| slope(self.slopes[i], other.slopes[i])) }
     }
 }
 

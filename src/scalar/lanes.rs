@@ -39,21 +39,14 @@ pub(crate) fn take_disagreement() -> bool {
 }
 
 impl<const L: usize> Lanes<L> {
-    // Plain loops: `array::map` and `from_fn` are compiled anew for every closure, and there are thousands.
     #[inline(always)]
-    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
-        for own in &mut self.0 {
-            *own = f(*own);
-        }
-        self
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(self.0.map(f))
     }
 
     #[inline(always)]
-    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
-            *own = f(*own, *other);
-        }
-        self
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 
     /// The row of each lane; none where one is outside the table.
@@ -177,11 +170,7 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn select_above(self, bound: Self, then: Self, otherwise: Self) -> Self {
-        let mut chosen = otherwise;
-        for (i, own) in chosen.0.iter_mut().enumerate() {
-            *own = if self.0[i] > bound.0[i] { then.0[i] } else { *own };
-        }
-        chosen
+        Self(std::array::from_fn(|i| if self.0[i] > bound.0[i] { then.0[i] } else { otherwise.0[i] }))
     }
 
     #[inline(always)]

@@ -15,26 +15,6 @@ pub struct Excess {
     pub error: f64,
 }
 
-impl Excess {
-    /// Chi² that the answer leaves beyond noise, as [`left_by`] counts it.
-    pub fn left(&self, answer: &Fit, samples: usize) -> f64 {
-        left_by(answer, (self.best, self.error), samples)
-    }
-}
-
-/// Chi² that a fit leaves beyond noise. Beside a law, whose shape is never quite the true one, it is what may be left
-/// unseen: one standard error more. Such a misfit may favour the wrong one of two laws.
-fn left_by(fit: &Fit, (excess, error): (f64, f64), samples: usize) -> f64 {
-    let has_law = fit.model.effects.iter().any(|effect| effect.entry.hypothetical);
-    let unseen = if has_law { error } else { 0.0 };
-    (excess.max(0.0) + unseen) * samples as f64
-}
-
-/// Chi² that a fit leaves beyond noise, as [`Excess::left`]; nothing if it cannot be simulated.
-pub(in crate::diagnose) fn left_beyond_noise(problem: &Problem, fit: &Fit) -> f64 {
-    left(problem, fit).map_or(0.0, |excess| left_by(fit, excess, problem.samples()))
-}
-
 /// Residuals of the answer, and the misfit above noise of baseline and best.
 pub(in crate::diagnose) fn misfit(whole: &Problem, found: &Found) -> Option<(Residuals, Excess)> {
     let before = whole.residuals(&found.baseline.model, &found.baseline.x)?;
@@ -47,6 +27,19 @@ pub(in crate::diagnose) fn misfit(whole: &Problem, found: &Found) -> Option<(Res
 /// Misfit per sample of a fit, and its standard error; `None` if it cannot be simulated.
 pub(in crate::diagnose) fn left(problem: &Problem, fit: &Fit) -> Option<(f64, f64)> {
     Some(structured_excess(&problem.residuals(&fit.model, &fit.x)?, problem.noise))
+}
+
+/// Chi² that a fit leaves beyond noise; nothing if it cannot be simulated.
+pub(in crate::diagnose) fn left_beyond_noise(problem: &Problem, fit: &Fit) -> f64 {
+    left(problem, fit).map_or(0.0, |excess| beyond_noise(fit, excess, problem.samples()))
+}
+
+/// The same of an excess per sample and its standard error. Beside a law, whose shape is never quite the true one, it is what
+/// may be left unseen, one standard error more: such a misfit may favour the wrong one of two laws.
+fn beyond_noise(fit: &Fit, (excess, error): (f64, f64), samples: usize) -> f64 {
+    let has_law = fit.model.effects.iter().any(|effect| effect.entry.hypothetical);
+    let unseen = if has_law { error } else { 0.0 };
+    (excess.max(0.0) + unseen) * samples as f64
 }
 
 #[cfg(test)]
@@ -65,9 +58,8 @@ mod tests {
             Fit { model, x: Vec::new(), cost: 0.0, covariance: DMatrix::zeros(0, 0), on_bound: Vec::new() }
         };
         let (leak, law) = (with("leak", ElementKind::Line), with("hypothetical_force", ElementKind::Muscle));
-        let excess = |best: f64| Excess { baseline: 1.0, best, error: 0.01 };
-        assert_eq!([&leak, &law].map(|fit| excess(0.02).left(fit, 1000)), [20.0, 30.0]);
+        let left = |excess: f64| [&leak, &law].map(|fit| beyond_noise(fit, (excess, 0.01), 1000));
         // Less than noise is nothing.
-        assert_eq!([&leak, &law].map(|fit| excess(-0.02).left(fit, 1000)), [0.0, 10.0]);
+        assert_eq!([left(0.02), left(-0.02)], [[20.0, 30.0], [0.0, 10.0]]);
     }
 }
