@@ -97,8 +97,8 @@ impl Search<'_> {
             Pair::Listed(two, tried) => (self.from(case, &noise, (begun.found().baseline, two)), *tried),
             Pair::Part(tried) => (begun, *tried),
         };
-        let law = Bound(tried.law.as_ref());
         let open = reweight::open_runs(case, &noise);
+        let law = tried.bound(&open, &begun.found().baseline);
         let found = begun.clone().finish(&open, self.variants, law, self.say);
         if !law.outdoes(&open, &found.baseline, &found.best) {
             return self.to_the_end(case, noise, found, tried);
@@ -109,7 +109,7 @@ impl Search<'_> {
         if let Some(lawful) = self.by_laws(case, &mut cut_short, tried)? {
             return Ok(lawful);
         }
-        let found = begun.finish(&reweight::open_runs(case, &noise), self.variants, Bound(None), self.say);
+        let found = begun.finish(&reweight::open_runs(case, &noise), self.variants, Bound::default(), self.say);
         self.to_the_end(case, noise, found, again)
     }
 

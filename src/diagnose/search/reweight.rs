@@ -34,7 +34,7 @@ pub(in crate::diagnose) fn weigh(
             break;
         }
         let begun = Begun::again(&problem, (renewed.baseline, renewed.start), variants, found.known(), say);
-        found = begun.finish(&problem, variants, Bound(None), say);
+        found = begun.finish(&problem, variants, Bound::default(), say);
     }
     (found, noise)
 }

@@ -71,7 +71,7 @@ impl Begun {
         let screened = screening.as_ref().map_or_else(Vec::new, |s| s.screened.clone());
         let way = Way { screening, ..Way::at(baseline.clone(), Vec::new()) };
         let (mut exchange, mut seen) = (Exchange::new(problem, variants, Vec::new()), Seen::default());
-        let way = climb(&mut exchange, &baseline, way, &mut seen, (Up::to(1), Bound(None)), say);
+        let way = climb(&mut exchange, &baseline, way, &mut seen, (Up::to(1), Bound::default()), say);
         Self { baseline, way, seen, known: exchange.known, screened, is_new: true }
     }
 
@@ -97,7 +97,7 @@ impl Begun {
     pub fn up_to(mut self, problem: &Problem, variants: &[Variant], most: usize, say: &dyn Fn(String)) -> Self {
         let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let singly = Up { most, is_singly: true };
-        self.way = climb(&mut exchange, &self.baseline, self.way, &mut self.seen, (singly, Bound(None)), say);
+        self.way = climb(&mut exchange, &self.baseline, self.way, &mut self.seen, (singly, Bound::default()), say);
         self.known = exchange.known;
         self
     }
@@ -123,7 +123,8 @@ impl Begun {
     pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
         let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();
-        if self.is_new && self.way.best.model.effects.is_empty() {
+        let is_outdone = law.outdoes(problem, &baseline, &self.way.best);
+        if self.is_new && self.way.best.model.effects.is_empty() && !is_outdone {
             self.way = several_to_begin(&mut exchange, self.way, say);
         }
         self.way = climb(&mut exchange, &baseline, self.way, &mut self.seen, (Up::to(MOST_EFFECTS), law), say);

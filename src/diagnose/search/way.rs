@@ -27,18 +27,23 @@ pub(in crate::diagnose) fn leaves_much(problem: &Problem, baseline: &Fit, best: 
     best.cost - noise > MUCH * (baseline.cost - noise) && best.cost - noise > least_gain(problem.samples())
 }
 
-/// An unlisted law that the search competes with: if it leaves little, several effects must leave less.
-#[derive(Clone, Copy)]
-pub(in crate::diagnose) struct Bound<'a>(pub Option<&'a Fit>);
+/// An unlisted law that the search competes with.
+#[derive(Clone, Copy, Default)]
+pub(in crate::diagnose) struct Bound<'a> {
+    pub law: Option<&'a Fit>,
+    /// Whether it leaves next to nothing.
+    pub is_enough: bool,
+}
 
 impl Bound<'_> {
-    /// Whether the law leaves less than several effects, and little. It is not compared with single effects, because a
-    /// free shape always fits better.
-    pub fn outdoes(&self, problem: &Problem, baseline: &Fit, several: &Fit) -> bool {
-        self.0.is_some_and(|law| {
-            let is_simpler = [several, law].iter().any(|fit| fit.model.effects.len() > 1);
-            let is_lower = law.cost < several.cost - least_gain(problem.samples());
-            is_simpler && is_lower && !leaves_much(problem, baseline, law)
+    /// Whether the law leaves less than listed effects: next to nothing where they leave much, little with fewer parts, or anything with far fewer.
+    /// One that leaves as little as a single effect proves nothing: a free shape always fits better.
+    pub fn outdoes(&self, problem: &Problem, baseline: &Fit, listed: &Fit) -> bool {
+        self.law.is_some_and(|law| {
+            let [parts, own] = [listed, law].map(|fit| fit.model.effects.len());
+            let is_lower = law.cost < listed.cost - least_gain(problem.samples());
+            let is_little = || parts.max(own) > 1 && !leaves_much(problem, baseline, law);
+            is_lower && (parts > own + 1 || self.is_enough && leaves_much(problem, baseline, listed) || is_little())
         })
     }
 }
@@ -187,7 +192,9 @@ fn step_up(
 ) -> Tried {
     let problem = exchange.problem;
     let least = least_of(problem, baseline, best);
-    let refits = refit(problem, screening, &pick(&screening.screened, least, Absorbed::Any));
+    let picked = pick(&screening.screened, least, Absorbed::Any);
+    say(format!("{} listed effects beside {}", picked.len(), best.model.title()));
+    let refits = refit(problem, screening, &picked);
     let refits = afresh(problem, refits);
     if best.model.effects.is_empty() {
         first.clone_from(&refits);

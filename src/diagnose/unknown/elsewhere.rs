@@ -82,7 +82,7 @@ fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
 }
 
 /// The shape of the last law of a fit, if it belongs to this slot, and its scale.
-fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f64)> {
+pub(super) fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'static Shape, f64)> {
     let last = fit.model.effects.len().checked_sub(1)?;
     let law = &fit.model.effects[last].spec().unlisted()?.law;
     let is_its = |shape: &&Shape| {

@@ -92,7 +92,7 @@ pub(in crate::diagnose) fn one_law_from_effect(
 ) -> OneLaw {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let is_listed = two.best.model.effects.len() > 1 && !leaves_something(&open, &two.best);
-    if !tried.is_open || is_listed || tried.is_enough(&open, &one.baseline) {
+    if !tried.is_open || is_listed || tried.is_nearer(&one.best) {
         return OneLaw::Part(Box::new(tried));
     }
     tried.instead = instead(&open, one, say);

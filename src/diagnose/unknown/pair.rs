@@ -1,6 +1,7 @@
 //! Two causes at once, of which the catalogue lists at most one: a law beside a listed effect, or two laws.
 
 use super::forms::{equally_good, is_clearly_better, leaves_something};
+use super::grown::{grown, is_near};
 use super::hypothesis::{is_explained, without_idle};
 use super::listed::in_place_of;
 use super::one_law::renewed;
@@ -46,7 +47,7 @@ pub(in crate::diagnose) fn pair(
         return Pair::Part(Box::new(tried));
     }
     // One law that remembers or depends on two variables is simpler than two things.
-    tried.known.wide = propose(&open, &found.baseline, Reach::Wide, say);
+    tried.known.wide = wide(&open, &found.baseline, &law, say);
     // A bend of what a channel shows imitates anything that is still: a law in the rig comes before it.
     let bent =
         || propose(&open, &found.baseline, Reach::Channels, say).and_then(|bent| explains_all(&open, found, &bent));
@@ -83,6 +84,27 @@ pub(in crate::diagnose) fn pair(
     }
     tried.takes(lawful, is_better);
     Pair::Part(Box::new(tried))
+}
+
+/// Laws that remember or depend on two variables: what the best simple law grows into, if that is all there is to it, or any.
+fn wide(open: &Problem, baseline: &Fit, simple: &Fit, say: &dyn Fn(String)) -> Option<Proposals> {
+    let near = Some(simple).filter(|simple| is_near(open, simple, baseline.cost));
+    let mut fits = near.map_or_else(Vec::new, |simple| grown(open, simple, baseline.cost));
+    if let Some(best) = fits.first() {
+        say(format!(
+            "{} grows into {}: chi2 {:.0} -> {:.0}",
+            simple.model.title(),
+            best.model.title(),
+            simple.cost,
+            best.cost
+        ));
+        if !leaves_something(open, best) {
+            return Some(Proposals { fits });
+        }
+    }
+    fits.extend(propose(open, baseline, Reach::Wide, say).into_iter().flat_map(|own| own.fits));
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    (!fits.is_empty()).then_some(Proposals { fits })
 }
 
 /// The best proposal, if it leaves nothing above noise and is clearly better than the answer.

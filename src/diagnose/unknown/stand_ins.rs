@@ -1,6 +1,7 @@
 //! Alternatives to an effect of the answer: laws at other places that explain as much.
 
-use super::forms::{CLEARLY, Criterion, other_forms, tie, with_elsewhere};
+use super::forms::{CLEARLY, Criterion, leaves_something, other_forms, tie, with_elsewhere};
+use super::grown::in_its_place;
 use super::tried::Lawful;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
@@ -39,9 +40,13 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
         }
         let last = found.best.with_last(index);
         let without = open.fit(&last.model.without(count - 1), &open.start_without(&last, count - 1));
-        let (best, forms) = without.map_or((None, Vec::new()), |without| stand_ins(&open, &last, without.cost));
+        let (best, forms) =
+            without.as_ref().map_or((None, Vec::new()), |without| stand_ins(&open, &last, without.cost));
         let criterion = Criterion::of(&open, [&last]);
         // A law that bends fits better wherever an effect of the catalogue is idealised.
+        let again = without.filter(|_| is_law && leaves_something(&open, &last));
+        let again = again.and_then(|without| in_its_place(&open, &last, without.cost).into_iter().next());
+        let best = again.into_iter().chain(best).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let better = best.filter(|best| is_law && criterion.at(best) < criterion.at(&last) - CLEARLY);
         exchanged = exchanged.or(better);
         all.push(forms);

@@ -3,7 +3,7 @@
 use super::hypothesis::is_explained;
 use super::unlisted::Proposals;
 use crate::diagnose::fit::{Fit, Placed, Problem};
-use crate::diagnose::search::Found;
+use crate::diagnose::search::{Bound, Found};
 
 /// A model with a law, and the equally good alternatives.
 #[derive(Clone)]
@@ -44,6 +44,18 @@ impl Lawful {
 }
 
 impl Tried {
+    /// The law that several listed effects compete with.
+    pub fn bound(&self, open: &Problem, baseline: &Fit) -> Bound<'_> {
+        let plain = || self.known.plain.as_ref().and_then(|plain| plain.fits.first());
+        Bound { law: self.law.as_ref().or_else(plain), is_enough: self.is_enough(open, baseline) }
+    }
+
+    /// Whether one law leaves less than a listed effect: laws located along its runs gain nothing from those of the effect.
+    pub(super) fn is_nearer(&self, effect: &Fit) -> bool {
+        let plain = self.known.plain.as_ref().and_then(|plain| plain.fits.first());
+        self.law.as_ref().into_iter().chain(plain).any(|law| law.cost < effect.cost)
+    }
+
     /// Whether one law leaves too little to look for another.
     pub(super) fn is_enough(&self, open: &Problem, baseline: &Fit) -> bool {
         self.law.as_ref().is_some_and(|law| is_explained(open, baseline, law))

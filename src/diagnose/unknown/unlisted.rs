@@ -5,6 +5,7 @@
 //! then screened around the best slots; the best candidates are refitted jointly with the calibration.
 
 use super::forms::{finished, leaves_something};
+use super::grown::located_again;
 use super::shown::{Located, Shown};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
@@ -108,6 +109,7 @@ pub(super) fn propose_against(
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some(simple) = fits.first().filter(|fit| reach == Reach::Plain && leaves_something(problem, fit)) {
+        say(format!("wider shapes, beside {}", simple.model.title()));
         let other = wider_shapes(&shown, &all, &best, (&curves, simple), say);
         fits.extend(other);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -117,7 +119,10 @@ pub(super) fn propose_against(
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
-    Some(Proposals { fits: finished(problem, fits, FINISHED, from.cost) })
+    say(format!("the best {FINISHED} of {} refits to the end", fits.len()));
+    let fits = finished(problem, fits, FINISHED, from.cost);
+    let is_plain = reach == Reach::Plain;
+    Some(Proposals { fits: if is_plain { located_again(problem, fits, from.cost, say) } else { fits } })
 }
 
 /// Refits with sums of two shapes at the slot whose curve explains what no simple shape does, and with further shapes there, or else at the
@@ -163,7 +168,7 @@ fn worth_widening<'a, 'f>(best: &[&'a Slot], fits: impl Iterator<Item = &'f Fit>
 
 /// The best slots and the best constants: some at the most likely places, then such as are unlike these. What derivatives promise is little to
 /// go by where the scene is far off, and slots that are alike then fail together.
-fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -> Vec<&'a Slot> {
+pub(super) fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -> Vec<&'a Slot> {
     let least = WORTH * located.first().map_or(0.0, |best| best.gain);
     let over_variables = || located.iter().filter(|l| !l.slot.is_constant() && l.gain > least);
     let of_place =
