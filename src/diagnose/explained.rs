@@ -75,8 +75,8 @@ impl Search<'_> {
         Begun::again(&reweight::open_runs(case, noise), fits, self.variants, Vec::new(), self.say)
     }
 
-    /// Tries several effects, several laws, and laws beside effects. Stops adding effects once one law outdoes two of
-    /// them; resumes if no law remains in their place.
+    /// Tries several effects, several laws, and laws beside effects. Stops adding effects once a law outdoes
+    /// them; resumes if none remains in their place.
     fn several(
         &self,
         case: &mut Case,

@@ -119,7 +119,7 @@ impl Begun {
     /// Continues to the end.
     ///
     /// The search is greedy. If it ends with much misfit, it may have started with the wrong effect, and the next best
-    /// starts are tried. It stops where a law outdoes two effects.
+    /// starts are tried. It stops where a law outdoes its effects.
     pub fn finish(mut self, problem: &Problem, variants: &[Variant], law: Bound, say: &dyn Fn(String)) -> Found {
         let mut exchange = Exchange::new(problem, variants, std::mem::take(&mut self.known));
         let baseline = self.baseline.clone();

@@ -252,3 +252,43 @@ fn explains_its_share(problem: &Problem, baseline_cost: f64, before: &Fit, after
     let left = before.cost - problem.noise_cost();
     adds_branch(before, after) || gain > FAIR_OF_ALL * all || gain > FAIR_OF_LEFT * left
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::diagnose::case::{Noise, RunSet, made};
+    use crate::diagnose::fit::{Model, Placed};
+    use crate::effects::{Element, ElementKind, find};
+
+    /// Fits that leave a share of the calibration's misfit, with a number of effects.
+    fn fit(problem: &Problem, parts: usize, left: f64) -> Fit {
+        let entry = find("leak").expect("of the catalogue");
+        let placed = Placed { entry, element: Element::of(ElementKind::Line, 0, 1), channel: None };
+        let model = (0..parts).fold(Model::baseline(), |model, _| model.plus(&placed, &entry.typical()));
+        let cost = problem.noise_cost() * (1.0 + 10.0 * left);
+        Fit { model, x: Vec::new(), cost, covariance: DMatrix::zeros(0, 0), on_bound: Vec::new() }
+    }
+
+    #[test]
+    fn a_law_outdoes_effects_that_leave_more_and_are_many_or_leave_much() {
+        let case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let noise = [Noise::white(0.02)];
+        let problem = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let fit = |parts: usize, left: f64| fit(&problem, parts, left);
+        let outdoes = |left: f64, is_enough: bool, listed: Fit| {
+            let law = fit(1, left);
+            Bound { law: Some(&law), is_enough }.outdoes(&problem, &fit(0, 1.0), &listed)
+        };
+        // A law that leaves much: only three effects, and only if they leave more.
+        assert!(outdoes(0.4, false, fit(3, 0.5)) && !outdoes(0.4, false, fit(3, 0.3)));
+        assert!(!outdoes(0.4, false, fit(2, 0.5)) && !outdoes(0.4, false, fit(1, 0.9)));
+        // One that leaves little: two effects. One that leaves next to nothing: also one that leaves much, or none at all.
+        assert!(outdoes(0.04, false, fit(2, 0.5)) && !outdoes(0.04, false, fit(1, 0.5)));
+        assert!(
+            outdoes(0.01, true, fit(1, 0.5)) && outdoes(0.01, true, fit(0, 1.0)) && !outdoes(0.01, true, fit(1, 0.04))
+        );
+        assert!(!Bound::default().outdoes(&problem, &fit(0, 1.0), &fit(3, 0.9)));
+    }
+}

@@ -11,6 +11,7 @@ use super::shown::{Located, Shown};
 use super::unlisted::{is_law_of, several_ports};
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{Reach, Reading, Slot, slots};
+use crate::diagnose::verdict::port;
 
 /// Maximum number of slots refitted, shapes for each, and refits that are converged.
 const SLOTS: usize = 8;
@@ -109,7 +110,7 @@ fn over(fit: &Fit) -> Vec<String> {
 
 /// The place of the last law of a fit, and others that promise nearly as much over its variable.
 fn as_good(located: &[Located], fit: &Fit) -> Vec<String> {
-    let mut places: Vec<String> = fit.model.effects.last().map(crate::diagnose::verdict::port).into_iter().collect();
+    let mut places: Vec<String> = fit.model.effects.last().map(port).into_iter().collect();
     let least = AS_GOOD * located.first().map_or(0.0, |best| best.gain);
     for own in located.iter().filter(|l| l.gain >= least) {
         if places.len() < PLACES && !places.contains(&own.slot.address) {

@@ -23,8 +23,8 @@ pub(super) fn other_places(open: &Problem, found: &mut Found) -> bool {
     best.is_some_and(|best| is_in_rig && criterion.at(&best) < criterion.at(&found.best) - CLEARLY)
 }
 
-/// The same for each of several effects whose alternatives are not known yet. Returns the answer with a law elsewhere
-/// in place of one of several laws, if that is clearly better.
+/// The same for each of several effects whose alternatives are not known yet. Returns the answer with another law in place
+/// of one of several, if that is clearly better: elsewhere, or located again along the runs of all of them.
 pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut Found) -> Option<Found> {
     let count = found.best.model.effects.len();
     if count < 2 || case.is_without(Step::OpenSet) {
@@ -40,16 +40,16 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
         }
         let last = found.best.with_last(index);
         let without = open.fit(&last.model.without(count - 1), &open.start_without(&last, count - 1));
-        let (best, forms) =
-            without.as_ref().map_or((None, Vec::new()), |without| stand_ins(&open, &last, without.cost));
-        let criterion = Criterion::of(&open, [&last]);
-        // A law that bends fits better wherever an effect of the catalogue is idealised.
-        let again = without.filter(|_| is_law && leaves_something(&open, &last));
-        let again = again.and_then(|without| in_its_place(&open, &last, without.cost).into_iter().next());
-        let best = again.into_iter().chain(best).min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let better = best.filter(|best| is_law && criterion.at(best) < criterion.at(&last) - CLEARLY);
-        exchanged = exchanged.or(better);
+        let before = without.map(|without| without.cost);
+        let (elsewhere, forms) = before.map_or((None, Vec::new()), |before| stand_ins(&open, &last, before));
         all.push(forms);
+        // A law that bends fits better wherever an effect of the catalogue is idealised.
+        let Some(before) = before.filter(|_| is_law) else { continue };
+        let again = leaves_something(&open, &last).then(|| in_its_place(&open, &last, before));
+        let criterion = Criterion::of(&open, [&last]);
+        let better = again.into_iter().flatten().chain(elsewhere).min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let better = better.filter(|better| criterion.at(better) < criterion.at(&last) - CLEARLY);
+        exchanged = exchanged.or(better);
     }
     found.forms = all;
     // Should it not stand, what was found keeps its forms.
