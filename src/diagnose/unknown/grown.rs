@@ -45,8 +45,7 @@ pub(super) fn located_again(problem: &Problem, mut fits: Vec<Fit>, before: f64, 
         let Some(best) = fits.first().filter(|fit| leaves_something(problem, fit)).cloned() else { break };
         say(format!("located again along {}", best.model.title()));
         let others = in_its_place(problem, &best, before);
-        let criterion = Criterion::of(problem, others.first().into_iter().chain([&best]));
-        let is_better = others.first().is_some_and(|other| criterion.at(other) < criterion.at(&best) - CLEARLY);
+        let is_better = is_clearly_below(problem, &others, &best);
         fits.extend(others);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         if !is_better {
@@ -96,9 +95,15 @@ pub(super) fn grown(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit> {
     let located = shown.locate(&all, &own, None);
     let best: Vec<&Slot> = located.iter().take(SLOTS).map(|l| &l.slot).collect();
     let fits = finished(problem, shown.refits(&all, &best, SHAPES), FINISHED, before);
-    let criterion = Criterion::of(problem, fits.first().into_iter().chain([simple]));
-    let is_better = fits.first().is_some_and(|fit| criterion.at(fit) < criterion.at(simple) - CLEARLY);
-    if is_better { fits } else { Vec::new() }
+    if is_clearly_below(problem, &fits, simple) { fits } else { Vec::new() }
+}
+
+/// Whether the first of some fits, cheapest first, is clearly better than another.
+fn is_clearly_below(problem: &Problem, fits: &[Fit], other: &Fit) -> bool {
+    fits.first().is_some_and(|first| {
+        let criterion = Criterion::of(problem, [first, other]);
+        criterion.at(first) < criterion.at(other) - CLEARLY
+    })
 }
 
 /// Variables of the last law of a fit, if it is one that can grow.

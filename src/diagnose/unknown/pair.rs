@@ -36,7 +36,7 @@ pub(in crate::diagnose) fn pair(
     say: &dyn Fn(String),
 ) -> Pair {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
-    let first = tried.known.plain.as_ref().and_then(|p| p.fits.first()).cloned();
+    let first = tried.known.first().cloned();
     // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
     let is_asked = is_asked && !tried.is_enough(&open, &found.baseline);

@@ -46,14 +46,12 @@ impl Lawful {
 impl Tried {
     /// The law that several listed effects compete with.
     pub fn bound(&self, open: &Problem, baseline: &Fit) -> Bound<'_> {
-        let plain = || self.known.plain.as_ref().and_then(|plain| plain.fits.first());
-        Bound { law: self.law.as_ref().or_else(plain), is_enough: self.is_enough(open, baseline) }
+        Bound { law: self.law.as_ref().or_else(|| self.known.first()), is_enough: self.is_enough(open, baseline) }
     }
 
     /// Whether one law leaves less than a listed effect: laws located along its runs gain nothing from those of the effect.
     pub(super) fn is_nearer(&self, effect: &Fit) -> bool {
-        let plain = self.known.plain.as_ref().and_then(|plain| plain.fits.first());
-        self.law.as_ref().into_iter().chain(plain).any(|law| law.cost < effect.cost)
+        self.law.as_ref().into_iter().chain(self.known.first()).any(|law| law.cost < effect.cost)
     }
 
     /// Whether one law leaves too little to look for another.
@@ -77,6 +75,11 @@ impl Tried {
 }
 
 impl Known {
+    /// The best simple law.
+    pub(super) fn first(&self) -> Option<&Fit> {
+        self.plain.as_ref()?.fits.first()
+    }
+
     /// Proposals to accompany this law.
     pub(super) fn beside(&mut self, law: &Fit) -> Option<Proposals> {
         self.second.take_if(|(own, _)| *own == law.model.effects).map(|(_, proposals)| proposals)

@@ -119,10 +119,14 @@ pub(super) fn propose_against(
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
+    Some(Proposals { fits: to_the_end(problem, fits, from.cost, (reach, say)) })
+}
+
+/// The best of some rough refits converged, and laws located again along the runs of the first. `before`: chi² without a law.
+fn to_the_end(problem: &Problem, fits: Vec<Fit>, before: f64, (reach, say): (Reach, &dyn Fn(String))) -> Vec<Fit> {
     say(format!("the best {FINISHED} of {} refits to the end", fits.len()));
-    let fits = finished(problem, fits, FINISHED, from.cost);
-    let is_plain = reach == Reach::Plain;
-    Some(Proposals { fits: if is_plain { located_again(problem, fits, from.cost, say) } else { fits } })
+    let fits = finished(problem, fits, FINISHED, before);
+    if reach == Reach::Plain { located_again(problem, fits, before, say) } else { fits }
 }
 
 /// Refits with sums of two shapes at the slot whose curve explains what no simple shape does, and with further shapes there, or else at the
