@@ -87,3 +87,55 @@ fn a_strip_that_stiffens_lacks_another_rubber_law() {
     assert_eq!((law.name.as_str(), law.element.as_str()), ("rubber_law", "muscle"));
     assert!(d.fit.channels["force_n"].rmse_corrected < 0.012, "{:?}", d.fit.channels);
 }
+
+/// An axis with the stock area, at three pressures: speed and way of a slow multisine, noise of 0.2 N.
+fn axes(hidden_n: impl Fn(f64, f64) -> f64) -> TempDir {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut row = |t: f64, pressure_pa: f64, phase: f64| {
+        let position_m = 0.03 * (0.7 * t + phase).sin() + 0.01 * (1.9 * t).sin();
+        let noise: f64 = StandardNormal.sample(&mut random);
+        let force_n = 5e-4 * pressure_pa + hidden_n(position_m, pressure_pa) + 0.2 * noise;
+        vec![t, 1e3 * position_m, 1e-3 * pressure_pa, force_n]
+    };
+    let runs = [(5e4, 0.0), (1e5, 1.0), (2e5, 2.0)]
+        .map(|(pressure_pa, phase)| (0..800).map(|i| row(0.025 * f64::from(i), pressure_pa, phase)).collect());
+    let columns = [("position_mm", "input"), ("pressure_kpa", "input"), ("force_n", "output")];
+    folder("driven_axis", &columns, &runs)
+}
+
+/// The port, what the law depends on, and the share of the misfit on the held-out run that it takes away.
+fn said(d: &Diagnosis) -> (&str, &[String], f64) {
+    let [law] = &d.effects[..] else { panic!("{}: {:?}", d.summary, d.effects) };
+    let port = law.port.as_str();
+    let [channel] = &d.fit.channels.values().collect::<Vec<_>>()[..] else { panic!("one output") };
+    let above_noise = |rmse: f64| rmse.powi(2) - channel.noise_sd.powi(2);
+    (port, &law.variables, 1.0 - above_noise(channel.rmse_corrected) / above_noise(channel.rmse_baseline))
+}
+
+/// A spring at the end of the way, which the catalogue does not have.
+#[test]
+fn a_law_of_an_axis_that_nobody_listed_is_found() {
+    let d = answer(axes(|x, _| 4e3 * (x - 0.02).max(0.0)).path());
+    let (port, variables, closed) = said(&d);
+    assert_eq!((port, variables), ("axis.force", &["position_m".to_owned()][..]), "{}", d.summary);
+    assert!(closed > 0.9, "{closed}: {:?}", d.fit.channels);
+}
+
+/// A strip whose rubber grows softer while it is tested.
+#[test]
+fn a_law_of_a_strip_that_nobody_listed_is_found() {
+    let [c1_pa, length_m, section_m2] = [5e4, 0.05, 2e-5];
+    let mut random = ChaCha8Rng::seed_from_u64(13);
+    let mut row = |t: f64, period_s: f64| {
+        let share = 1.0 - (2.0 * (t / period_s).fract() - 1.0).abs();
+        let l: f64 = 1.0 + 1.5 * share;
+        let noise: f64 = StandardNormal.sample(&mut random);
+        let force_n = section_m2 * 2.0 * c1_pa * (l - l.powi(-2)) * (1.0 - 0.06 * (1.0 + t / 8.0).ln());
+        vec![t, 1e3 * length_m * (l - 1.0), force_n + 0.01 * noise]
+    };
+    let runs = [7.0, 11.0, 40.0].map(|period| (0..600).map(|i| row(0.1 * f64::from(i), period)).collect());
+    let d = answer(folder("tensile_test", &[("position_mm", "input"), ("force_n", "output")], &runs).path());
+    let (port, variables, closed) = said(&d);
+    assert_eq!((port, variables), ("strip.force", &["time_s".to_owned()][..]), "{}", d.summary);
+    assert!(closed > 0.9, "{closed}: {:?}", d.fit.channels);
+}

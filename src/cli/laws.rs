@@ -88,7 +88,7 @@ fn page(spec: &PortSpec) -> String {
         };
         text += &format!("    {:<22} {unit:<8} {}\n", own.name(), own.is);
     }
-    if spec.carrier != Carrier::Sensor {
+    if !matches!(spec.carrier, Carrier::Alone | Carrier::Sensor) {
         text += "    Another muscle or cable goes by its number: pressure_2_pa, tension_1_n\n";
     }
     text += "  functions  abs, sign, min, max, exp, ln, sqrt, sin, cos, tanh; + - * / ^ and comparisons (1 where true, else 0)\n";
@@ -106,6 +106,7 @@ fn in_words(spec: &PortSpec) -> String {
 fn energy(spec: &PortSpec) -> &'static str {
     match (spec.carrier, spec.dissipates) {
         (Carrier::Sensor, _) => "none: a sensor only shows",
+        (Carrier::Alone, _) => "none is counted: what stands alone follows its recorded input",
         (_, true) => {
             "the port takes energy; `smam run --energy` warns of a law that brings in more than the element loses"
         }
@@ -120,6 +121,7 @@ fn addresses(spec: &PortSpec) -> String {
         (Carrier::Joint, Some((_, term))) => {
             format!("{name} for the joints that the scene moves, joint(NAME).{term} for one")
         }
+        (Carrier::Alone, _) => format!("{name}: a scene has one"),
         (_, Some((element, term))) => format!("{name} for all, {element}_2.{term} for the second"),
         (_, None) => format!("{name} for all, {name}_2 for the second"),
     }
@@ -172,6 +174,7 @@ fn candidates(spec: &PortSpec, scene: &Scene, joints: &[String]) -> Vec<String> 
         Carrier::Muscle => numbered(scene.file.muscle.len()),
         Carrier::Cable => numbered(scene.file.cable.len()),
         Carrier::Joint => joints.iter().map(of).collect(),
+        Carrier::Alone => vec![spec.name()],
         Carrier::Sensor => scene.file.output.iter().map(|o| of(&o.channel)).collect(),
     }
 }

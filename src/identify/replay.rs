@@ -1,7 +1,8 @@
 //! Simulating what was recorded.
 
 use crate::recording::{
-    Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column,
+    Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, Smoothed,
+    parse_column, smoothed,
 };
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
@@ -54,12 +55,28 @@ pub fn load_runs(
             }
             let mut found = crate::recording::survey(&data.recording);
             found.missing.retain(|m| !run.not_recorded.contains(&m.column));
-            let notes = data.notes.into_iter().chain(found.notes());
+            let (recording, smoothed) = without_input_noise(set, data.recording)?;
+            let notes = data.notes.into_iter().chain(found.notes()).chain(smoothed);
             notes.for_each(|n| note(format!("{}: {n}", run.file)));
-            loaded.push(RecordedRun { run, recording: data.recording });
+            loaded.push(RecordedRun { run, recording });
         }
     }
     Ok(loaded)
+}
+
+/// A recording without the noise of its inputs, and what was done: see [`smoothed`].
+fn without_input_noise(set: &RecordingSet, recording: Recording) -> Result<(Recording, Vec<String>), RecordingError> {
+    let (mut channels, mut notes) = (recording.channels().to_vec(), Vec::new());
+    for spec in set.of_role(Role::Input).filter(|spec| spec.constant.is_none()) {
+        let Some(channel) = channels.iter_mut().find(|c| c.column == spec.column) else { continue };
+        let Some(Smoothed { values, noise_sd }) = smoothed(recording.time_s(), &channel.values, spec.noise_sd) else {
+            continue;
+        };
+        let unit = channel.unit()?.symbol;
+        notes.push(format!("{} is smoothed by its noise of {noise_sd:.1e} {unit} (as recorded: noise_sd = 0)", spec.column));
+        channel.values = values;
+    }
+    Ok((Recording::new(recording.time_s().to_vec(), channels)?, notes))
 }
 
 /// The scene keys that a run's known conditions set, in the keys' units.

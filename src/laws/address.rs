@@ -94,7 +94,7 @@ impl Address {
         }
         let found = numbered(element).and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
         match found {
-            Some((spec, number)) if of.is_none() && spec.carrier != Carrier::Joint => {
+            Some((spec, number)) if of.is_none() && spec.is_numbered() => {
                 Ok(Self { port: spec.port, number: Some(number), of: None })
             }
             _ => Err(unknown()),
@@ -111,6 +111,10 @@ impl Address {
         let name = match self.port.spec().element {
             "plunger" => "syringe",
             "joint" => "mechanism",
+            // As the effects of the catalogue on them.
+            "axis" => "syringe",
+            "strip" => "muscle",
+            "chamber" => "line",
             other => other,
         };
         self.number.map_or_else(|| name.to_owned(), |n| format!("{name}_{}", n + 1))

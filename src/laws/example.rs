@@ -6,7 +6,7 @@ use super::syntax::parse;
 use super::{Acts, LawTable, ParameterTable, PortSpec, Variable};
 
 /// Value of each parameter that an example of [`super::PORTS`] uses, SI.
-const VALUES: [(&str, f64); 24] = [
+const VALUES: [(&str, f64); 27] = [
     ("a", 0.2),
     ("mu", 0.1),
     ("compliance_m_pa", 1e-10),
@@ -31,6 +31,9 @@ const VALUES: [(&str, f64); 24] = [
     ("speed_rad_s", 0.05),
     ("c_n_m_s_rad", 1e-4),
     ("scale_s", 60.0),
+    ("friction_n", 3.0),
+    ("stribeck_m_s", 2e-3),
+    ("rate_1_s", 0.05),
 ];
 
 impl PortSpec {

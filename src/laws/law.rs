@@ -183,9 +183,9 @@ impl Law {
         variables.collect()
     }
 
-    /// Whether it acts on something of the plant, and not on what a channel shows.
-    pub(crate) fn is_physical(&self) -> bool {
-        self.address.port.spec().carrier != Carrier::Sensor
+    /// Whether it acts in a plant that is integrated, and neither on an element that stands alone nor on what a channel shows.
+    pub(crate) fn is_of_plant(&self) -> bool {
+        !matches!(self.address.port.spec().carrier, Carrier::Alone | Carrier::Sensor)
     }
 
     /// `muscle_1.friction scales 1 + a * x`.

@@ -29,6 +29,10 @@ pub enum Port {
     Torque,
     JointStiffness,
     JointDamping,
+    AxisForce,
+    AxisFriction,
+    StripForce,
+    ChamberOutflow,
     Sensor,
 }
 
@@ -39,6 +43,8 @@ pub enum Carrier {
     Muscle,
     Cable,
     Joint,
+    /// Axis, strip or chamber: a scene has one, and nothing else.
+    Alone,
     Sensor,
 }
 
@@ -90,6 +96,9 @@ const CABLE: &[Quantity] = &[
 ];
 const JOINT: &[Quantity] =
     &[Q::Angle, Q::AngularSpeed, Q::Position, Q::Speed, Q::Tension, Q::Pressure, Q::Elongation, Q::Time];
+const AXIS: &[Quantity] = &[Q::Position, Q::Speed, Q::Pressure, Q::Time];
+const STRIP: &[Quantity] = &[Q::Position, Q::Time];
+const CHAMBER: &[Quantity] = &[Q::Pressure, Q::Time];
 const SENSOR: &[Quantity] = &[Q::Reading, Q::Time];
 
 const fn port(
@@ -106,7 +115,7 @@ use Acts::{Adds, Scales};
 use Carrier as C;
 
 /// Every port, in the order of [`Port`].
-pub const PORTS: [PortSpec; 24] = [
+pub const PORTS: [PortSpec; 28] = [
     port(
         Port::Plunger,
         ("plunger", "", C::Muscle),
@@ -269,6 +278,34 @@ pub const PORTS: [PortSpec; 24] = [
         (Adds, "c_n_m_s_rad * angular_speed_rad_s * abs(angle_rad)"),
     ),
     port(
+        Port::AxisForce,
+        ("axis", "force", C::Alone),
+        (&["N"], true, false),
+        "force with which the axis answers, without dry friction; > 0 as the pressure's",
+        (Adds, "stiffness_n_m * position_m"),
+    ),
+    port(
+        Port::AxisFriction,
+        ("axis", "friction", C::Alone),
+        (&["N"], true, true),
+        "level of the dry friction of its seals; the way that the axis goes gives it its direction",
+        (Adds, "friction_n * exp(-abs(speed_m_s) / stribeck_m_s)"),
+    ),
+    port(
+        Port::StripForce,
+        ("strip", "force", C::Alone),
+        (&["N"], true, false),
+        "force of a strip that is pulled; with it, too, a strip never pushes",
+        (Scales, "1 - a * ln(1 + time_s / ageing_s)"),
+    ),
+    port(
+        Port::ChamberOutflow,
+        ("chamber", "outflow", C::Alone),
+        (&["Pa/s"], false, true),
+        "rate at which the pressure of a closed chamber falls: gas that leaves",
+        (Adds, "rate_1_s * max(pressure_pa - opening_pa, 0)"),
+    ),
+    port(
         Port::Sensor,
         ("sensor", "CHANNEL", C::Sensor),
         (&[], true, false),
@@ -323,13 +360,21 @@ impl PortSpec {
     pub fn variables(&self) -> &'static [Quantity] {
         match self.port {
             Port::Plunger => PLUNGER,
+            Port::StripForce => STRIP,
+            Port::ChamberOutflow => CHAMBER,
             _ => match self.carrier {
                 Carrier::Muscle => MUSCLE,
                 Carrier::Cable => CABLE,
                 Carrier::Joint => JOINT,
+                Carrier::Alone => AXIS,
                 Carrier::Sensor => SENSOR,
             },
         }
+    }
+
+    /// Whether its elements go by numbers.
+    pub(crate) fn is_numbered(&self) -> bool {
+        matches!(self.carrier, Carrier::Muscle | Carrier::Cable)
     }
 
     /// Units of what may be added.

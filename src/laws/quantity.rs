@@ -58,7 +58,7 @@ const fn spec(quantity: Quantity, stem: &'static str, ending: &'static str, is: 
 /// Every quantity, in the order of [`Quantity`].
 pub const QUANTITIES: [QuantitySpec; 17] = [
     spec(Quantity::Elongation, "elongation", "m", "how much longer the muscle is than unloaded"),
-    spec(Quantity::Speed, "speed", "m_s", "rate of the elongation; of a sliding joint its speed"),
+    spec(Quantity::Speed, "speed", "m_s", "rate of the elongation; of a sliding joint or an axis its speed"),
     spec(
         Quantity::Pressure,
         "pressure",
@@ -81,7 +81,7 @@ pub const QUANTITIES: [QuantitySpec; 17] = [
     spec(Quantity::DriveSpeed, "drive_speed", "m_s", "speed at which the drive takes in cable, as commanded"),
     spec(Quantity::Angle, "angle", "rad", "angle of the joint, or the sum over the joints that bend together"),
     spec(Quantity::AngularSpeed, "angular_speed", "rad_s", "rate of that angle"),
-    spec(Quantity::Position, "position", "m", "position of a sliding joint"),
+    spec(Quantity::Position, "position", "m", "position of a sliding joint, an axis, the crosshead of a strip"),
     spec(Quantity::Reading, "reading", "", "what the channel would show without the law, in SI units"),
     spec(Quantity::Time, "time", "s", "time of the run's clock"),
 ];

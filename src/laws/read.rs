@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::address::Address;
 use super::law::{Law, Parameter, Programs, State, Symbol};
-use super::port::{Port, PortSpec};
+use super::port::{Carrier, Port, PortSpec};
 use super::quantity::{QUANTITIES, Quantity, Variable};
 use super::syntax::{SyntaxError, parse};
 use super::table::{LawTable, StateTable};
@@ -213,7 +213,7 @@ impl<'a> Reader<'a> {
         let condition = || self.around.conditions.iter().find(|(c, _)| c == name).map(|(_, x)| Symbol::Constant(*x));
         let found = parameter().or_else(state).or_else(variable).or_else(condition);
         let symbol = found.ok_or_else(|| self.unknown(name))?;
-        self.check_piston(name, symbol)?;
+        self.check_own(name, symbol)?;
         used.names.push(name.to_owned());
         used.symbols.push(symbol);
         Ok(used.names.len() - 1)
@@ -232,15 +232,18 @@ impl<'a> Reader<'a> {
         if is_own { Variable { of: None, ..variable } } else { variable }
     }
 
-    /// A piston goes with what has a slope here: anything else would leave it where it is.
-    fn check_piston(&self, name: &str, symbol: Symbol) -> Result<(), (String, String)> {
-        let Symbol::Variable(variable) = symbol else { return Ok(()) };
-        if self.address.port != Port::Plunger || variable.of.is_none() {
-            return Ok(());
-        }
+    /// A piston goes with what has a slope here: anything else would leave it where it is. What a channel shows, and elements that
+    /// stand alone, are not beside anything that has a number.
+    fn check_own(&self, name: &str, symbol: Symbol) -> Result<(), (String, String)> {
+        let Symbol::Variable(Variable { of: Some(_), .. }) = symbol else { return Ok(()) };
+        let what = match self.spec.carrier {
+            _ if self.address.port == Port::Plunger => "a piston",
+            Carrier::Sensor => "what a channel shows",
+            Carrier::Alone => "an element that stands alone",
+            Carrier::Muscle | Carrier::Cable | Carrier::Joint => return Ok(()),
+        };
         let known: Vec<String> = self.spec.variables().iter().map(|q| q.spec().name()).collect();
-        let message = format!("a piston cannot follow {name}");
-        Err((message, format!("use what its own syringe has: {}", known.join(", "))))
+        Err((format!("{what} cannot follow {name}"), format!("use what is its own: {}", known.join(", "))))
     }
 
     fn unknown(&self, name: &str) -> (String, String) {

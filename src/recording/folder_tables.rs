@@ -58,7 +58,9 @@ fn channel(keys: &Keys<'_>) -> Result<ChannelSpec, RecordingError> {
         .word("role", &[("input", Role::Input), ("output", Role::Output)])?
         .ok_or_else(|| keys.error("key \"role\" is missing\n  remedy: add role = \"input\" or role = \"output\""))?;
     let noise_sd = keys.number("noise_sd")?;
-    if let Some(sd) = noise_sd.filter(|sd| *sd <= 0.0) {
+    // An input without noise is taken as recorded; of an output, weights follow from it.
+    let is_right = |sd: f64| sd > 0.0 || sd == 0.0 && role == Role::Input;
+    if let Some(sd) = noise_sd.filter(|sd| !is_right(*sd)) {
         return Err(keys.error(format!("noise_sd = {sd} must be > 0\n  remedy: leave it out to have it estimated")));
     }
     let constant = constant(keys, role)?;

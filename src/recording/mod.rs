@@ -41,6 +41,7 @@ mod one_clock;
 mod parquet_read;
 mod piecewise;
 mod schema;
+mod smooth;
 mod source;
 mod strays;
 mod survey;
@@ -55,6 +56,7 @@ pub use error::RecordingError;
 pub use folder::{LoadedRun, RecordingSet, Role, Run, RunUse};
 pub use formats::read_recording;
 pub use noise::noise_sd;
+pub use smooth::{Smoothed, smoothed};
 pub use piecewise::PiecewiseLinear;
 pub use survey::{Missing, Survey, survey};
 

@@ -63,6 +63,17 @@ fn noise_of_neighbours(time_s: &[f64], values: &[f64]) -> Option<f64> {
     (sd > 0.0).then_some(sd)
 }
 
+/// Correlation of neighbouring third differences: -3/4 of white noise, near 1 of what is smooth. `None` of too few.
+pub(super) fn alternation(time_s: &[f64], values: &[f64]) -> Option<f64> {
+    let limit_s = gap_limit_s(time_s);
+    let whole = time_s.windows(5).zip(values.windows(5)).filter(|(t, y)| is_whole(t, y, limit_s));
+    let pairs: Vec<[f64; 2]> =
+        whole.map(|(t, y)| [third_difference(&t[..4], &y[..4]), third_difference(&t[1..], &y[1..])]).collect();
+    let size: f64 = pairs.iter().map(|[a, b]| 0.5 * (a * a + b * b)).sum();
+    let shared: f64 = pairs.iter().map(|[a, b]| a * b).sum();
+    (pairs.len() >= MIN_RESIDUALS && size > 0.0).then(|| shared / size)
+}
+
 fn is_whole(time_s: &[f64], values: &[f64], limit_s: f64) -> bool {
     values.iter().all(|y| y.is_finite()) && time_s.windows(2).all(|w| w[1] - w[0] <= limit_s)
 }

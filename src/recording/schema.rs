@@ -37,8 +37,9 @@ fn channel() -> Value {
             "description": "input: drives the simulation. output: is compared.",
         },
         "noise_sd": {
-            "type": "number", "exclusiveMinimum": 0,
-            "description": "Standard deviation of the noise, in the column's unit; estimated when left out.",
+            "type": "number", "minimum": 0,
+            "description": "Standard deviation of the noise, in the column's unit; estimated when left out. Inputs are smoothed by as much; 0 leaves one as \
+                            it was recorded.",
         },
         "constant": { "type": "number", "description": "Inputs only: the value at which it stood, in the column's unit, where no file has it." },
         "topic": { "type": "string", "pattern": "^/", "description": "Bags only: the topic, /syringe/position." },

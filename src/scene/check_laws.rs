@@ -100,6 +100,7 @@ fn check_port(scene: &SceneFile, address: &Address) -> Result<(), (String, Strin
             return lacks("the scene has no mechanism", "add [mechanism] with a URDF, or take another port".to_owned());
         }
         Carrier::Joint => return Ok(()),
+        Carrier::Alone => return check_alone(scene, address),
         Carrier::Sensor => return check_channel(scene, address),
     };
     let element = address.port.spec().element;
@@ -126,6 +127,22 @@ fn check_port(scene: &SceneFile, address: &Address) -> Result<(), (String, Strin
         return lacks("the muscles have no [muscles.friction]", remedy);
     }
     Ok(())
+}
+
+/// Whether the scene has the element that stands alone.
+fn check_alone(scene: &SceneFile, address: &Address) -> Result<(), (String, String)> {
+    let element = address.port.spec().element;
+    let here = [("axis", scene.axis.is_some()), ("strip", scene.strip.is_some()), ("chamber", scene.chamber.is_some())];
+    match here.into_iter().find(|(_, is_here)| *is_here) {
+        Some((own, _)) if own == element => Ok(()),
+        own => {
+            let remedy = match own {
+                Some((own, _)) => format!("take a port of the {own}: `smam laws --scene NAME` lists those of a scene"),
+                None => format!("take another port, or a scene with [{element}]"),
+            };
+            Err((format!("port = \"{address}\": the scene has no {element}"), remedy))
+        }
+    }
 }
 
 fn check_channel(scene: &SceneFile, address: &Address) -> Result<(), (String, String)> {

@@ -30,7 +30,6 @@ fn check_alone(scene: &SceneFile, place: &Place) -> Result<(), SceneError> {
         ("[muscles]", scene.muscles.is_some()),
         ("[mechanism]", scene.mechanism.is_some()),
         ("[hydraulics]", scene.hydraulics.is_some()),
-        ("[[law]]", !scene.law.is_empty()),
     ];
     let mut present = tables.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name);
     let Some(first) = present.next().filter(|_| scene.strip.is_some() || scene.chamber.is_some()) else {
@@ -39,7 +38,7 @@ fn check_alone(scene: &SceneFile, place: &Place) -> Result<(), SceneError> {
     match present.next() {
         Some(other) => Err(place.error(
             format!("{first} stands alone, and there is {other} beside it"),
-            format!("remove {other}, or {first}; laws of your own need a muscle, a cable or a mechanism"),
+            format!("remove {other}, or {first}"),
         )),
         None => Ok(()),
     }

@@ -1,7 +1,7 @@
 //! Channels of a running scene: what each output column reads.
 
 use crate::effects::{Effect, SensorHistory};
-use crate::laws::Law;
+use crate::laws::{Law, Port};
 use crate::mechanism::{Coordinate, CoordinateKind, Pose, PoseComponent};
 use crate::recording::parse_column;
 use crate::scene::{OutputSpec, Quantity, Scene};
@@ -94,11 +94,11 @@ impl Channels {
         let time_s = simulation.time_s;
         match wrong.next() {
             None => Ok(()),
-            Some((((.., laws), value), name)) => Err(match laws.last() {
+            Some((((reader, .., laws), value), name)) => Err(match laws.last().map(LawSensor::title).or(reader.law()) {
                 Some(law) => SystemError::Law {
                     file: simulation.scene.path.clone(),
                     time_s,
-                    law: law.title(),
+                    law,
                     what: format!("its channel shows {value}"),
                 },
                 None => SystemError::Diverged { time_s, what: format!("the channel {name}") },
@@ -108,6 +108,14 @@ impl Channels {
 }
 
 impl Reader {
+    /// Name and port of a law on the element that it reads, if that stands alone.
+    fn law(&self) -> Option<String> {
+        match self {
+            Self::Standalone(element) => element.laws().title(),
+            _ => None,
+        }
+    }
+
     fn value_si(&mut self, simulation: &Simulation) -> f64 {
         let (plant, state) = (&simulation.built.plant, &simulation.built.state);
         let spans = &simulation.end_spans();
@@ -190,7 +198,7 @@ fn effects(scene: &Scene) -> Vec<Effect<f64>> {
 
 /// Laws on what a channel shows.
 pub(super) fn sensor_laws<'a>(laws: &'a [Law], channel: &'a str) -> impl Iterator<Item = &'a Law> {
-    laws.iter().filter(move |law| !law.is_physical() && law.address.of.as_deref() == Some(channel))
+    laws.iter().filter(move |law| law.address.port == Port::Sensor && law.address.of.as_deref() == Some(channel))
 }
 
 fn sensors(scene: &Scene, channel: &str) -> Vec<SensorHistory<f64>> {

@@ -176,7 +176,7 @@ fn on_mechanism<D: Scalar>(plant: &mut Plant<D>, site: &Site, effect: &Effect<D>
 
 /// Puts a law with the numbers of an effect into a plant. Where the rig cannot have it nothing happens: scenes are checked for it.
 fn install_written<D: Scalar>(plant: &mut Plant<D>, site: &Site, written: &WrittenLaw, effect: &Effect<D>) {
-    if !written.law.is_physical() {
+    if !written.law.is_of_plant() {
         return;
     }
     let mut own = plant.laws.take().map_or_else(|| PlantLaws::new(plant, site), |laws| *laws);
@@ -190,11 +190,11 @@ fn install_written<D: Scalar>(plant: &mut Plant<D>, site: &Site, written: &Writt
 /// # Errors
 /// The law, and what of it the rig does not have.
 pub(super) fn install_laws<D: Scalar>(plant: &mut Plant<D>, site: &Site, laws: &[Law]) -> Result<(), (String, Wrong)> {
-    if laws.iter().all(|law| !law.is_physical()) {
+    if laws.iter().all(|law| !law.is_of_plant()) {
         return Ok(());
     }
     let mut own = plant.laws.take().map_or_else(|| PlantLaws::new(plant, site), |laws| *laws);
-    for law in laws.iter().filter(|law| law.is_physical()) {
+    for law in laws.iter().filter(|law| law.is_of_plant()) {
         let values = law.values().into_iter().map(D::constant).collect();
         own.add(law, values, plant.cables.len()).map_err(|wrong| (law.name.clone(), wrong))?;
     }

@@ -5,6 +5,7 @@
 //! differ only by what the engine adds: pose-dependent inertia and contacts. Generic over [`Scalar`], so that
 //! sensitivities to calibrated parameters and effects are exact.
 
+mod alone;
 mod course;
 mod directions;
 mod inject;
@@ -170,7 +171,7 @@ impl Rom {
             cable_names: bare.file.cable.iter().map(|c| c.name.clone()).collect(),
             pretension_n: bare.file.cable.iter().map(|c| c.pretension_n).collect(),
             initial_load_n: bare.makes.iter().map(|m| m.initial_load_n).collect(),
-            standalone: super::standalone::Standalone::of(&bare),
+            standalone: super::standalone::Standalone::of(scene),
             step_s: GREATEST_STEP_S.min(STEP_ANGLE / fastest_rad_s(&lumped.plant)),
             plant: lumped.plant,
             state: lumped.state,
@@ -195,7 +196,7 @@ impl Rom {
     /// The same over another type of number, as dual numbers, which carry derivatives.
     pub fn simulate_over<D: Scalar>(&self, run: &RomRun, setting: &RomSetting<D>) -> Option<Vec<Vec<D>>> {
         if let Some(element) = &self.standalone {
-            return Some(output::standalone_series(element, &self.outputs, run, setting));
+            return self.alone(element, run, setting, |_, _| {});
         }
         let mut sensors = Sensors::new(&self.outputs, setting);
         let mut series: Vec<Vec<D>> = vec![Vec::with_capacity(run.times_s.len()); self.outputs.len()];
@@ -211,6 +212,9 @@ impl Rom {
     /// Series of the first variable of each law over a run, SI; empty where the rig cannot have the law. `None` when the model
     /// diverges.
     pub fn visited(&self, run: &RomRun, setting: &RomSetting<f64>, laws: &[Law]) -> Option<Vec<Vec<f64>>> {
+        if let Some(element) = &self.standalone {
+            return Some(self.visited_alone(element, run, setting, laws));
+        }
         let (plant, _) = self.prepare(setting);
         let mut visit = Visit::new(&plant, &self.site, laws);
         self.watch(run, setting, |_, plant, state, inputs| visit.see(plant, state, inputs))?;

@@ -55,6 +55,8 @@ const HELD_RIG: (&str, &[&str]) = ("muscle_blocked", HELD);
 const BENCH_RIG: (&str, &[&str]) = ("muscle_bench", BENCH);
 const SHEATH_RIG: (&str, &[&str]) = ("tendon_sheath", SHEATH);
 const PULLEY_RIG: (&str, &[&str]) = ("antagonistic_pulley", &[]);
+const AXIS_RIG: (&str, &[&str]) = ("driven_axis", &[]);
+const STRIP_RIG: (&str, &[&str]) = ("tensile_test", &[]);
 const CATHETER_RIG: (&str, &[&str]) = ("bending_catheter", &[]);
 
 /// Every port, most of them more than once.
@@ -276,6 +278,51 @@ pub const CASES: &[Case] = &[
             CATHETER_RIG,
             &["joint.damping scales 5.0"],
             &["mechanism.joint.0.damping_n_m_s_rad=8.0e-4"],
+        )
+    },
+    same(Port::AxisForce, AXIS_RIG, &["axis.force adds 50.0 * speed_m_s"], &["axis.damping_n_s_m=50.0"]),
+    same(Port::AxisForce, AXIS_RIG, &["axis.force scales 1.5"], &["axis.piston_area_m2=7.5e-4"]),
+    same(
+        Port::AxisFriction,
+        AXIS_RIG,
+        &["axis.friction adds 2.0 + 1e-5 * pressure_pa"],
+        &["effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=2.0,friction_per_pressure_n_pa=1e-5}]"],
+    ),
+    same(
+        Port::AxisFriction,
+        ("driven_axis", &["effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=2.0}]"]),
+        &["axis.friction scales 1.5"],
+        &["effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=3.0,friction_per_pressure_n_pa=1.5e-5}]"],
+    ),
+    // Memory goes on from sample to sample: the force of a spring whose end follows with a play.
+    holds(
+        Port::AxisForce,
+        AXIS_RIG,
+        &["port = 'axis.force'\nname = 'play'\nadds = '100.0 * s'\nstate.s = { play_of = 'position_m', width = '4e-3' }"],
+        |law, stock| near(law.last("force_n") - stock.last("force_n"), 100.0 * (0.025 - 2e-3), 1e-6),
+    ),
+    same(Port::StripForce, STRIP_RIG, &["strip.force scales 1.5"], &["strip.material.c1_pa=7.5e4"]),
+    holds(Port::StripForce, STRIP_RIG, &["strip.force adds -1.0"], |law, stock| {
+        let pairs = law.of("force_n").iter().zip(stock.of("force_n"));
+        assert!(pairs.clone().all(|(a, b)| (a - (b - 1.0).max(0.0)).abs() < 1e-12));
+    }),
+    Case {
+        within: 1e-6,
+        ..same(
+            Port::ChamberOutflow,
+            ("closed_chamber", &[]),
+            &["chamber.outflow adds 0.2 * pressure_pa"],
+            &["effect=[{name=\"leak\",element=\"line\",rate_1_s=0.2}]"],
+        )
+    },
+    // Beside a leak of the catalogue the rates add up.
+    Case {
+        within: 1e-6,
+        ..same(
+            Port::ChamberOutflow,
+            ("closed_chamber", &["effect=[{name=\"leak\",element=\"line\",rate_1_s=0.2}]"]),
+            &["chamber.outflow adds 0.3 * pressure_pa"],
+            &["effect=[{name=\"leak\",element=\"line\",rate_1_s=0.5}]"],
         )
     },
     holds(Port::Sensor, SHEATH_RIG, &["sensor.tip_deg scales 1.1", "sensor.tip_deg adds 0.1"], |law, stock| {

@@ -42,6 +42,16 @@ fn variables_by_number() {
     );
 }
 
+/// The slope of a root at rest has no bound; the muscle goes on all the same, slower by what the law takes.
+#[test]
+fn a_root_at_rest_does_not_hold_the_rig() {
+    for model in BOTH {
+        let end_mm = |laws: &[&str]| run(model, &scene("muscle_bench", &[], laws), UNTIL_S).last("elongation_mm");
+        let (free, damped) = (end_mm(&[]), end_mm(&["muscle.damping adds 5e-3 * max(speed_m_s / 1e-3, 0)^0.5"]));
+        assert!(damped > 0.5 * free && damped < 0.9999 * free, "{model:?}: {damped} of {free} mm");
+    }
+}
+
 #[test]
 fn joints_go_by_name() {
     alike(PULLEY, &["joint.torque adds 1e-3"], &["joint(pulley).torque adds 1e-3"], &["joint.torque adds 2e-3"]);

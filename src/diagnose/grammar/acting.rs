@@ -20,6 +20,8 @@ pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
         Port::RestLength => (Adds, "m", 2e-4),
         Port::Stretch => (Adds, "m", 1e-4),
         Port::Torque => (Adds, "N m", 1e-4),
+        Port::AxisForce | Port::AxisFriction => (Adds, "N", 3.0),
+        Port::ChamberOutflow => (Adds, "Pa/s", 100.0),
         Port::Sensor => return None,
         _ => (Scales, "1", 0.05),
     })
@@ -67,6 +69,7 @@ pub fn written(case: &Case, table: &LawTable, law: &Law, parameters: &[Fitted], 
     let number = law.address.number;
     let count = match law.address.port.spec().carrier {
         Carrier::Cable => case.scene.file.cable.len(),
+        Carrier::Alone => 1,
         _ => case.scene.file.muscle.len(),
     };
     let count = if number.is_some() { count } else { 1 };

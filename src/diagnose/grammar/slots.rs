@@ -32,6 +32,8 @@ fn variables(spec: &PortSpec) -> &'static [Quantity] {
         Carrier::Muscle => &[Q::Pressure, Q::Flow, Q::Elongation, Q::Time],
         Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::Drive, Q::AngularSpeed, Q::Time],
         Carrier::Joint => &[Q::Angle, Q::AngularSpeed, Q::Time],
+        // Each has few, and all of them are tried.
+        Carrier::Alone => spec.variables(),
         Carrier::Sensor => &[],
     }
 }
@@ -318,6 +320,7 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
         Carrier::Cable => (file.cable.len(), true),
         // On a slider that a muscle moves itself a force on the joint is one of the muscle.
         Carrier::Joint => (usize::from(file.mechanism.is_some() && !file.cable.is_empty()), false),
+        Carrier::Alone => (usize::from(stands_alone(case, spec)), false),
         Carrier::Sensor => (0, false),
     };
     let name = |number: Option<usize>| {
@@ -332,6 +335,16 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
         0 => Vec::new(),
         1 => vec![name(None)],
         n => (1..=n).map(|i| name(Some(i))).chain(together.then(|| name(None))).collect(),
+    }
+}
+
+/// Whether a case is of the element that stands alone, and of one alone: each of several chambers leaks in its own way.
+fn stands_alone(case: &Case, spec: &PortSpec) -> bool {
+    let file = &case.scene.file;
+    match spec.element {
+        "axis" => file.axis.is_some(),
+        "strip" => file.strip.is_some(),
+        _ => file.chamber.is_some() && case.runs.iter().all(|run| run.scene.file.chamber == file.chamber),
     }
 }
 

@@ -55,7 +55,7 @@ impl<D: Scalar> PlantLaws<D> {
             Carrier::Muscle => Some(acts.muscles[at].at_mut(port)),
             Carrier::Cable => Some(acts.cables[at].at_mut(port)),
             Carrier::Joint => Some(acts.joints[at].at_mut(port)),
-            Carrier::Sensor => None,
+            Carrier::Alone | Carrier::Sensor => None,
         }
     }
 

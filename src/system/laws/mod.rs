@@ -11,6 +11,7 @@ mod memory;
 mod pistons;
 mod place;
 mod power;
+mod sampled;
 mod sensor;
 mod shown;
 mod slopes;
@@ -31,6 +32,7 @@ pub use fault::LawFault;
 pub use place::{Rig, Source, Wrong};
 pub use power::law_powers;
 pub(super) use power::line_drop;
+pub(super) use sampled::LawSampled;
 pub(super) use sensor::LawSensor;
 pub(super) use slopes::MuscleSlopes;
 pub(super) use tangents::LawTangents;
@@ -182,7 +184,7 @@ impl<D: Scalar> PlantLaws<D> {
                 Carrier::Muscle => acts.muscles[at].note(port),
                 Carrier::Cable => acts.cables[at].note(port),
                 Carrier::Joint => acts.joints[at].note(port),
-                Carrier::Sensor => {}
+                Carrier::Alone | Carrier::Sensor => {}
             }
             let scratch = instance.programs.of_states().map(Program::registers).into_iter().max().unwrap_or(0);
             acts.scratch.resize(scratch.max(acts.scratch.len()), D::constant(0.0));

@@ -119,7 +119,7 @@ impl Rig {
             Carrier::Muscle => address.indices(self.muscles.len()).collect(),
             Carrier::Cable => address.indices(self.turned.len()).collect(),
             Carrier::Joint => return self.joint(address),
-            Carrier::Sensor => return Ok(Vec::new()),
+            Carrier::Alone | Carrier::Sensor => return Ok(Vec::new()),
         };
         let count = if address.port.spec().carrier == Carrier::Cable { self.turned.len() } else { self.muscles.len() };
         if found.is_empty() {

@@ -1,131 +1,35 @@
 //! Laws on what a channel shows.
 
-use crate::laws::{Law, Memory, Program, Quantity, Symbol};
+use super::{Act, LawSampled};
+use crate::laws::Law;
 use crate::scalar::Scalar;
 
-/// Steps between two samples in which the states of a sensor's law go on; the reading is straight between them.
-const STEPS: usize = 8;
-
-/// A law on one channel, and what it remembers from sample to sample.
+/// A law on one channel.
 #[derive(Clone, Debug)]
 pub struct LawSensor<D> {
-    law: Law,
-    values: Vec<D>,
+    law: LawSampled<D>,
     /// SI units in one of the channel's.
     factor: f64,
-    states: Vec<D>,
-    last: Option<(f64, D)>,
-    registers: Vec<D>,
 }
 
 impl<D: Scalar> LawSensor<D> {
     /// At its start.
     pub fn new(law: &Law, values: Vec<D>, factor: f64) -> Self {
-        let states = vec![D::constant(0.0); law.states.len()];
-        Self { law: law.clone(), values, factor, states, last: None, registers: Vec::new() }
+        Self { law: LawSampled::new(law, values), factor }
     }
 
     /// Name and port.
     pub fn title(&self) -> String {
-        format!("{} ({})", self.law.name, self.law.address)
+        self.law.title()
     }
 
     /// What is shown when the quantity is `value`, in the channel's unit; times must increase.
     pub fn show(&mut self, time_s: f64, value: D) -> D {
         let reading = value * self.factor;
-        match self.last {
-            None => self.begin(time_s, reading),
-            Some((from_s, from)) => self.go_on((from_s, from), (time_s, reading)),
-        }
-        self.last = Some((time_s, reading));
-        let programs = std::sync::Arc::clone(&self.law.programs);
-        let own = self.evaluate(&programs.value, 0, time_s, reading);
-        let shown = match self.law.acts {
-            crate::laws::Acts::Adds => reading + own,
-            crate::laws::Acts::Scales => reading * own,
-        };
-        shown / self.factor
+        let mut act = Act::neutral();
+        act.set(self.law.law().acts, self.law.at(time_s, &[reading]));
+        act.on(reading) / self.factor
     }
-
-    fn begin(&mut self, time_s: f64, reading: D) {
-        let programs = std::sync::Arc::clone(&self.law.programs);
-        for s in 0..self.states.len() {
-            let program = if self.law.states[s].follows_start { &programs.follows } else { &programs.starts };
-            self.states[s] = self.evaluate(program, s, time_s, reading);
-        }
-    }
-
-    /// Rates by exponential steps, exact for what is linear in state and reading, and never unstable; what follows an expression
-    /// follows it to the end.
-    fn go_on(&mut self, (from_s, from): (f64, D), (to_s, to): (f64, D)) {
-        if self.states.is_empty() {
-            return;
-        }
-        let programs = std::sync::Arc::clone(&self.law.programs);
-        let h = (to_s - from_s) / STEPS as f64;
-        for k in 0..STEPS {
-            let at = |share: f64| ((from_s + share * h), from + (to - from) * (share / STEPS as f64));
-            let moved: Vec<D> = (0..self.states.len())
-                .map(|s| {
-                    let [(from_s, from), (to_s, to)] = [at(k as f64), at(k as f64 + 1.0)];
-                    let first = self.evaluate(&programs.rates, s, from_s, from);
-                    let last = self.evaluate(&programs.rates, s, to_s, to);
-                    let slope = self.evaluate(&programs.rate_slopes, 3 * s, from_s, from) * h;
-                    let [phi_1, phi_2] = exponential(slope);
-                    self.states[s] + (phi_1 * first + phi_2 * (last - first)) * h
-                })
-                .collect();
-            self.states = moved;
-        }
-        for s in 0..self.states.len() {
-            let before = self.states[s];
-            let followed = self.evaluate(&programs.follows, s, to_s, to);
-            let half = self.evaluate(&programs.widths, s, to_s, to) * 0.5;
-            self.states[s] = match self.law.states[s].memory {
-                Memory::Rate => before,
-                Memory::Greatest => followed.select_above(before, followed, before),
-                Memory::Play => super::play(before, followed, half),
-            };
-        }
-    }
-
-    fn evaluate(&mut self, program: &Program, output: usize, time_s: f64, reading: D) -> D {
-        let mut registers = std::mem::take(&mut self.registers);
-        registers.resize(program.registers().max(registers.len()), D::constant(0.0));
-        let read = |symbol: &usize| match self.law.symbols[*symbol] {
-            Symbol::Variable(v) if v.quantity == Quantity::Reading => reading,
-            Symbol::Variable(_) => D::constant(time_s),
-            Symbol::Parameter(p) => self.values[p],
-            Symbol::State(s) => self.states[s],
-            Symbol::Constant(x) => D::constant(x),
-        };
-        let values = program.symbols().iter().map(read);
-        let value = match output {
-            // A value's slopes are not asked for.
-            0 => program.run_first(values, &mut registers),
-            _ => {
-                program.run(values, &mut registers);
-                program.output(output, &registers)
-            }
-        };
-        self.registers = registers;
-        value
-    }
-}
-
-/// `(exp z - 1)/z` and `(exp z - 1 - z)/z²`.
-fn exponential<D: Scalar>(z: D) -> [D; 2] {
-    /// Below, the differences would lose digits.
-    const SMALL: f64 = 0.5;
-    const TERMS: u32 = 14;
-    if z.value().abs() > SMALL {
-        let first = z.exp_m1() / z;
-        return [first, (first - 1.0) / z];
-    }
-    let series = |from: u32| (0..TERMS).rev().fold(D::constant(0.0), |sum, k| (sum * z + 1.0) / f64::from(k + from));
-    let first = series(1);
-    // sum z^k/(k + 2)! = (1/2) (1 + z/3 (1 + z/4 (...))).
-    [first, series(2)]
 }
 
 #[cfg(test)]

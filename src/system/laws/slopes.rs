@@ -114,10 +114,12 @@ pub(super) struct Slopes<'a, D> {
 }
 
 impl<D: Scalar> Slopes<'_, D> {
-    /// To a quantity or a state, in the order of [`SLOPES`].
+    /// To a quantity or a state, in the order of [`SLOPES`]. One without bound, of a root at zero, would hold the rig where it is:
+    /// a step is better off without it.
     #[inline]
     pub fn to(&self, index: usize) -> D {
-        self.program.output(1 + index, self.registers)
+        let slope = self.program.output(1 + index, self.registers);
+        if slope.is_finite() { slope } else { D::constant(0.0) }
     }
 
     /// Whether there is one.

@@ -29,6 +29,9 @@ impl Rom {
     ///
     /// Branches are those of the run without signals: the response is linear along that run.
     pub fn injected(&self, run: &RomRun, setting: &RomSetting<f64>, ports: &[Signals]) -> Vec<Vec<Option<Change>>> {
+        if let Some(element) = &self.standalone {
+            return self.injected_alone(element, run, setting, ports);
+        }
         let at: Vec<&Effect<f64>> = ports.iter().map(|port| port.at).collect();
         let linear = self.linear(run, setting, &at);
         let Some(changes) = linear.and_then(|linear| through(linear, ports)) else {
@@ -62,7 +65,7 @@ impl Rom {
     }
 }
 
-fn is_finite(change: &Change) -> bool {
+pub(super) fn is_finite(change: &Change) -> bool {
     change.iter().flatten().all(|x| x.is_finite())
 }
 
@@ -192,7 +195,7 @@ mod tests {
             let has = |spec: &&PortSpec| match spec.carrier {
                 Carrier::Muscle => true,
                 Carrier::Cable | Carrier::Joint => !scene.file.cable.is_empty(),
-                Carrier::Sensor => false,
+                Carrier::Alone | Carrier::Sensor => false,
             };
             let ports: Vec<&PortSpec> = PORTS.iter().filter(has).collect();
             let at: Vec<Effect<f64>> = ports.iter().map(|spec| law(spec, false)).collect();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::effects::{Effect, Native, Sensor, SensorHistory};
 use crate::laws::Law;
 use crate::mechanism::{LinkPoint, PoseComponent};
-use crate::recording::{PiecewiseLinear, parse_column};
+use crate::recording::parse_column;
 use crate::scalar::Scalar;
 use crate::scene::{OutputSpec, Quantity, Scene};
 use crate::system::PlantState;
@@ -15,10 +15,9 @@ use crate::system::channels::sensor_laws;
 use crate::system::laws::{Acts, LawSensor};
 use crate::system::plant::{Drive, InputSpan, Instant, Plant};
 use crate::system::posed::Posture;
-use crate::system::standalone::Standalone;
 
 use super::lump::Lumped;
-use super::{RomParameter, RomRun, RomSetting};
+use super::{RomParameter, RomSetting};
 
 /// What a channel reads.
 #[derive(Clone, Debug)]
@@ -87,6 +86,11 @@ impl RomOutput {
                 side.of_tip(*length_m, parts.iter().map(|(i, share)| state.y()[*i] * *share).sum())
             }
         };
+        value / self.factor
+    }
+
+    /// What an element that stands alone answers, SI, in the channel's unit.
+    pub fn of_element<D: Scalar>(&self, value: D) -> D {
         value / self.factor
     }
 
@@ -213,31 +217,4 @@ pub(in crate::system) fn sensor<D: Scalar>(effect: &Effect<D>) -> Option<Sensor<
         Some(Native::SensorGain) => Sensor::Gain { gain_error: size },
         _ => return None,
     })
-}
-
-/// What an element that stands alone shows over a run.
-pub(super) fn standalone_series<D: Scalar>(
-    element: &Standalone,
-    outputs: &[RomOutput],
-    run: &RomRun,
-    setting: &RomSetting<D>,
-) -> Vec<Vec<D>> {
-    let numbers = setting.parameters.iter().filter_map(|(parameter, value)| match parameter {
-        RomParameter::Standalone(which) => Some((*which, *value)),
-        _ => None,
-    });
-    let mut answering = element.begin(numbers, &setting.effects);
-    let mut sensors = Sensors::new(outputs, setting);
-    let lines: Vec<Option<PiecewiseLinear>> =
-        run.inputs.iter().map(|x| PiecewiseLinear::new(&run.times_s, x)).collect();
-    let input = |i: usize, t: f64| lines[i].as_ref().map_or(0.0, |line| line.value(t));
-    let span_s = run.times_s.first().copied().zip(run.times_s.last().copied());
-    let mut series = vec![Vec::with_capacity(run.times_s.len()); outputs.len()];
-    for &time in &run.times_s {
-        let value = answering.show(input, span_s, time);
-        for (output, series) in outputs.iter().zip(&mut series) {
-            series.push(sensors.show(output, time, value / output.factor));
-        }
-    }
-    series
 }

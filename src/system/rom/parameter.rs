@@ -90,6 +90,9 @@ fn resolve_named(rom: &Rom, key: &str) -> Option<RomParameter> {
             if let Some(law) = laws.iter().position(|law| law.name == *name) {
                 return Some(RomParameter::Law(law, laws[law].parameter(parameter)?));
             }
+            if let Some(number) = rom.standalone.as_ref().and_then(|alone| alone.number_of_law(name, parameter)) {
+                return Some(RomParameter::Standalone(number));
+            }
             let shown = rom.outputs.iter().enumerate().find_map(|(o, output)| {
                 let law = output.laws.iter().position(|law| law.name == *name)?;
                 Some((o, law, &output.laws[law]))

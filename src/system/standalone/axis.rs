@@ -1,8 +1,9 @@
 //! An axis moved at a recorded position that answers with a force.
 
-use crate::effects::{Effect, Native};
+use crate::effects::{Effect, Native, find};
 use crate::scalar::Scalar;
 use crate::scene::{AxisSpec, Scene};
+use crate::system::laws::Act;
 
 /// `F = F0 + A p + c v + m a`, with `v` and `a` as central differences of the recorded position over a window `w`:
 /// `v = (x(t + w/2) - x(t - w/2))/w`, `a = (x(t + w) - 2 x(t) + x(t - w))/w²`. A window of a few samples keeps the
@@ -102,34 +103,65 @@ impl<D: Scalar> AxisNumbers<D> {
     }
 }
 
-/// Dry friction of the axis' seals: `(F_c + f_p p) z`, `dz/dx = (sgn - z)/s` along the recorded way.
+/// Dry friction of the axis' seals: `(F_c + f_p p) z`, `dz/dx = (sgn - z)/s` along the recorded way. What laws add to the level
+/// has a seal of its own, with the presliding of the first.
 #[derive(Clone, Debug)]
 pub(in crate::system) struct AxisFriction<D> {
-    /// Level, growth with pressure, presliding; state.
-    seals: Vec<([D; 3], D)>,
+    seals: Vec<Seal<D>>,
+    of_laws: Seal<D>,
     position_m: Option<f64>,
+}
+
+#[derive(Clone, Debug)]
+struct Seal<D> {
+    level_n: D,
+    growth_n_pa: D,
+    presliding_m: D,
+    /// Direction of the force, -1 to 1.
+    z: D,
+}
+
+impl<D: Scalar> Seal<D> {
+    fn of(values: &[D]) -> Option<Self> {
+        let &[level_n, growth_n_pa, presliding_m] = values.first_chunk()?;
+        Some(Self { level_n, growth_n_pa, presliding_m, z: D::constant(0.0) })
+    }
+
+    /// Its direction after a straight way: exact, `z` goes to the way's direction by `exp(-|dx|/s)`.
+    fn go_on(&mut self, way_m: f64) -> D {
+        let left = (-(self.presliding_m.recip() * way_m.abs())).exp();
+        self.z = (self.z - way_m.signum()) * left + way_m.signum();
+        self.z
+    }
 }
 
 impl<D: Scalar> AxisFriction<D> {
     /// The seals among the effects of a scene.
     pub fn of(effects: &[Effect<D>]) -> Self {
         let seals = effects.iter().filter(|e| e.entry.native == Some(Native::SealFriction));
-        let numbers = seals.filter_map(|e| e.values.first_chunk::<3>().copied());
-        Self { seals: numbers.map(|n| (n, D::constant(0.0))).collect(), position_m: None }
+        let seals: Vec<Seal<D>> = seals.filter_map(|e| Seal::of(&e.values)).collect();
+        let usual_m = seals.first().map_or_else(|| D::constant(usual_presliding_m()), |seal| seal.presliding_m);
+        let zero = D::constant(0.0);
+        let of_laws = Seal { level_n: zero, growth_n_pa: zero, presliding_m: usual_m, z: zero };
+        Self { seals, of_laws, position_m: None }
     }
 
-    /// Force, N, after the axis went on to its present position; instants must come in order.
-    pub fn force_n(&mut self, m: &AxisMotion) -> D {
-        let way = m.position_m - self.position_m.replace(m.position_m).unwrap_or(m.position_m);
+    /// Force, N, after the axis went on to its present position; instants must come in order. `laws` act on the level.
+    pub fn force_n(&mut self, m: &AxisMotion, laws: Act<D>) -> D {
+        let way_m = m.position_m - self.position_m.replace(m.position_m).unwrap_or(m.position_m);
         let mut force = D::constant(0.0);
-        for ([level, growth, presliding], z) in &mut self.seals {
-            // Exact on a straight way: z goes to the direction by exp(-|dx|/s).
-            let left = (-(presliding.recip() * way.abs())).exp();
-            *z = (*z - way.signum()) * left + way.signum();
-            force += (*level + *growth * m.pressure_pa.max(0.0)) * *z;
+        for seal in &mut self.seals {
+            force += (seal.level_n + seal.growth_n_pa * m.pressure_pa.max(0.0)) * seal.go_on(way_m);
         }
-        force
+        force * laws.scale + laws.add * self.of_laws.go_on(way_m)
     }
+}
+
+/// Presliding of a seal whose own nobody states, m.
+fn usual_presliding_m() -> f64 {
+    let seal = find("seal_friction").map(|id| id.entry());
+    let presliding = seal.and_then(|entry| entry.parameters.iter().find(|p| p.key == "presliding_m"));
+    presliding.map_or(1e-4, |p| p.typical)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::effects::{Effect, MaxwellBranch, Native, logarithmic_creep};
 use crate::muscle::{Material, RubberTerm};
 use crate::scalar::Scalar;
 use crate::scene::{Scene, StripSpec};
+use crate::system::laws::Act;
 
 /// `F = max(0, A0 P(1 + x/L0) + sum_i E_i (e - e_i))`: the crosshead at `x` from the slack length, `P` the nominal stress of the
 /// strip's law. A strip that is slack does not push.
@@ -118,8 +119,8 @@ fn branches<D: Scalar>(values: &[D], stiffness_n_m: D) -> Vec<MaxwellBranch<D>> 
 }
 
 impl<D: Scalar> StripRubber<D> {
-    /// Force at a position of the crosshead and a time, N.
-    pub fn force_n(&mut self, position_m: f64, time_s: f64) -> D {
+    /// Force at a position of the crosshead and a time, N, with what laws do to it.
+    pub fn force_n(&mut self, position_m: f64, time_s: f64, laws: Act<D>) -> D {
         let elongation = self.elongation_m(position_m);
         let (time_before_s, before) = self.before.replace((time_s, elongation)).unwrap_or((time_s, D::constant(0.0)));
         let dt = time_s - time_before_s;
@@ -130,7 +131,7 @@ impl<D: Scalar> StripRubber<D> {
             }
             force += branch.pull_n(elongation, *dashpot);
         }
-        let zero = D::constant(0.0);
+        let (force, zero) = (laws.on(force), D::constant(0.0));
         force.select_above(zero, force, zero)
     }
 
@@ -176,11 +177,11 @@ mod tests {
     #[test]
     fn the_force_is_that_of_the_law_and_never_a_push() {
         let mut rubber = strip().begin::<f64>(std::iter::empty(), &[]);
-        assert_eq!(rubber.force_n(-0.01, 0.0), 0.0);
+        assert_eq!(rubber.force_n(-0.01, 0.0, Act::neutral()), 0.0);
         // Twice the length: 2 C1 (2 - 1/4).
-        assert!((rubber.force_n(L0, 1.0) / (A0 * 2e4 * 1.75) - 1.0).abs() < 1e-12);
+        assert!((rubber.force_n(L0, 1.0, Act::neutral()) / (A0 * 2e4 * 1.75) - 1.0).abs() < 1e-12);
         let mut stiffer = strip().begin([(StripNumber::C1, 2e4)].into_iter(), &[]);
-        assert!((stiffer.force_n(L0, 0.0) / (A0 * 4e4 * 1.75) - 1.0).abs() < 1e-12);
+        assert!((stiffer.force_n(L0, 0.0, Act::neutral()) / (A0 * 4e4 * 1.75) - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -190,9 +191,9 @@ mod tests {
         for stretch in [1.5, 3.0] {
             let mut rubber = strip().begin(std::iter::empty(), std::slice::from_ref(&relaxes));
             let relaxed_n = A0 * 2e4 * (stretch - f64::powi(stretch, -2));
-            rubber.force_n(0.0, -1e-9);
+            rubber.force_n(0.0, -1e-9, Act::neutral());
             for t in [0.0, 2.0, 5.0, 50.0] {
-                let share = rubber.force_n((stretch - 1.0) * L0, t) / relaxed_n;
+                let share = rubber.force_n((stretch - 1.0) * L0, t, Act::neutral()) / relaxed_n;
                 assert!((share - (1.0 + 2.0 * (-t / 5.0f64).exp())).abs() < 1e-6, "{share} at {t} s");
             }
         }
@@ -202,9 +203,9 @@ mod tests {
     fn a_strip_that_is_let_go_after_relaxing_is_slack() {
         let relaxes = effect("name = 'viscoelasticity'\nelement = 'muscle'\nstiffness_n_m = 33\nrelaxation_time_s = 5");
         let mut rubber = strip().begin(std::iter::empty(), &[relaxes]);
-        rubber.force_n(0.0, 0.0);
-        rubber.force_n(L0, 1.0);
-        rubber.force_n(L0, 100.0);
-        assert_eq!(rubber.force_n(0.0, 100.1), 0.0);
+        rubber.force_n(0.0, 0.0, Act::neutral());
+        rubber.force_n(L0, 1.0, Act::neutral());
+        rubber.force_n(L0, 100.0, Act::neutral());
+        assert_eq!(rubber.force_n(0.0, 100.1, Act::neutral()), 0.0);
     }
 }
