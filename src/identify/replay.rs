@@ -1,8 +1,7 @@
 //! Simulating what was recorded.
 
 use crate::recording::{
-    Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, Smoothed,
-    parse_column, smoothed,
+    Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column, smoothed,
 };
 use crate::scene::{Override, Scene, SceneError};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
@@ -69,12 +68,10 @@ fn without_input_noise(set: &RecordingSet, recording: Recording) -> Result<(Reco
     let (mut channels, mut notes) = (recording.channels().to_vec(), Vec::new());
     for spec in set.of_role(Role::Input).filter(|spec| spec.constant.is_none()) {
         let Some(channel) = channels.iter_mut().find(|c| c.column == spec.column) else { continue };
-        let Some(Smoothed { values, noise_sd }) = smoothed(recording.time_s(), &channel.values, spec.noise_sd) else {
-            continue;
-        };
-        let unit = channel.unit()?.symbol;
-        notes.push(format!("{} is smoothed by its noise of {noise_sd:.1e} {unit} (as recorded: noise_sd = 0)", spec.column));
-        channel.values = values;
+        let Some(smooth) = smoothed(recording.time_s(), &channel.values, spec.noise_sd) else { continue };
+        // Without its size, which differs from run to run: one line says it of all.
+        notes.push(format!("{} is smoothed by its own noise (as recorded: noise_sd = 0)", spec.column));
+        channel.values = smooth.values;
     }
     Ok((Recording::new(recording.time_s().to_vec(), channels)?, notes))
 }

@@ -56,8 +56,8 @@ pub use error::RecordingError;
 pub use folder::{LoadedRun, RecordingSet, Role, Run, RunUse};
 pub use formats::read_recording;
 pub use noise::noise_sd;
-pub use smooth::{Smoothed, smoothed};
 pub use piecewise::PiecewiseLinear;
+pub use smooth::{Smoothed, smoothed};
 pub use survey::{Missing, Survey, survey};
 
 pub use crate::bag::Clock;

@@ -94,15 +94,17 @@ impl Channels {
         let time_s = simulation.time_s;
         match wrong.next() {
             None => Ok(()),
-            Some((((reader, .., laws), value), name)) => Err(match laws.last().map(LawSensor::title).or(reader.law()) {
-                Some(law) => SystemError::Law {
-                    file: simulation.scene.path.clone(),
-                    time_s,
-                    law,
-                    what: format!("its channel shows {value}"),
-                },
-                None => SystemError::Diverged { time_s, what: format!("the channel {name}") },
-            }),
+            Some((((reader, .., laws), value), name)) => {
+                Err(match laws.last().map(LawSensor::title).or(reader.law()) {
+                    Some(law) => SystemError::Law {
+                        file: simulation.scene.path.clone(),
+                        time_s,
+                        law,
+                        what: format!("its channel shows {value}"),
+                    },
+                    None => SystemError::Diverged { time_s, what: format!("the channel {name}") },
+                })
+            }
         }
     }
 }

@@ -292,13 +292,17 @@ pub const CASES: &[Case] = &[
         Port::AxisFriction,
         ("driven_axis", &["effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=2.0}]"]),
         &["axis.friction scales 1.5"],
-        &["effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=3.0,friction_per_pressure_n_pa=1.5e-5}]"],
+        &[
+            "effect=[{name=\"seal_friction\",element=\"syringe\",friction_force_n=3.0,friction_per_pressure_n_pa=1.5e-5}]",
+        ],
     ),
     // Memory goes on from sample to sample: the force of a spring whose end follows with a play.
     holds(
         Port::AxisForce,
         AXIS_RIG,
-        &["port = 'axis.force'\nname = 'play'\nadds = '100.0 * s'\nstate.s = { play_of = 'position_m', width = '4e-3' }"],
+        &[
+            "port = 'axis.force'\nname = 'play'\nadds = '100.0 * s'\nstate.s = { play_of = 'position_m', width = '4e-3' }",
+        ],
         |law, stock| near(law.last("force_n") - stock.last("force_n"), 100.0 * (0.025 - 2e-3), 1e-6),
     ),
     same(Port::StripForce, STRIP_RIG, &["strip.force scales 1.5"], &["strip.material.c1_pa=7.5e4"]),

@@ -15,11 +15,7 @@ pub(in crate::system) struct AloneLaws<D> {
 
 impl<D: Scalar> AloneLaws<D> {
     /// The laws of a scene with numbers that differ from its own, and those among the effects.
-    pub fn new(
-        scene: &[Law],
-        numbers: impl Iterator<Item = (StandaloneNumber, D)>,
-        effects: &[Effect<D>],
-    ) -> Self {
+    pub fn new(scene: &[Law], numbers: impl Iterator<Item = (StandaloneNumber, D)>, effects: &[Effect<D>]) -> Self {
         let own = |law: &Law| LawSampled::new(law, law.values().into_iter().map(D::constant).collect());
         let mut laws: Vec<LawSampled<D>> = scene.iter().map(own).collect();
         for (number, value) in numbers {
