@@ -465,8 +465,13 @@ fn messy_26_centimetres_millibar_and_volts() {
     let output = smam(&["import", ".", "--scene", "muscle_bench"], folder.path());
     let path = folder.path().join("recordings.toml");
     let written = fs::read_to_string(&path).unwrap_or_else(|_| panic!("{}", said(&output)));
-    assert!(written.contains("scale = 1.0    # to be filled in: the N of one V"), "{written}");
-    fs::write(&path, written.replace("scale = 1.0", "scale = 2.5")).expect("written");
+    // Not silently with 1: neither here nor by whoever reads what was written.
+    let open = "scale = \"to be filled in: the N of one V\"";
+    assert!(output.status.code() == Some(1) && said(&output).contains("fill in scale of force_n"), "{}", said(&output));
+    assert!(written.contains(open), "{written}");
+    let refused = RecordingSet::load(folder.path()).expect_err("open").to_string();
+    assert!(refused.contains("is still open") && refused.contains("remedy: write the number"), "{refused}");
+    fs::write(&path, written.replace(open, "scale = 2.5")).expect("written");
     let set = RecordingSet::load(folder.path()).expect("a set");
     same(&set.load_run(&set.runs[0]).unwrap_or_else(|e| panic!("{e}\n{written}")), &expected());
 }
@@ -819,4 +824,60 @@ fn the_unit_that_fits_the_numbers_is_named() {
     fs::write(folder.path().join("recordings.toml"), filled.collect::<Vec<_>>().join("\n")).expect("written");
     let set = RecordingSet::load(folder.path()).expect("a set");
     same(&set.load_run(&set.runs[0]).expect("a run"), &expected());
+}
+
+/// A unit that is not known is never taken for the channel's own.
+#[test]
+fn unknown_units_have_to_be_filled_in() {
+    for (name, remark) in [("Plunger [steps]", "steps"), ("Plunger (counts)", "counts"), ("Plunger [furlong]", "furlong")] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = PLAIN.text().replace("plunger_mm", name);
+        fs::write(folder.path().join("a.csv"), text).expect("written");
+        let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).contains(&format!("the mm of one \"{remark}\"")), "{}", said(&output));
+        assert!(RecordingSet::load(folder.path()).is_err());
+        let path = folder.path().join("recordings.toml");
+        let open = format!("scale = \"to be filled in: the mm of one {remark}\"");
+        let written = fs::read_to_string(&path).expect("written");
+        fs::write(&path, written.replace(&open, "scale = 1.0")).expect("written");
+        let set = RecordingSet::load(folder.path()).unwrap_or_else(|e| panic!("{e}\n{written}"));
+        same(&set.load_run(&set.runs[0]).expect("a run"), &expected());
+        // One file by itself is refused too, and says where to fill it in.
+        let refused = said(&smam(&["compare", "a.csv", "--scene", "muscle_bench"], folder.path()));
+        assert!(refused.contains("remedy: run `smam import`"), "{refused}");
+    }
+    let absolute = PLAIN.text().replace("pressure_kpa", "Pressure [kPa a]");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), absolute).expect("written");
+    assert_eq!(smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path()).status.code(), Some(1));
+    let written = fs::read_to_string(folder.path().join("recordings.toml")).expect("written");
+    assert!(written.contains("unit = \"kPa\" and zero = 101.3250000"), "{written}");
+}
+
+#[test]
+fn newtons_per_square_millimetre_and_atmospheres_are_known() {
+    for (name, factor) in [("Pressure [N/mm²]", 1000.0), ("Pressure [N/mm2]", 1000.0), ("Pressure [atm]", 101.325)] {
+        let names = ["time_s", "plunger_mm", "elongation_mm", name, "force_n"];
+        holds("a.csv", Style { names, factors: [1.0, 1.0, factor, 1.0], ..PLAIN }.text().as_bytes());
+    }
+}
+
+/// One `unit` stands for all files of a folder: one in another unit is left out, or refused where it was named.
+#[test]
+fn files_with_other_units_are_not_read_in_those_of_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = ["time", "plunger", "elongation", "pressure", "force"];
+    let in_units = |units: &'static str| Style { names, below_names: units, ..PLAIN }.text();
+    fs::write(folder.path().join("a.csv"), in_units("s,mm,mm,kPa,N\n")).expect("written");
+    fs::write(folder.path().join("b.csv"), in_units("s,cm,mm,kPa,N\n")).expect("written");
+    let output = smam(&["import", ".", "--scene", "muscle_bench"], folder.path());
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("b.csv: the column \"plunger\" is in cm, and in mm in "), "{}", said(&output));
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    assert_eq!(set.runs.len(), 1);
+    let named = smam(&["import", "a.csv", "b.csv", "--scene", "muscle_bench", "--force"], folder.path());
+    assert!(named.status.code() == Some(2) && said(&named).contains("import it by itself"), "{}", said(&named));
+    // Its remedy.
+    assert!(smam(&["import", "b.csv", "--scene", "muscle_bench", "--out", "b"], folder.path()).status.success());
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::recording::{
-    Guess, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness, Wanted,
+    Guess, GuessedColumn, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness, Wanted,
     guess_sheet, to_toml,
 };
 use smam::scene::Scene;
@@ -60,6 +60,11 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
     left_out.iter().for_each(|file| text += &file.comment());
     write(&written, &text)?;
     say!("written: {}", written.display());
+    let open = open_points(&guesses[0]);
+    if !open.is_empty() {
+        open.iter().for_each(|point| eprintln!("not complete: {}: {point}", written.display()));
+        return Ok(ExitCode::from(1));
+    }
     let missing = absent_input(&guesses[0], &channels);
     Ok(match (read_back(&written), missing) {
         (Ok(()), Some(input)) => {
@@ -106,9 +111,24 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
             found.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
         )));
     }
+    if let [first, ..] = open_points(&found).as_slice() {
+        return Err(CliError::Usage(format!(
+            "{}: {first}\n  remedy: run `smam import` on the file and fill in what it could not know",
+            path.display()
+        )));
+    }
     let scene = scene_from(&folder, &scene);
     let text = to_toml(&[found], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
     Ok(RecordingSet::parse(&text, &folder.join(SET_FILE_NAME))?)
+}
+
+/// Columns whose numbers cannot be read before a user says how: each with what has to be filled in.
+fn open_points(found: &Guess) -> Vec<String> {
+    let point = |column: &GuessedColumn| {
+        let (wanted, _) = column.channel.as_ref()?;
+        Some(format!("fill in scale of {}: {}, for the column \"{}\"", wanted.column, column.open_point()?, column.name))
+    };
+    found.columns.iter().filter_map(point).collect()
 }
 
 /// An input of the scene that no column was found for.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::survey::median;
-use super::super::table::{Label, cell_number, clock_faults, file_unit, is_stamp, label};
+use super::super::table::{Label, cell_number, clock_faults, file_unit, is_stamp, is_unread, label, unread_unit};
 use super::super::{TIME_COLUMN, parse_column};
 use super::footer;
 use super::layout::Layout;
@@ -29,6 +29,7 @@ pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Gue
         .map(|at| GuessedColumn {
             name: layout.names[at].clone(),
             unit: labels[at].unit,
+            unread_unit: unread(&layout.names[at], layout.units.get(at)).filter(|_| labels[at].unit.is_none()),
             channel: None,
             is_text: !layout
                 .rows
@@ -56,6 +57,12 @@ fn labelled(name: &str, unit: Option<&String>) -> Label {
     let own = label(name);
     let below = unit.and_then(|text| file_unit(text.trim_matches(['[', ']', '(', ')'])));
     Label { unit: own.unit.or(below), ..own }
+}
+
+/// A text in the place of a unit that is none, in the name or in the row of units.
+fn unread(name: &str, below: Option<&String>) -> Option<String> {
+    let below = below.map(|text| text.trim_matches(['[', ']', '(', ')']).trim()).filter(|text| is_unread(text));
+    unread_unit(name).or(below).map(str::to_owned)
 }
 
 /// A column called as the time is, else one in a unit of time, else the first if it rises throughout.

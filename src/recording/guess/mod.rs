@@ -7,6 +7,7 @@ mod columns;
 mod footer;
 mod layout;
 mod likeness;
+mod open;
 mod preview;
 mod sizes;
 mod written;
@@ -63,6 +64,9 @@ pub struct GuessedColumn {
     pub name: String,
     /// The unit that its name or the row of units states.
     pub unit: Option<&'static FileUnit>,
+    /// What stands in the place of its unit, if it is none that is known.
+    #[doc(hidden)]
+    pub unread_unit: Option<String>,
     /// The channel of the scene that it may be.
     pub channel: Option<(Wanted, Sureness)>,
     /// Whether it holds texts or dates.
@@ -127,4 +131,5 @@ pub fn guess_sheet(file: &Path, sheet: Option<&str>, wanted: &[Wanted]) -> Resul
     Ok(columns::guessed(file, found, wanted))
 }
 
+pub(super) use open::TO_FILL_IN;
 pub use written::{OpenScene, to_toml};

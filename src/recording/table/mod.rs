@@ -35,6 +35,7 @@ pub use label::{Label, label};
 pub use options::{Delimiter, FileOptions, Header, TimeSource};
 pub use source::TableSource;
 
+pub(super) use label::{is_unread, unread_unit};
 pub(super) use keys::{FILE_KEYS, file_options};
 pub(super) use looked_at::{
     cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
