@@ -261,6 +261,74 @@ fn workbook(rows: &str) -> Vec<u8> {
     archive.finish().expect("an archive").into_inner()
 }
 
+/// Rows of XML cells: the clean file, each cell as `cell` writes its value in a row and column, and what stands beside.
+fn sheet(cell: impl Fn(usize, usize, String) -> String, beside: impl Fn(usize) -> String) -> String {
+    let name = |column: usize, text: &str| {
+        format!("<c r=\"{}1\" t=\"inlineStr\"><is><t>{text}</t></is></c>", char::from(b'A' + column as u8))
+    };
+    let names: String = BRACKETS.iter().enumerate().map(|(i, t)| name(i, t)).collect();
+    let row = |(index, (at, values)): (usize, (i64, [f64; 4]))| {
+        let texts = std::iter::once(at.to_string()).chain(values.iter().map(f64::to_string));
+        let cells: String = texts.enumerate().map(|(column, text)| cell(index + 2, column, text)).collect();
+        format!("<row r=\"{0}\">{cells}{1}</row>", index + 2, beside(index + 2))
+    };
+    format!("<row r=\"1\">{names}</row>{}", clean().into_iter().enumerate().map(row).collect::<String>())
+}
+
+fn cell_name(row: usize, column: usize) -> String {
+    format!("{}{row}", char::from(b'A' + column as u8))
+}
+
+fn number_cell(row: usize, column: usize, text: String) -> String {
+    format!("<c r=\"{}\"><v>{text}</v></c>", cell_name(row, column))
+}
+
+fn text_cell(row: usize, column: usize, text: &str) -> String {
+    format!("<c r=\"{}\" t=\"inlineStr\"><is><t>{text}</t></is></c>", cell_name(row, column))
+}
+
+/// What a program writes that does not calculate: neither dropped nor taken for missing samples.
+#[test]
+fn formulas_without_values_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let formula = |columns: std::ops::Range<usize>| {
+        sheet(
+            |row, column, text| match columns.contains(&column) {
+                true => format!("<c r=\"{}\"><f>A{row}*2</f><v/></c>", cell_name(row, column)),
+                false => number_cell(row, column, text),
+            },
+            |_| String::new(),
+        )
+    };
+    for (columns, words) in [(3..4, "\"=A2*2\" is not a finite number"), (1..5, "its formulas have no saved values")] {
+        fs::write(folder.path().join("a.xlsx"), workbook(&formula(columns))).expect("written");
+        let output = smam(&["import", "a.xlsx", "--scene", "muscle_bench", "--force"], folder.path());
+        assert!(!output.status.success(), "{}", said(&output));
+        assert!(said(&output).contains(words) && said(&output).contains("let it calculate"), "{}", said(&output));
+    }
+}
+
+#[test]
+fn numbers_that_a_workbook_holds_as_texts_are_read() {
+    let written = holds(
+        "a.xlsx",
+        &workbook(&sheet(|row, column, text| text_cell(row, column, &text.replace('.', ",")), |_| String::new())),
+    );
+    assert!(written.contains("decimal = \",\""), "{written}");
+    holds("a.xlsx", &workbook(&sheet(|row, column, text| text_cell(row, column, &text), |_| String::new())));
+}
+
+#[test]
+fn a_remark_beside_a_table_is_none_of_it() {
+    let remark = |row: usize| if row == 5 { text_cell(row, 6, "valve sticks") } else { String::new() };
+    let rows = sheet(number_cell, remark);
+    holds("a.xlsx", &workbook(&rows));
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.xlsx"), workbook(&rows)).expect("written");
+    let output = smam(&["import", "a.xlsx", "--scene", "muscle_bench"], folder.path());
+    assert!(said(&output).contains("beside the table is not read: \"valve sticks\""), "{}", said(&output));
+}
+
 #[test]
 fn messy_12_a_workbook() {
     let name = |column: usize, text: &str| {
@@ -880,4 +948,71 @@ fn files_with_other_units_are_not_read_in_those_of_the_first() {
     assert!(named.status.code() == Some(2) && said(&named).contains("import it by itself"), "{}", said(&named));
     // Its remedy.
     assert!(smam(&["import", "b.csv", "--scene", "muscle_bench", "--out", "b"], folder.path()).status.success());
+}
+
+/// Imports a text that has something wrong, and what is said of it, which ends with exit code 1.
+fn incomplete(text: &str) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), text).expect("written");
+    let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    said(&output)
+}
+
+#[test]
+fn rows_in_a_wrong_order_are_to_be_sorted() {
+    let lines: Vec<String> = PLAIN.text().lines().map(str::to_owned).collect();
+    let mut swapped = lines.clone();
+    swapped.swap(40, 41);
+    let text = incomplete(&(swapped.join("\n") + "\n"));
+    assert!(text.contains("is not after") && text.contains("remedy: sort the rows by time"), "{text}");
+    assert!(!text.contains("starts anew: split"), "{text}");
+    let falling: Vec<String> = lines[..1].iter().chain(lines[1..].iter().rev()).cloned().collect();
+    let text = incomplete(&(falling.join("\n") + "\n"));
+    assert!(text.contains("\"time_s\" goes back 119 times in 120 rows: sort the rows by time"), "{text}");
+}
+
+#[test]
+fn what_stands_in_the_place_of_times_is_named() {
+    let text = PLAIN.text();
+    let without: String = text.lines().map(|l| format!("{}\n", l.split_once(',').expect("cells").1)).collect();
+    assert!(incomplete(&without).contains("interval_s = 0.01"));
+    for (name, stamp) in [("date", "03/29/2026 01:59:50.0"), ("clock", "12:59:50.0 PM")] {
+        let rows = without.lines().enumerate();
+        let text: String =
+            rows.map(|(i, l)| if i == 0 { format!("{name},{l}\n") } else { format!("{stamp},{l}\n") }).collect();
+        let said = incomplete(&text);
+        assert!(said.contains(&format!("\"{name}\" holds \"{stamp}\": stamps are read as 2026-03-29")), "{said}");
+        assert!(said.contains("interval_s"), "{said}");
+    }
+}
+
+#[test]
+fn whole_seconds_of_many_rows_are_said() {
+    let text: String = PLAIN
+        .text()
+        .lines()
+        .map(|line| {
+            let (time, rest) = line.split_once(',').expect("cells");
+            let whole = time.split('.').next().expect("seconds");
+            format!("{},{rest}\n", if time == "time_s" { time.to_owned() } else { whole.to_owned() })
+        })
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), text).expect("written");
+    let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+    assert!(said(&output).contains("interval_s = 0.0"), "{}", said(&output));
+}
+
+#[test]
+fn a_loggers_word_for_missing_and_a_lost_end() {
+    let lines: Vec<String> = PLAIN.text().lines().map(str::to_owned).collect();
+    let over = PLAIN.text().replace(&lines[60], &format!("{},OVER,1,1,1", lines[60].split(',').next().expect("a time")));
+    assert!(incomplete(&over).contains("missing = [\"OVER\"]"));
+    holds("a.csv", PLAIN.text().replace('-', "\u{2212}").as_bytes());
+    // The loss of power cut the row after the last whole one.
+    let cut = PLAIN.text() + "1.2,0.1\0\0\0\0\0\0\0\0";
+    let (_, written, parts) = imported("a.csv", cut.as_bytes());
+    same(&parts[0], &expected());
+    assert!(parts[0].notes.iter().any(|note| note.contains("8 NUL bytes")), "{written}: {:?}", parts[0].notes);
 }

@@ -3,6 +3,7 @@
 //! Bytes → text ([`decode`]) → rows of cells ([`rows`], [`sheet`]) → columns of numbers with a clock ([`columns`], [`clock`]). What a
 //! file does not say itself stands in [`FileOptions`]. Nothing is guessed here.
 
+mod beside;
 mod cell;
 mod clock;
 mod columns;
@@ -25,6 +26,7 @@ use std::path::Path;
 use super::source::{read_lines, read_settled};
 use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, TIME_COLUMN, parse_column};
 use crate::columns::Column;
+use beside::Beside;
 use cell::Cell;
 use columns::Columns;
 use header::{Names, Needed};
@@ -36,12 +38,15 @@ pub use options::{Delimiter, FileOptions, Header, TimeSource};
 pub use source::TableSource;
 
 pub(super) use label::{is_unread, unread_unit};
+pub(super) use cell::is_formula;
+pub(super) use decode::without_nul_end;
 pub(super) use keys::{FILE_KEYS, file_options};
 pub(super) use looked_at::{
     cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
     sheet_names, times, workbook_rows,
 };
 pub(super) use options::TIME_UNITS;
+pub(super) use stamp::{READ_STAMPS, is_like_a_stamp};
 pub(super) use source::{TABLE_KEYS, table_source};
 
 /// Reads a CSV file of plain layout, every column of it.
@@ -122,7 +127,8 @@ fn each_row_of(path: &Path, options: &FileOptions, take: &mut rows::Take<'_>) ->
     match FileFormat::of(path)? {
         FileFormat::Workbook => sheet::each_row(&super::source::read_whole(path)?, options, take).map_err(refuse),
         FileFormat::Csv => {
-            let text = decode::decode(&read_settled(path)?, options.encoding).map_err(refuse)?;
+            let bytes = read_settled(path)?;
+            let text = decode::decode(without_nul_end(&bytes).0, options.encoding).map_err(refuse)?;
             let options = labview::with_labview(&text, options).map_err(refuse)?;
             rows::each_row(&text, &options, take).map_err(refuse)
         }
@@ -137,9 +143,11 @@ fn text_columns(
     needed: Needed<'_>,
 ) -> Result<(Columns, FileOptions), RecordingError> {
     let refuse = |problem: Problem| problem.in_file(file);
+    let (bytes, nul_end) = without_nul_end(bytes);
     let text = decode::decode(bytes, options.encoding).map_err(refuse)?;
     let options = labview::with_labview(&text, options).map_err(refuse)?;
-    let columns = collect(file, &options, needed, |take| rows::each_row(&text, &options, take))?;
+    let mut columns = collect(file, &options, needed, |take| rows::each_row(&text, &options, take))?;
+    columns.notes.extend(nul_end);
     Ok((columns, options))
 }
 
@@ -149,7 +157,10 @@ fn sheet_columns(
     options: &FileOptions,
     needed: Needed<'_>,
 ) -> Result<Columns, RecordingError> {
-    collect(file, options, needed, |take| sheet::each_row(bytes, options, take))
+    collect(file, options, needed, |take| {
+        let mut beside = Beside::new(options);
+        sheet::each_row(bytes, options, &mut |cells| take(&beside.without_remarks(cells)))
+    })
 }
 
 /// Names and rows of a Parquet file, as those of any table; the first row of numbers is line 2.
@@ -250,7 +261,10 @@ fn in_channels(
         }
     }
     let (names, values): (Vec<String>, Vec<Vec<f64>>) = kept.into_iter().unzip();
+    let in_clock = |text: String| Problem::new(format!("column \"{}\": {text}", columns.time_name()));
+    columns.clock.check_order().map_err(in_clock)?;
     let mut notes = columns.clock.notes();
+    notes.append(&mut columns.notes);
     if !texts.is_empty() {
         notes.push(format!("columns of texts, dates or no use are not read: {}", texts.join(", ")));
     }
