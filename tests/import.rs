@@ -897,7 +897,9 @@ fn the_unit_that_fits_the_numbers_is_named() {
 /// A unit that is not known is never taken for the channel's own.
 #[test]
 fn unknown_units_have_to_be_filled_in() {
-    for (name, remark) in [("Plunger [steps]", "steps"), ("Plunger (counts)", "counts"), ("Plunger [furlong]", "furlong")] {
+    for (name, remark) in
+        [("Plunger [steps]", "steps"), ("Plunger (counts)", "counts"), ("Plunger [furlong]", "furlong")]
+    {
         let folder = tempfile::tempdir().expect("a folder");
         let text = PLAIN.text().replace("plunger_mm", name);
         fs::write(folder.path().join("a.csv"), text).expect("written");
@@ -1007,7 +1009,8 @@ fn whole_seconds_of_many_rows_are_said() {
 #[test]
 fn a_loggers_word_for_missing_and_a_lost_end() {
     let lines: Vec<String> = PLAIN.text().lines().map(str::to_owned).collect();
-    let over = PLAIN.text().replace(&lines[60], &format!("{},OVER,1,1,1", lines[60].split(',').next().expect("a time")));
+    let over =
+        PLAIN.text().replace(&lines[60], &format!("{},OVER,1,1,1", lines[60].split(',').next().expect("a time")));
     assert!(incomplete(&over).contains("missing = [\"OVER\"]"));
     holds("a.csv", PLAIN.text().replace('-', "\u{2212}").as_bytes());
     // The loss of power cut the row after the last whole one.

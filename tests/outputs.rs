@@ -59,3 +59,51 @@ fn no_answer_takes_the_place_of_a_recording() {
         assert_eq!(std::fs::read(rig.join("next_experiment.csv")).expect("there"), before);
     }
 }
+
+fn refused(output: &Output, words: &[&str]) {
+    assert_eq!(output.status.code(), Some(2), "{}", said(output));
+    for word in words.iter().chain(&["error: ", "remedy: "]) {
+        assert!(said(output).contains(word), "no {word:?} in: {}", said(output));
+    }
+}
+
+#[test]
+fn a_table_of_something_else_stays() {
+    let here = folder();
+    std::fs::create_dir(here.path().join("mine")).expect("a folder");
+    std::fs::write(here.path().join("mine/table.csv"), "mine\n").expect("written");
+    let sweep = |out: &str| {
+        let vary = ["--vary", "simulation.substeps=10,20", "--measure", "range=range(force_n)", "--duration", "0.1"];
+        smam(&[&["sweep", "driven_axis", "--out", out], &vary[..]].concat(), here.path())
+    };
+    refused(&sweep("mine"), &["mine/table.csv: is a table of something else"]);
+    assert_eq!(std::fs::read_to_string(here.path().join("mine/table.csv")).expect("there"), "mine\n");
+    // Its remedy; whole numbers are varied as such.
+    let done = sweep("own");
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+}
+
+#[cfg(feature = "validation")]
+#[test]
+fn a_concealed_case_takes_no_others_place_and_an_answer_is_to_its_own() {
+    let here = folder();
+    let conceal = |seed: &str, rig: &str, more: &[&str]| {
+        smam(&[&["conceal", "--seed", seed, "--rig", rig, "--out", "cases"], more].concat(), here.path())
+    };
+    assert_eq!(conceal("3", "muscle_bench", &[]).status.code(), Some(0));
+    let recorded = std::fs::read(here.path().join("cases/case_3/recordings.toml")).expect("there");
+    // The same again is the same.
+    assert_eq!(conceal("3", "muscle_bench", &[]).status.code(), Some(0));
+    refused(&conceal("3", "antagonistic_pulley", &[]), &["cases/case_3: another case of this name"]);
+    assert_eq!(std::fs::read(here.path().join("cases/case_3/recordings.toml")).expect("there"), recorded);
+    refused(
+        &conceal("18446744073709551615", "muscle_bench", &["--count", "2"]),
+        &["--seed 18446744073709551615: 2 seeds"],
+    );
+
+    let answer = here.path().join("answers/case_3");
+    std::fs::create_dir_all(&answer).expect("a folder");
+    std::fs::write(answer.join("diagnosis.json"), "{\"recordings\": [\"cases/case_4\"]}").expect("written");
+    let output = smam(&["score", "cases", "--answers", "answers"], here.path());
+    refused(&output, &["answers to the recordings cases/case_4, not to cases/case_3"]);
+}

@@ -18,8 +18,11 @@ pub(super) fn check_outputs(arguments: &RunArguments, scene: &Scene) -> Result<(
     read.extend(scene_files(scene));
     read.extend(arguments.input.clone());
     let name = &scene.file.name;
-    let written =
-        [("--output", file_path(arguments, name)), ("--rrd", arguments.rrd.clone()), ("--junit", arguments.junit.clone())];
+    let written = [
+        ("--output", file_path(arguments, name)),
+        ("--rrd", arguments.rrd.clone()),
+        ("--junit", arguments.junit.clone()),
+    ];
     let mut before = Files::default();
     for (option, path) in written.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))) {
         read.refuse_over(option, path)?;

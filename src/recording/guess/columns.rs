@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::super::survey::median;
 use super::super::table::{
-    FileOptions, Label, READ_STAMPS, cell_number, clock_faults, file_unit, is_formula, is_like_a_stamp, is_stamp, is_unread,
-    label, unread_unit,
+    FileOptions, Label, READ_STAMPS, cell_number, clock_faults, file_unit, is_formula, is_like_a_stamp, is_stamp,
+    is_unread, label, unread_unit,
 };
 use super::super::{TIME_COLUMN, parse_column};
 use super::footer;
@@ -218,7 +218,10 @@ fn repair_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> Result<
     let backwards = faults.restarts + faults.swaps;
     if backwards > most || is_still {
         let name = layout.options.time_name();
-        let what = format!("\"{name}\" goes back {backwards} times in {} rows: sort the rows by time, if it is the time", faults.rows);
+        let what = format!(
+            "\"{name}\" goes back {backwards} times in {} rows: sort the rows by time, if it is the time",
+            faults.rows
+        );
         let is_said = backwards > most && sureness > Sureness::Assumed;
         return Err(is_said.then_some(Said { what, sureness: Sureness::Sure }));
     }

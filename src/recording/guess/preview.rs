@@ -5,9 +5,7 @@ use std::path::Path;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::super::source::{read_settled, read_whole};
-use super::super::table::{
-    check_labview, is_formula, parquet_rows, sheet_names, without_nul_end, workbook_rows,
-};
+use super::super::table::{check_labview, is_formula, parquet_rows, sheet_names, without_nul_end, workbook_rows};
 use super::super::{FileFormat, RecordingError};
 use super::{Said, Sureness};
 

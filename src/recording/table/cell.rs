@@ -89,7 +89,9 @@ fn remedy(text: &str, options: &FileOptions) -> String {
     } else if marks > 1 && is_number(&bare) {
         "leave thousands marks out, or say thousands = \".\" (or \",\") in recordings.toml".to_owned()
     } else if is_like_a_stamp(text) {
-        format!("give the time in seconds as a number, counted from the first row or from any other moment; {READ_STAMPS}")
+        format!(
+            "give the time in seconds as a number, counted from the first row or from any other moment; {READ_STAMPS}"
+        )
     } else if !text.contains(|c: char| c.is_ascii_digit()) {
         format!(
             "write a number with a point as decimal mark, or leave the cell empty where the sample is missing; if {} marks missing samples, \

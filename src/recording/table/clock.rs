@@ -104,12 +104,7 @@ impl Clock {
     /// What had to be put right.
     pub(super) fn faults(&self) -> ClockFaults {
         let swaps = self.swapped().count();
-        ClockFaults {
-            rows: self.time_s.len(),
-            restarts: self.starts.len() - 1 - swaps,
-            swaps,
-            repeats: self.repeated,
-        }
+        ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1 - swaps, swaps, repeats: self.repeated }
     }
 
     /// Rows that stand behind a later one: the time goes on past both of them, as if nothing had been. A clock that starts anew goes on

@@ -24,6 +24,7 @@ mod stamp;
 use std::path::Path;
 
 use super::source::{read_lines, read_settled};
+use super::survey::median;
 use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, TIME_COLUMN, parse_column};
 use crate::columns::Column;
 use beside::Beside;
@@ -37,17 +38,17 @@ pub use label::{Label, label};
 pub use options::{Delimiter, FileOptions, Header, TimeSource};
 pub use source::TableSource;
 
-pub(super) use label::{is_unread, unread_unit};
 pub(super) use cell::is_formula;
 pub(super) use decode::without_nul_end;
 pub(super) use keys::{FILE_KEYS, file_options};
+pub(super) use label::{is_unread, unread_unit};
 pub(super) use looked_at::{
     cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
     sheet_names, times, workbook_rows,
 };
 pub(super) use options::TIME_UNITS;
-pub(super) use stamp::{READ_STAMPS, is_like_a_stamp};
 pub(super) use source::{TABLE_KEYS, table_source};
+pub(super) use stamp::{READ_STAMPS, is_like_a_stamp};
 
 /// Reads a CSV file of plain layout, every column of it.
 pub(super) fn read_plain(path: &Path) -> Result<Recording, RecordingError> {
@@ -234,6 +235,20 @@ fn last_row(
     Ok(rows.saturating_sub(options.skip_last_rows))
 }
 
+/// A file whose own times contradict the interval that was declared in their place.
+fn other_pace(columns: &Columns, options: &FileOptions) -> Option<String> {
+    let TimeSource::Interval(declared_s) = options.time else { return None };
+    let at = columns.names.columns.iter().position(|name| name == TIME_COLUMN)?;
+    let mut intervals: Vec<f64> = columns.values[at].windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
+    let own_s = median(&mut intervals)?;
+    ((own_s / declared_s - 1.0).abs() > 0.01).then(|| {
+        format!(
+            "interval_s = {declared_s}, but the times in its column \"{TIME_COLUMN}\" are {own_s:.6} s apart: without interval_s they are \
+             read"
+        )
+    })
+}
+
 /// Columns under the names and in the units of the channels.
 fn in_channels(
     mut columns: Columns,
@@ -249,6 +264,7 @@ fn in_channels(
         spec.table.convert(header, unit, &mut values).map_err(|text| Problem::in_column(header, text).or_line(|| 1))?;
         kept.push((spec.column.clone(), values));
     }
+    columns.notes.extend(other_pace(&columns, options));
     let mut texts = Vec::new();
     for (index, name) in columns.names.columns.iter().enumerate() {
         if Some(index) == columns.names.time || columns.names.is_needed[index] || name.is_empty() {

@@ -14,8 +14,7 @@ const FORMATS: [&str; 6] = [
 ];
 
 /// What is read, for messages.
-pub(in crate::recording) const READ_STAMPS: &str =
-    "stamps are read as 2026-03-29 13:59:50.02, 29.03.2026 13:59:50.02 or 13:59:50.02, days before months and in 24 hours";
+pub(in crate::recording) const READ_STAMPS: &str = "stamps are read as 2026-03-29 13:59:50.02, 29.03.2026 13:59:50.02 or 13:59:50.02, days before months and in 24 hours";
 
 /// A moment, as a stamp gives it. Moments of different kinds have no difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
