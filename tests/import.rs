@@ -872,6 +872,29 @@ fn a_sheet_is_chosen_and_others_are_named() {
         assert!(refused.status.code() == Some(2) && said(&refused).contains(words), "{}", said(&refused));
     }
     assert!(import(&["a.csv"]).status.success());
+    // A folder without a workbook.
+    fs::create_dir(folder.path().join("d")).expect("a folder");
+    fs::write(folder.path().join("d/a.csv"), PLAIN.text()).expect("written");
+    let refused = import(&["d", "--sheet", "Run 1"]);
+    let words = "--sheet Run 1: none of the files is a workbook\n  remedy: leave --sheet out";
+    assert!(refused.status.code() == Some(2) && said(&refused).contains(words), "{}", said(&refused));
+    // What is to be copied into a shell is quoted.
+    fs::rename(folder.path().join("d"), folder.path().join("my rig")).expect("renamed");
+    assert!(said(&import(&["my rig"])).contains("next: smam compare 'my rig'"));
+}
+
+/// An interval that is declared beside a column of times holds; that they differ is said.
+#[test]
+fn an_interval_against_the_files_own_times_is_noted() {
+    let (folder, written, _) = imported("a.csv", PLAIN.text().as_bytes());
+    for (interval_s, is_noted) in [("0.02", true), ("0.01", false)] {
+        let text = written.replace("[[run]]", &format!("[file]\ninterval_s = {interval_s}\n\n[[run]]"));
+        fs::write(folder.path().join("recordings.toml"), text).expect("written");
+        let set = RecordingSet::load(folder.path()).expect("a set");
+        let run = set.load_run(&set.runs[0]).expect("a run");
+        let notes = run.notes.join("\n");
+        assert_eq!(notes.contains("its column \"time_s\" are 0.010000 s apart"), is_noted, "{notes}");
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use smam::hysteresis::HysteresisModel;
 use smam::recording::{Channel, Recording, RecordingError, read_recording};
 
 use super::CliError;
-use super::files::Files;
+use super::files::{Files, refuse_dash};
 
 /// Arguments of `smam feedforward`.
 #[derive(Args)]
@@ -61,6 +61,7 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let model = read_model(&a.model)?;
     let limits = limits(a)?;
     let recording = read_recording(&a.wanted)?;
+    refuse_dash("--out", &a.out, "name a file")?;
     let mut read = Files::default();
     read.extend([a.model.clone(), a.wanted.clone()]);
     read.refuse_over("--out", &a.out)?;

@@ -105,6 +105,14 @@ impl Files {
     }
 }
 
+/// Refuses `-` where nothing goes to the standard output: it would be a file of that name.
+pub fn refuse_dash(option: &str, path: &Path, remedy: &str) -> Result<(), CliError> {
+    match path == Path::new("-") {
+        true => Err(CliError::Usage(format!("{option} -: this goes into a file\n  remedy: {remedy}"))),
+        false => Ok(()),
+    }
+}
+
 /// A scene's file and what it names: its model, and the references of its checks.
 pub fn scene_files(scene: &Scene) -> Vec<PathBuf> {
     let model = scene.file.mechanism.as_ref().map(|m| &m.urdf);
