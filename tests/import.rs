@@ -261,6 +261,74 @@ fn workbook(rows: &str) -> Vec<u8> {
     archive.finish().expect("an archive").into_inner()
 }
 
+/// Rows of XML cells: the clean file, each cell as `cell` writes its value in a row and column, and what stands beside.
+fn sheet(cell: impl Fn(usize, usize, String) -> String, beside: impl Fn(usize) -> String) -> String {
+    let name = |column: usize, text: &str| {
+        format!("<c r=\"{}1\" t=\"inlineStr\"><is><t>{text}</t></is></c>", char::from(b'A' + column as u8))
+    };
+    let names: String = BRACKETS.iter().enumerate().map(|(i, t)| name(i, t)).collect();
+    let row = |(index, (at, values)): (usize, (i64, [f64; 4]))| {
+        let texts = std::iter::once(at.to_string()).chain(values.iter().map(f64::to_string));
+        let cells: String = texts.enumerate().map(|(column, text)| cell(index + 2, column, text)).collect();
+        format!("<row r=\"{0}\">{cells}{1}</row>", index + 2, beside(index + 2))
+    };
+    format!("<row r=\"1\">{names}</row>{}", clean().into_iter().enumerate().map(row).collect::<String>())
+}
+
+fn cell_name(row: usize, column: usize) -> String {
+    format!("{}{row}", char::from(b'A' + column as u8))
+}
+
+fn number_cell(row: usize, column: usize, text: String) -> String {
+    format!("<c r=\"{}\"><v>{text}</v></c>", cell_name(row, column))
+}
+
+fn text_cell(row: usize, column: usize, text: &str) -> String {
+    format!("<c r=\"{}\" t=\"inlineStr\"><is><t>{text}</t></is></c>", cell_name(row, column))
+}
+
+/// What a program writes that does not calculate: neither dropped nor taken for missing samples.
+#[test]
+fn formulas_without_values_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let formula = |columns: std::ops::Range<usize>| {
+        sheet(
+            |row, column, text| match columns.contains(&column) {
+                true => format!("<c r=\"{}\"><f>A{row}*2</f><v/></c>", cell_name(row, column)),
+                false => number_cell(row, column, text),
+            },
+            |_| String::new(),
+        )
+    };
+    for (columns, words) in [(3..4, "\"=A2*2\" is not a finite number"), (1..5, "its formulas have no saved values")] {
+        fs::write(folder.path().join("a.xlsx"), workbook(&formula(columns))).expect("written");
+        let output = smam(&["import", "a.xlsx", "--scene", "muscle_bench", "--force"], folder.path());
+        assert!(!output.status.success(), "{}", said(&output));
+        assert!(said(&output).contains(words) && said(&output).contains("let it calculate"), "{}", said(&output));
+    }
+}
+
+#[test]
+fn numbers_that_a_workbook_holds_as_texts_are_read() {
+    let written = holds(
+        "a.xlsx",
+        &workbook(&sheet(|row, column, text| text_cell(row, column, &text.replace('.', ",")), |_| String::new())),
+    );
+    assert!(written.contains("decimal = \",\""), "{written}");
+    holds("a.xlsx", &workbook(&sheet(|row, column, text| text_cell(row, column, &text), |_| String::new())));
+}
+
+#[test]
+fn a_remark_beside_a_table_is_none_of_it() {
+    let remark = |row: usize| if row == 5 { text_cell(row, 6, "valve sticks") } else { String::new() };
+    let rows = sheet(number_cell, remark);
+    holds("a.xlsx", &workbook(&rows));
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.xlsx"), workbook(&rows)).expect("written");
+    let output = smam(&["import", "a.xlsx", "--scene", "muscle_bench"], folder.path());
+    assert!(said(&output).contains("beside the table is not read: \"valve sticks\""), "{}", said(&output));
+}
+
 #[test]
 fn messy_12_a_workbook() {
     let name = |column: usize, text: &str| {
@@ -465,8 +533,13 @@ fn messy_26_centimetres_millibar_and_volts() {
     let output = smam(&["import", ".", "--scene", "muscle_bench"], folder.path());
     let path = folder.path().join("recordings.toml");
     let written = fs::read_to_string(&path).unwrap_or_else(|_| panic!("{}", said(&output)));
-    assert!(written.contains("scale = 1.0    # to be filled in: the N of one V"), "{written}");
-    fs::write(&path, written.replace("scale = 1.0", "scale = 2.5")).expect("written");
+    // Not silently with 1: neither here nor by whoever reads what was written.
+    let open = "scale = \"to be filled in: the N of one V\"";
+    assert!(output.status.code() == Some(1) && said(&output).contains("fill in scale of force_n"), "{}", said(&output));
+    assert!(written.contains(open), "{written}");
+    let refused = RecordingSet::load(folder.path()).expect_err("open").to_string();
+    assert!(refused.contains("is still open") && refused.contains("remedy: write the number"), "{refused}");
+    fs::write(&path, written.replace(open, "scale = 2.5")).expect("written");
     let set = RecordingSet::load(folder.path()).expect("a set");
     same(&set.load_run(&set.runs[0]).unwrap_or_else(|e| panic!("{e}\n{written}")), &expected());
 }
@@ -799,6 +872,29 @@ fn a_sheet_is_chosen_and_others_are_named() {
         assert!(refused.status.code() == Some(2) && said(&refused).contains(words), "{}", said(&refused));
     }
     assert!(import(&["a.csv"]).status.success());
+    // A folder without a workbook.
+    fs::create_dir(folder.path().join("d")).expect("a folder");
+    fs::write(folder.path().join("d/a.csv"), PLAIN.text()).expect("written");
+    let refused = import(&["d", "--sheet", "Run 1"]);
+    let words = "--sheet Run 1: none of the files is a workbook\n  remedy: leave --sheet out";
+    assert!(refused.status.code() == Some(2) && said(&refused).contains(words), "{}", said(&refused));
+    // What is to be copied into a shell is quoted.
+    fs::rename(folder.path().join("d"), folder.path().join("my rig")).expect("renamed");
+    assert!(said(&import(&["my rig"])).contains("next: smam compare 'my rig'"));
+}
+
+/// An interval that is declared beside a column of times holds; that they differ is said.
+#[test]
+fn an_interval_against_the_files_own_times_is_noted() {
+    let (folder, written, _) = imported("a.csv", PLAIN.text().as_bytes());
+    for (interval_s, is_noted) in [("0.02", true), ("0.01", false)] {
+        let text = written.replace("[[run]]", &format!("[file]\ninterval_s = {interval_s}\n\n[[run]]"));
+        fs::write(folder.path().join("recordings.toml"), text).expect("written");
+        let set = RecordingSet::load(folder.path()).expect("a set");
+        let run = set.load_run(&set.runs[0]).expect("a run");
+        let notes = run.notes.join("\n");
+        assert_eq!(notes.contains("its column \"time_s\" are 0.010000 s apart"), is_noted, "{notes}");
+    }
 }
 
 #[test]
@@ -819,4 +915,130 @@ fn the_unit_that_fits_the_numbers_is_named() {
     fs::write(folder.path().join("recordings.toml"), filled.collect::<Vec<_>>().join("\n")).expect("written");
     let set = RecordingSet::load(folder.path()).expect("a set");
     same(&set.load_run(&set.runs[0]).expect("a run"), &expected());
+}
+
+/// A unit that is not known is never taken for the channel's own.
+#[test]
+fn unknown_units_have_to_be_filled_in() {
+    for (name, remark) in
+        [("Plunger [steps]", "steps"), ("Plunger (counts)", "counts"), ("Plunger [furlong]", "furlong")]
+    {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = PLAIN.text().replace("plunger_mm", name);
+        fs::write(folder.path().join("a.csv"), text).expect("written");
+        let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).contains(&format!("the mm of one \"{remark}\"")), "{}", said(&output));
+        assert!(RecordingSet::load(folder.path()).is_err());
+        let path = folder.path().join("recordings.toml");
+        let open = format!("scale = \"to be filled in: the mm of one {remark}\"");
+        let written = fs::read_to_string(&path).expect("written");
+        fs::write(&path, written.replace(&open, "scale = 1.0")).expect("written");
+        let set = RecordingSet::load(folder.path()).unwrap_or_else(|e| panic!("{e}\n{written}"));
+        same(&set.load_run(&set.runs[0]).expect("a run"), &expected());
+        // One file by itself is refused too, and says where to fill it in.
+        let refused = said(&smam(&["compare", "a.csv", "--scene", "muscle_bench"], folder.path()));
+        assert!(refused.contains("remedy: run `smam import`"), "{refused}");
+    }
+    let absolute = PLAIN.text().replace("pressure_kpa", "Pressure [kPa a]");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), absolute).expect("written");
+    assert_eq!(smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path()).status.code(), Some(1));
+    let written = fs::read_to_string(folder.path().join("recordings.toml")).expect("written");
+    assert!(written.contains("unit = \"kPa\" and zero = 101.3250000"), "{written}");
+}
+
+#[test]
+fn newtons_per_square_millimetre_and_atmospheres_are_known() {
+    for (name, factor) in [("Pressure [N/mm²]", 1000.0), ("Pressure [N/mm2]", 1000.0), ("Pressure [atm]", 101.325)] {
+        let names = ["time_s", "plunger_mm", "elongation_mm", name, "force_n"];
+        holds("a.csv", Style { names, factors: [1.0, 1.0, factor, 1.0], ..PLAIN }.text().as_bytes());
+    }
+}
+
+/// One `unit` stands for all files of a folder: one in another unit is left out, or refused where it was named.
+#[test]
+fn files_with_other_units_are_not_read_in_those_of_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let names = ["time", "plunger", "elongation", "pressure", "force"];
+    let in_units = |units: &'static str| Style { names, below_names: units, ..PLAIN }.text();
+    fs::write(folder.path().join("a.csv"), in_units("s,mm,mm,kPa,N\n")).expect("written");
+    fs::write(folder.path().join("b.csv"), in_units("s,cm,mm,kPa,N\n")).expect("written");
+    let output = smam(&["import", ".", "--scene", "muscle_bench"], folder.path());
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("b.csv: the column \"plunger\" is in cm, and in mm in "), "{}", said(&output));
+    let set = RecordingSet::load(folder.path()).expect("a set");
+    assert_eq!(set.runs.len(), 1);
+    let named = smam(&["import", "a.csv", "b.csv", "--scene", "muscle_bench", "--force"], folder.path());
+    assert!(named.status.code() == Some(2) && said(&named).contains("import it by itself"), "{}", said(&named));
+    // Its remedy.
+    assert!(smam(&["import", "b.csv", "--scene", "muscle_bench", "--out", "b"], folder.path()).status.success());
+}
+
+/// Imports a text that has something wrong, and what is said of it, which ends with exit code 1.
+fn incomplete(text: &str) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), text).expect("written");
+    let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    said(&output)
+}
+
+#[test]
+fn rows_in_a_wrong_order_are_to_be_sorted() {
+    let lines: Vec<String> = PLAIN.text().lines().map(str::to_owned).collect();
+    let mut swapped = lines.clone();
+    swapped.swap(40, 41);
+    let text = incomplete(&(swapped.join("\n") + "\n"));
+    assert!(text.contains("is not after") && text.contains("remedy: sort the rows by time"), "{text}");
+    assert!(!text.contains("starts anew: split"), "{text}");
+    let falling: Vec<String> = lines[..1].iter().chain(lines[1..].iter().rev()).cloned().collect();
+    let text = incomplete(&(falling.join("\n") + "\n"));
+    assert!(text.contains("\"time_s\" goes back 119 times in 120 rows: sort the rows by time"), "{text}");
+}
+
+#[test]
+fn what_stands_in_the_place_of_times_is_named() {
+    let text = PLAIN.text();
+    let without: String = text.lines().map(|l| format!("{}\n", l.split_once(',').expect("cells").1)).collect();
+    assert!(incomplete(&without).contains("interval_s = 0.01"));
+    for (name, stamp) in [("date", "03/29/2026 01:59:50.0"), ("clock", "12:59:50.0 PM")] {
+        let rows = without.lines().enumerate();
+        let text: String =
+            rows.map(|(i, l)| if i == 0 { format!("{name},{l}\n") } else { format!("{stamp},{l}\n") }).collect();
+        let said = incomplete(&text);
+        assert!(said.contains(&format!("\"{name}\" holds \"{stamp}\": stamps are read as 2026-03-29")), "{said}");
+        assert!(said.contains("interval_s"), "{said}");
+    }
+}
+
+#[test]
+fn whole_seconds_of_many_rows_are_said() {
+    let text: String = PLAIN
+        .text()
+        .lines()
+        .map(|line| {
+            let (time, rest) = line.split_once(',').expect("cells");
+            let whole = time.split('.').next().expect("seconds");
+            format!("{},{rest}\n", if time == "time_s" { time.to_owned() } else { whole.to_owned() })
+        })
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), text).expect("written");
+    let output = smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+    assert!(said(&output).contains("interval_s = 0.0"), "{}", said(&output));
+}
+
+#[test]
+fn a_loggers_word_for_missing_and_a_lost_end() {
+    let lines: Vec<String> = PLAIN.text().lines().map(str::to_owned).collect();
+    let over =
+        PLAIN.text().replace(&lines[60], &format!("{},OVER,1,1,1", lines[60].split(',').next().expect("a time")));
+    assert!(incomplete(&over).contains("missing = [\"OVER\"]"));
+    holds("a.csv", PLAIN.text().replace('-', "\u{2212}").as_bytes());
+    // The loss of power cut the row after the last whole one.
+    let cut = PLAIN.text() + "1.2,0.1\0\0\0\0\0\0\0\0";
+    let (_, written, parts) = imported("a.csv", cut.as_bytes());
+    same(&parts[0], &expected());
+    assert!(parts[0].notes.iter().any(|note| note.contains("8 NUL bytes")), "{written}: {:?}", parts[0].notes);
 }

@@ -16,7 +16,7 @@ use smam::scene::{Override, Scene, calibration_key};
 
 use super::CliError;
 use super::changes::Changes;
-use super::files::{Together, make_folder};
+use super::files::{Files, Together, make_folder, recorded_files, scene_files};
 use super::import::recordings;
 use super::results::{Results, name_of};
 
@@ -60,6 +60,10 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         let way = lead_in(&scene, run).map_err(|e| e.in_file(&run.run.file))?;
         way.iter().for_each(|way| eprintln!("note: {}: {}", run.run.file, way.note()));
     }
+    let mut read = Files::default();
+    read.extend(recorded_files(&set).into_iter().chain(scene_files(&scene)));
+    read.extend(shown.iter().map(|run| set.dir.join(&run.run.file)));
+    read.refuse_in(out, |name| ["compare.html", "compare.json"].contains(&name))?;
     make_folder(out)?;
     results.note_input()?;
     let report = fit_rig_parameters(&set, &scene_name, &overrides, &may_fit)?;

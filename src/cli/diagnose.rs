@@ -10,12 +10,13 @@ use clap::{Args, ValueEnum};
 use smam::diagnose::{
     Case, Diagnosis, Estimate, Options, Outcome, Step, Verdict, diagnose as run_diagnosis, write_answer_with,
 };
+use smam::recording::RecordingSet;
 use smam::report::{FIGURES, diagnosis_page};
 
 use super::CliError;
 use super::changes::Changes;
 use super::diagnose_view::Shown;
-use super::files::{is_same_file, make_folder, take_folder};
+use super::files::{Files, make_folder, recorded_files, scene_files, take_folder};
 use super::import::recordings;
 use super::results::Results;
 
@@ -110,7 +111,7 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     }
     let results = Results::of(&arguments.dirs[0], "diagnose", arguments.out.as_deref())?;
     let out = &results.folder;
-    refuse_scene_in_use(&case, out)?;
+    refuse_read_files(&case, &sets, out)?;
     let _held = take_folder(out)?;
     results.note_input()?;
     let (start, effort) = (Instant::now(), case.effort.watched());
@@ -145,15 +146,17 @@ fn write_all(outcome: &Outcome, out: &Path) -> Result<(), CliError> {
     Ok(write_answer_with(outcome, &more, out)?)
 }
 
-/// An answer holds a scene.toml and a baseline.toml: they must not take the place of the scene that is diagnosed.
-fn refuse_scene_in_use(case: &Case, out: &Path) -> Result<(), CliError> {
-    let in_use =
-        ["scene.toml", "baseline.toml"].into_iter().find(|name| is_same_file(&out.join(name), &case.scene.path));
-    let Some(name) = in_use else { return Ok(()) };
-    Err(CliError::Usage(format!(
-        "--out {}: {name} there is the scene of these recordings\n  remedy: give the answer a folder of its own",
-        out.display()
-    )))
+/// Files of an answer, but one for each further specimen.
+const ANSWER: [&str; 6] =
+    ["diagnosis.json", "report.html", "diagnosis.rrd", "next_experiment.csv", "scene.toml", "baseline.toml"];
+
+/// An answer must not take the place of what is diagnosed: a recorded next_experiment.csv, say, or a scene.toml.
+fn refuse_read_files(case: &Case, sets: &[RecordingSet], out: &Path) -> Result<(), CliError> {
+    let mut read = Files::default();
+    read.extend(scene_files(&case.scene));
+    sets.iter().for_each(|set| read.extend(recorded_files(set)));
+    let is_of_specimen = |name: &str| name.starts_with("scene_") && name.ends_with(".toml");
+    read.refuse_in(out, |name| ANSWER.contains(&name) || is_of_specimen(name))
 }
 
 /// What --threads takes: 0 would mean all cores, and a slip of the finger would start threads until the machine stands.

@@ -10,6 +10,7 @@ use smam::hysteresis::HysteresisModel;
 use smam::recording::{Channel, Recording, RecordingError, read_recording};
 
 use super::CliError;
+use super::files::{Files, refuse_dash};
 
 /// Arguments of `smam feedforward`.
 #[derive(Args)]
@@ -60,7 +61,10 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let model = read_model(&a.model)?;
     let limits = limits(a)?;
     let recording = read_recording(&a.wanted)?;
-    refuse_same_file(a)?;
+    refuse_dash("--out", &a.out, "name a file")?;
+    let mut read = Files::default();
+    read.extend([a.model.clone(), a.wanted.clone()]);
+    read.refuse_over("--out", &a.out)?;
     let in_file = |e: RecordingError| e.in_file(a.wanted.display().to_string());
     let unit = recording.channel(&a.column).and_then(Channel::unit).map_err(in_file)?;
     if unit.si_suffix != "m" {
@@ -91,18 +95,6 @@ pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
         say!("  note: held back for {:.2} s by a limit, or where the model turns", found.clipped_s);
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The programme must not take the place of what was wanted.
-fn refuse_same_file(a: &FeedforwardArguments) -> Result<(), CliError> {
-    let place = |path: &Path| path.canonicalize().ok();
-    match place(&a.out).is_some_and(|out| [&a.model, &a.wanted].iter().any(|p| place(p).as_ref() == Some(&out))) {
-        true => Err(CliError::Usage(format!(
-            "--out {}: this file is read, it would be lost\n  remedy: give the programme a name of its own",
-            a.out.display()
-        ))),
-        false => Ok(()),
-    }
 }
 
 fn read_model(path: &Path) -> Result<HysteresisModel<f64>, CliError> {

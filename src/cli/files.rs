@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use smam::files::{Held, Staged, hold_folder, place_all, still_there, write_whole};
+use smam::recording::{RecordingSet, SET_FILE_NAME};
 use smam::report::HtmlPage;
+use smam::scene::Scene;
+use smam::stock;
 
 use super::CliError;
 
@@ -62,7 +65,74 @@ pub fn see_there(paths: &[PathBuf]) -> Result<(), CliError> {
         .try_for_each(|path| still_there(path).map_err(|source| CliError::Write { file: path.to_owned(), source }))
 }
 
-/// Whether two paths lead to one file that is there.
-pub fn is_same_file(a: &Path, b: &Path) -> bool {
-    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+/// Files that a command reads: no result may take the place of one.
+#[derive(Default)]
+pub struct Files(Vec<PathBuf>);
+
+impl Files {
+    /// Adds files.
+    pub fn extend(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        self.0.extend(files);
+    }
+
+    /// Whether a path leads to one of them.
+    pub fn holds(&self, path: &Path) -> bool {
+        self.0.iter().any(|file| is_same_file(file, path))
+    }
+
+    /// Refuses a result in the place of one of them.
+    pub fn refuse_over(&self, option: &str, path: &Path) -> Result<(), CliError> {
+        match self.holds(path) {
+            true => Err(CliError::Usage(format!(
+                "{option} {}: this file is read, it would be lost\n  remedy: name another file",
+                path.display()
+            ))),
+            false => Ok(()),
+        }
+    }
+
+    /// Refuses a folder in which results of these names would take the place of one of them.
+    pub fn refuse_in(&self, folder: &Path, is_written: impl Fn(&str) -> bool) -> Result<(), CliError> {
+        let name = |file: &PathBuf| Some(file.canonicalize().ok()?.file_name()?.to_string_lossy().into_owned());
+        let mut names = self.0.iter().filter_map(name).filter(|name| is_written(name));
+        match names.find(|name| self.holds(&folder.join(name))) {
+            Some(name) => Err(CliError::Usage(format!(
+                "--out {}: {name} there is read, it would be lost\n  remedy: give the results a folder of their own with --out",
+                folder.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses `-` where nothing goes to the standard output: it would be a file of that name.
+pub fn refuse_dash(option: &str, path: &Path, remedy: &str) -> Result<(), CliError> {
+    match path == Path::new("-") {
+        true => Err(CliError::Usage(format!("{option} -: this goes into a file\n  remedy: {remedy}"))),
+        false => Ok(()),
+    }
+}
+
+/// A scene's file and what it names: its model, and the references of its checks.
+pub fn scene_files(scene: &Scene) -> Vec<PathBuf> {
+    let model = scene.file.mechanism.as_ref().map(|m| &m.urdf);
+    let references = scene.file.expect.iter().filter_map(|e| e.file.as_ref());
+    let named = model.into_iter().chain(references).map(|file| stock::join(scene.folder(), file));
+    std::iter::once(scene.path.clone()).chain(named).collect()
+}
+
+/// The files of a folder of recordings, and the scene that it names where that is a file.
+pub fn recorded_files(set: &RecordingSet) -> Vec<PathBuf> {
+    let runs = set.runs.iter().map(|run| set.dir.join(&run.file));
+    runs.chain([set.dir.join(SET_FILE_NAME), PathBuf::from(set.scene_path())]).collect()
+}
+
+/// Whether two paths lead to one file, which is there or will be.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        // What goes into a device or a pipe takes nothing's place.
+        (Ok(a), Ok(b)) => a == b && a.is_file(),
+        (Err(_), Err(_)) => a == b,
+        _ => false,
+    }
 }

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::recording::{
-    Guess, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness, Wanted,
-    guess_sheet, to_toml,
+    Guess, GuessedColumn, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness,
+    Wanted, guess_sheet, to_toml,
 };
 use smam::scene::Scene;
 use smam::stock;
@@ -14,6 +14,7 @@ use smam::stock;
 use super::CliError;
 use super::files::{make_folder, write};
 use super::import_files::{Described, describe, files};
+use super::words::quoted;
 
 /// Arguments of `smam import`.
 #[derive(Args)]
@@ -50,6 +51,12 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
         )));
     }
     let sheet = arguments.sheet.as_deref();
+    if let Some(name) = sheet.filter(|name| files.iter().all(|file| file.sheet(Some(name)).is_none())) {
+        let message = format!("--sheet {name}: none of the files is a workbook");
+        return Err(CliError::Usage(format!(
+            "{message}\n  remedy: leave --sheet out, or name a file that ends in .xlsx"
+        )));
+    }
     let (scene, channels) = scene_of_any(arguments.scene.as_deref(), &files, sheet)?;
     let Described { guesses, left_out } = describe(&files, sheet, &channels)?;
     guesses.iter().for_each(say_guess);
@@ -60,6 +67,11 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
     left_out.iter().for_each(|file| text += &file.comment());
     write(&written, &text)?;
     say!("written: {}", written.display());
+    let open = open_points(&guesses[0]);
+    if !open.is_empty() {
+        open.iter().for_each(|point| eprintln!("not complete: {}: {point}", written.display()));
+        return Ok(ExitCode::from(1));
+    }
     let missing = absent_input(&guesses[0], &channels);
     Ok(match (read_back(&written), missing) {
         (Ok(()), Some(input)) => {
@@ -71,7 +83,7 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
             ExitCode::from(1)
         }
         (Ok(()), None) => {
-            say!("next: smam compare {}", shown_folder(&folder));
+            say!("next: smam compare {}", quoted(&folder));
             ExitCode::SUCCESS
         }
         (Err(why), _) => {
@@ -106,9 +118,29 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
             found.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
         )));
     }
+    if let [first, ..] = open_points(&found).as_slice() {
+        return Err(CliError::Usage(format!(
+            "{}: {first}\n  remedy: run `smam import` on the file and fill in what it could not know",
+            path.display()
+        )));
+    }
     let scene = scene_from(&folder, &scene);
     let text = to_toml(&[found], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
     Ok(RecordingSet::parse(&text, &folder.join(SET_FILE_NAME))?)
+}
+
+/// Columns whose numbers cannot be read before a user says how: each with what has to be filled in.
+fn open_points(found: &Guess) -> Vec<String> {
+    let point = |column: &GuessedColumn| {
+        let (wanted, _) = column.channel.as_ref()?;
+        Some(format!(
+            "fill in scale of {}: {}, for the column \"{}\"",
+            wanted.column,
+            column.open_point()?,
+            column.name
+        ))
+    };
+    found.columns.iter().filter_map(point).collect()
 }
 
 /// An input of the scene that no column was found for.
@@ -119,10 +151,6 @@ fn absent_input<'a>(found: &Guess, channels: &'a [Wanted]) -> Option<&'a Wanted>
 
 fn folder_of(file: &Path) -> PathBuf {
     file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
-}
-
-fn shown_folder(folder: &Path) -> String {
-    folder.display().to_string()
 }
 
 /// How recordings.toml calls a file: by its name where it lies beside, else by its whole path.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use smam::recording::{Guess, RecordingError, Wanted, guess_sheet};
+use smam::recording::{Guess, GuessedColumn, RecordingError, SET_FILE_NAME, Wanted, guess_sheet};
 
 use super::CliError;
 
@@ -93,6 +93,13 @@ pub fn describe(files: &[Given], sheet: Option<&str>, channels: &[Wanted]) -> Re
     };
     let mut guesses = Vec::new();
     for (file, guess) in looked_at {
+        if let Some(why) = in_other_units(&guess, &model) {
+            if file.is_named {
+                return Err(CliError::Usage(why));
+            }
+            left_out.push(LeftOut { path: file.path.clone(), why });
+            continue;
+        }
         match lacking(&guess, &model).filter(|_| !file.is_named) {
             None => guesses.push(guess),
             Some(column) => {
@@ -109,6 +116,27 @@ fn lacking(guess: &Guess, model: &Guess) -> Option<String> {
     let of_channels = model.columns.iter().filter(|c| c.channel.is_some()).map(|c| &c.name);
     let has = |name: &String| guess.time.as_ref() == Some(name) || guess.columns.iter().any(|c| c.name == *name);
     model.time.iter().chain(of_channels).find(|name| !has(name)).cloned()
+}
+
+/// A column that is in another unit than in the model: the channels of a recordings.toml have one unit for all its files.
+fn in_other_units(guess: &Guess, model: &Guess) -> Option<String> {
+    let said = |column: &GuessedColumn| match (&column.unread_unit, column.unit) {
+        (Some(text), _) => format!("in \"{text}\""),
+        (None, Some(unit)) => format!("in {}", unit.name),
+        (None, None) => "without a unit".to_owned(),
+    };
+    let pairs = guess.columns.iter().filter_map(|c| Some((c, model.columns.iter().find(|m| m.name == c.name)?)));
+    let mut of_channels = pairs.filter(|(_, m)| m.channel.is_some());
+    let (own, other) = of_channels.find(|(c, m)| said(c) != said(m))?;
+    Some(format!(
+        "{}: the column \"{}\" is {}, and {} in {}\n  remedy: import it by itself with --out: the channels of a {SET_FILE_NAME} have one \
+         unit for all its files",
+        guess.file.display(),
+        own.name,
+        said(own),
+        said(other),
+        model.file.display()
+    ))
 }
 
 fn without(path: &Path, column: &str, model: &Guess) -> String {

@@ -40,6 +40,7 @@ mod sweep_panels;
 mod sweep_trouble;
 #[cfg(feature = "validation")]
 mod validation;
+mod words;
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -9,6 +9,7 @@ use smam::mechanism::{Forceps, MechanismError, NotchGeometry, NotchedTube, notch
 use smam::files::write_whole_bytes;
 
 use super::CliError;
+use super::files::refuse_dash;
 
 /// Arguments of `smam model`.
 #[derive(Args)]
@@ -82,7 +83,10 @@ pub fn model(arguments: &ModelArguments) -> Result<ExitCode, CliError> {
         ..NotchedTube::STOCK
     };
     match &a.output {
-        Some(path) => write_with_meshes(&tube, path)?,
+        Some(path) => {
+            refuse_dash("--output", path, "leave --output out: the URDF then goes to the standard output")?;
+            write_with_meshes(&tube, path)?;
+        }
         None => super::print_text(&notched_tube_urdf(&tube, None).map_err(of_option)?)?,
     }
     eprintln!("for the scene file, per notch:");

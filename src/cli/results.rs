@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::CliError;
 use super::files::write;
+use super::words::quoted;
 
 /// Says in a folder that was not named by the user what its results are of.
 const MADE_FROM: &str = "made_from.txt";
@@ -36,7 +37,7 @@ impl Results {
                 "{}: holds the results of {}\n  remedy: give another folder, for example --out {}",
                 folder.display(),
                 before.display(),
-                another(&whole, command).display()
+                quoted(&another(&whole, command))
             )));
         }
         Ok(Self { folder, input: Some(input_named()) })

@@ -13,15 +13,16 @@ use smam::system::{InputSource, RunError, Schedule, Simulation, run as run_simul
 use super::CliError;
 use super::angles::Angles;
 use super::changes::Changes;
-use super::files::is_same_file;
 use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
 use super::steps::check_steps;
 
 mod judged;
+mod outputs;
 
 use judged::{check, print_energy};
+use outputs::{check_outputs, file_path, rrd_path, say_what_to_open};
 
 /// Arguments of `smam run`.
 #[derive(Args)]
@@ -38,7 +39,7 @@ pub struct RunArguments {
     /// Drive the scene's inputs from this recording (CSV, .parquet or .mcap), at its sample times
     #[arg(long, value_name = "FILE")]
     input: Option<PathBuf>,
-    /// Write the recording here instead of out/NAME.csv; .parquet and .mcap are written as such
+    /// Write the recording here instead of out/NAME.csv; .parquet and .mcap are written as such, - is the standard output (CSV)
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Write the Rerun stream here instead of out/NAME.rrd
@@ -78,8 +79,8 @@ pub struct RunArguments {
 /// Runs the command.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     let overrides = arguments.changes.overrides()?;
-    refuse_folder(arguments.junit.as_deref())?;
     let scene = Scene::load(&arguments.scene, &overrides)?;
+    check_outputs(arguments, &scene)?;
     let name = scene.file.name.clone();
     let mut simulation = Simulation::new(scene)?;
     simulation.warnings().iter().for_each(|w| eprintln!("note: {w}"));
@@ -130,14 +131,6 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
     if arguments.check { check(arguments, &simulation, &recording) } else { Ok(ExitCode::SUCCESS) }
 }
 
-/// A name that a folder has is refused before the work, not after it.
-fn refuse_folder(file: Option<&Path>) -> Result<(), CliError> {
-    match file.filter(|path| path.is_dir()) {
-        Some(path) => Err(CliError::Write { file: path.to_owned(), source: std::io::ErrorKind::IsADirectory.into() }),
-        None => Ok(()),
-    }
-}
-
 /// Drives a further simulation from the recording of `--input`, which has been looked at already.
 fn drive_from_input(arguments: &RunArguments, simulation: &mut Simulation) -> Result<(), CliError> {
     let Some(path) = &arguments.input else { return Ok(()) };
@@ -145,13 +138,6 @@ fn drive_from_input(arguments: &RunArguments, simulation: &mut Simulation) -> Re
 }
 
 fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Schedule, CliError> {
-    let scene = &simulation.scene().path;
-    if arguments.output.as_ref().is_some_and(|output| is_same_file(output, scene)) {
-        return Err(CliError::Usage(format!(
-            "--output {}: this is the scene\n  remedy: name another file",
-            scene.display()
-        )));
-    }
     let spec = simulation.scene().file.simulation;
     let limit = arguments.duration;
     if let Some(d) = limit.filter(|d| !(*d > 0.0 && d.is_finite())) {
@@ -168,12 +154,6 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     let Some(path) = &arguments.input else {
         return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
     };
-    if arguments.output.as_ref().is_some_and(|output| is_same_file(output, path)) {
-        return Err(CliError::Usage(format!(
-            "--output {}: this is the recording that drives the run\n  remedy: name another file",
-            path.display()
-        )));
-    }
     let recording = read_recording(path)?;
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     let others = drive(simulation, &recording, path)?;
@@ -220,22 +200,6 @@ fn drive(simulation: &mut Simulation, recording: &Recording, path: &Path) -> Res
     }
     let is_other = |column: &&str| !inputs.iter().any(|i| i == column);
     Ok(recording.columns().into_iter().filter(is_other).map(str::to_owned).collect())
-}
-
-/// Neither file was named: both go to `out/`.
-fn writes_defaults(arguments: &RunArguments) -> bool {
-    arguments.output.is_none() && arguments.rrd.is_none() && !arguments.view && !arguments.serve && !arguments.check
-}
-
-fn file_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
-    let default = || writes_defaults(arguments).then(|| Path::new("out").join(format!("{name}.csv")));
-    arguments.output.clone().or_else(default)
-}
-
-fn rrd_path(arguments: &RunArguments, name: &str) -> Option<PathBuf> {
-    let default =
-        || (cfg!(feature = "viz") && writes_defaults(arguments)).then(|| Path::new("out").join(format!("{name}.rrd")));
-    arguments.rrd.clone().or_else(default)
 }
 
 fn observers(arguments: &RunArguments, name: &str, view: &ViewSpec, end_s: f64) -> Result<Observers, CliError> {
@@ -317,15 +281,6 @@ fn finish_as_part(observers: &mut Observers) -> Result<(), CliError> {
         viewer.finish_as_part()?;
     }
     observers.file.take().map_or(Ok(()), RunFile::finish_as_part)
-}
-
-fn say_what_to_open(arguments: &RunArguments, name: &str) {
-    if let Some(path) = file_path(arguments, name) {
-        eprintln!("recording: {}", path.display());
-    }
-    if let Some(path) = rrd_path(arguments, name) {
-        eprintln!("to look at it: rerun {}    (the viewer: pip install rerun-sdk==0.36.3)", path.display());
-    }
 }
 
 /// A server goes on until it is interrupted.

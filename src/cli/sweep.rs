@@ -108,6 +108,7 @@ fn run(arguments: &RunSweep) -> Result<ExitCode, CliError> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep_{}", plan.file.name)));
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     check_shard(&plan, shard)?;
+    Table::check_place(&plan, &out)?;
     let journal = Journal::open(&out, &plan, arguments.resume)?;
     run_points(&plan, &journal, shard)?;
     let table = Table::of_folders(&plan, &[&out])?;
@@ -168,6 +169,7 @@ fn say_without_number(plan: &Plan, table: &Table) {
 
 fn merge(sweep: &Path, folders: &[PathBuf], out: &Path) -> Result<ExitCode, CliError> {
     let plan = Plan::new(SweepFile::load(sweep)?)?;
+    Table::check_place(&plan, out)?;
     let folders: Vec<&Path> = folders.iter().map(PathBuf::as_path).collect();
     let table = Table::of_folders(&plan, &folders)?;
     finish(&plan, &table, out, Shard::WHOLE)

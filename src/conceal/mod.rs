@@ -38,6 +38,8 @@ pub use seal::seal;
 pub use secrets::Secret;
 pub use settling::{Settling, settling};
 pub use stock::{Calibration, Output, Rig};
+#[doc(hidden)]
+pub use write::is_another_there;
 pub use write::{SEALED, write_case};
 pub use writings::Writing;
 

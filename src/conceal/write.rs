@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::ConcealError;
-use super::case::Drawn;
+use super::case::{Drawn, Truth};
 use super::seal::{seal, sealed_text};
 use crate::files::write_whole;
 
@@ -33,6 +33,17 @@ pub fn write_case(drawn: &Drawn, folder: &Path) -> Result<String, ConcealError> 
     // Last: a folder with this file is whole.
     write(&own.join("recordings.toml"), &recordings_toml(drawn))?;
     Ok(seal(&text))
+}
+
+/// Whether another case lies in the folder under this one's name. The same one does where a run before was interrupted, or is repeated.
+#[doc(hidden)]
+pub fn is_another_there(truth: &Truth, folder: &Path) -> bool {
+    // The last file of a case: without it none was written whole.
+    if !folder.join(&truth.name).join("recordings.toml").exists() {
+        return false;
+    }
+    let sealed = std::fs::read_to_string(folder.join(SEALED).join(format!("{}.json", truth.name))).ok();
+    sealed.is_none() || sealed != sealed_text(truth).ok()
 }
 
 fn recordings_toml(drawn: &Drawn) -> String {

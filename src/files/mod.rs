@@ -4,10 +4,11 @@
 //! it is on the disk.
 
 mod hold;
+mod place;
 mod read;
 mod whole;
 
 pub use hold::{Held, hold_folder};
 pub use read::{open, read_text};
 pub use whole::{Staged, Unfinished, part_name, place_all, still_there, write_whole, write_whole_bytes};
-pub(crate) use whole::{put_in_place, temporary_beside};
+pub(crate) use whole::{part_place, put_in_place, temporary_beside};

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempPath};
 
+use super::place::Place;
+
 /// Writes a text under `path`, making its folder where it is missing. A former file of that name stays until the new
-/// one is complete.
+/// one is complete. A symbolic link stays, and its end is written; a device or a pipe gets the text.
 ///
 /// ```
 /// use smam::files::write_whole;
@@ -78,8 +80,7 @@ impl Staged {
     /// # Errors
     /// The folder is gone, or something that is no file has that name.
     pub fn place(self) -> io::Result<()> {
-        self.file.persist(&self.path).map_err(|e| e.error)?;
-        Ok(())
+        Place::of(&self.path).take(self.file.into_temp_path())
     }
 }
 
@@ -119,7 +120,7 @@ pub fn place_all(files: Vec<Staged>) -> Result<(), (PathBuf, io::Error)> {
 /// # Errors
 /// It is gone again.
 pub fn still_there(path: &Path) -> io::Result<()> {
-    match path.is_file() {
+    match std::fs::metadata(path).is_ok_and(|kind| !kind.is_dir()) {
         true => Ok(()),
         false => Err(io::Error::new(io::ErrorKind::NotFound, "it was written, and somebody took it away again")),
     }
@@ -153,7 +154,7 @@ impl Unfinished {
 
     /// The same file, to stand beside its place as a part ([`part_name`]).
     pub fn as_part(self) -> Self {
-        Self { path: part_name(&self.path), ..self }
+        Self { path: part_place(&self.path), ..self }
     }
 
     /// Gives the file its name.
@@ -162,7 +163,7 @@ impl Unfinished {
     /// The file or its folder is gone, or it cannot be brought to the disk.
     pub fn place(self) -> io::Result<()> {
         std::fs::OpenOptions::new().write(true).open(&self.temporary)?.sync_all()?;
-        self.temporary.persist(&self.path).map_err(|e| e.error)
+        Place::of(&self.path).take(self.temporary)
     }
 }
 
@@ -178,13 +179,14 @@ pub fn part_name(path: &Path) -> PathBuf {
     path.with_extension(format!("partial{ending}"))
 }
 
+/// Where what was written before a failure goes.
+pub(crate) fn part_place(path: &Path) -> PathBuf {
+    Place::of(path).for_part()
+}
+
 /// An empty file in the folder where `path` shall stand; gone when dropped.
 pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
-    // The parent of a bare file name is the empty path.
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let folder = Place::of(path).folder();
     let mut builder = tempfile::Builder::new();
     builder.prefix(".smam-").suffix(".partial");
     #[cfg(unix)]
@@ -200,8 +202,7 @@ pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
 pub(crate) fn put_in_place(file: NamedTempFile, path: &Path) -> io::Result<()> {
     // On the disk before it gets its name: a crash never leaves a named file without its content.
     file.as_file().sync_all()?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    Place::of(path).take(file.into_temp_path())
 }
 
 #[cfg(test)]

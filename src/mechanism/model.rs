@@ -292,6 +292,15 @@ fn check_spec(spec: &MechanismSpec) -> Result<(), MechanismError> {
     let Some(contact) = &spec.contact else {
         return Ok(());
     };
+    if contact.pgs_iterations == 0 {
+        let problem = "pgs_iterations = 0 solves no contact";
+        return Err(MechanismError::spec(
+            "contact",
+            "pgs_iterations",
+            problem,
+            "give 1 or more; 100 to 200 at steps of 1 ms",
+        ));
+    }
     let values = [
         ("natural_frequency_hz", contact.natural_frequency_hz),
         ("damping_ratio", contact.damping_ratio),

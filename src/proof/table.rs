@@ -12,7 +12,7 @@ use crate::diagnose::Verdict;
 pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
     let mut text = String::from("| figure | target | reached | 95 % interval | cases | |\n|---|---|---|---|---|---|\n");
     for m in metrics {
-        let number = |v: f64| if m.key == "set_size" { format!("{v:.2}") } else { format!("{:.1} %", 100.0 * v) };
+        let number = |v: f64| said(m, v);
         let mark = if m.cases == 0 {
             "none"
         } else if m.is_met {
@@ -37,6 +37,15 @@ pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
     reliability_table(&mut text, rows);
     wrong(&mut text, rows);
     text
+}
+
+/// A figure as the table prints it: of no case there is none.
+fn said(m: &Metric, v: f64) -> String {
+    match m.key.as_str() {
+        _ if !v.is_finite() => "-".to_owned(),
+        "set_size" => format!("{v:.2}"),
+        _ => format!("{:.1} %", 100.0 * v),
+    }
 }
 
 fn by_misfit(text: &mut String, rows: &[Row]) {
@@ -144,7 +153,7 @@ fn drawn_laws(text: &mut String, rows: &[Row]) {
             number(law.curve_error),
             number(r.gap_closed),
             number(law.gap_larger),
-            r.seconds.unwrap_or(f64::NAN)
+            r.seconds.map_or("-".to_owned(), |s| format!("{s:.0}"))
         );
     }
 }

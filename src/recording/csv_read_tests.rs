@@ -34,7 +34,8 @@ fn header_errors() {
     assert_eq!(
         refusal("t,a_n\n0,1\n"),
         "a.csv: line 1: no column \"time_s\" (found: t, a_n)\n  remedy: name the time column \"time_s\" and give \
-             it in seconds, or say time_column = \"...\" in recordings.toml (`smam import` writes it)"
+             it in seconds, or say time_column = \"...\" in recordings.toml (`smam import` writes it); of rows at an even pace, their \
+             interval: interval_s = 0.01"
     );
     assert_eq!(
         refusal("time_s,a_n,a_n\n0,1,2\n"),
@@ -64,7 +65,8 @@ fn row_errors() {
     assert_eq!(
         refusal("time_s,a_n\n0,1\n1,off\n"),
         "a.csv: line 3, column \"a_n\": \"off\" is not a finite number\n  remedy: write a number with a point as \
-             decimal mark, or leave the cell empty where the sample is missing"
+             decimal mark, or leave the cell empty where the sample is missing; if \"off\" marks missing samples, say missing = \
+             [\"off\"] in recordings.toml"
     );
     assert!(refusal("time_s,a_n\n0,inf\n").contains("not a finite number"));
     assert_eq!(

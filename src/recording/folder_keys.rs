@@ -1,5 +1,6 @@
 //! Reading TOML keys with errors that name file, table, key and remedy.
 
+use super::guess::TO_FILL_IN;
 use super::{Header, RecordingError};
 use crate::nearest::did_you_mean;
 use std::path::Path;
@@ -92,6 +93,9 @@ impl<'a> Keys<'a> {
             None => Ok(None),
             Some(Value::Integer(whole)) => Ok(Some(*whole as f64)),
             Some(Value::Float(number)) if number.is_finite() => Ok(Some(*number)),
+            Some(Value::String(text)) if text.starts_with(TO_FILL_IN) => Err(self.error(format!(
+                "{key} = \"{text}\" is still open\n  remedy: write the number in the place of the text: {key} = 2.5"
+            ))),
             Some(other) => Err(self.error(format!(
                 "{key} = {other} must be a finite number\n  remedy: write {key} = 0.5, or whatever it is"
             ))),

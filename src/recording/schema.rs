@@ -46,7 +46,7 @@ fn channel() -> Value {
         "field": text("Bags only: path of the number in the message, wrench.force.z or data[2]; data when left out."),
         "joint": text("Bags only: which joint, by its name in the list `name` of the message."),
         "name": text("Tables only: the column's name in the file, if it is another: Pressure [bar]."),
-        "unit": text("Unit of the numbers in the file: mm, cm, m, um, in, deg, rad, rev, kPa, Pa, MPa, bar, mbar, psi, mmHg, N, mN, kN, gf, kgf, lbf, V; \
+        "unit": text("Unit of the numbers in the file: mm, cm, m, um, in, deg, rad, rev, kPa, Pa, MPa, bar, mbar, atm, psi, mmHg, N, mN, kN, gf, kgf, lbf, V; \
                       left out, a table's is that of its name or of the column, a bag's SI."),
         "scale": {
             "type": "number",

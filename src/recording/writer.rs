@@ -9,7 +9,7 @@ use super::csv_write::{check_width, write_error};
 use super::{CsvWriter, FileFormat, Recording, RecordingError, TIME_COLUMN};
 use crate::bag::BagWriter;
 use crate::columns::NumberRows;
-use crate::files::{part_name, put_in_place, temporary_beside};
+use crate::files::{part_place, put_in_place, temporary_beside};
 
 /// A recording on its way into a file of the format that its name says.
 ///
@@ -94,7 +94,7 @@ impl RecordingWriter {
     /// # Errors
     /// As [`RecordingWriter::finish`].
     pub fn finish_as_part(self) -> Result<PathBuf, RecordingError> {
-        let path = part_name(&self.path);
+        let path = part_place(&self.path);
         self.finish_as(&path)?;
         Ok(path)
     }

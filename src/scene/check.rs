@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::recording::parse_column;
 
 use super::check_muscles::check_make;
+use super::check_names::{check_name, one_of};
 use super::check_standalone;
 use super::{ExpectSpec, HydraulicsSpec, Measure, MuscleSpec, OutputSpec, Program, Quantity, SceneError, SceneFile};
 
@@ -54,7 +55,7 @@ impl Place<'_> {
         if known.contains(&name) {
             return Ok(());
         }
-        Err(self.error(format!("{key} = \"{name}\" is not in this scene"), format!("use one of: {}", known.join(", "))))
+        Err(self.error(format!("{key} = \"{name}\" is not in this scene"), one_of(known)))
     }
 
     fn unique<'b>(&self, key: &str, names: impl Iterator<Item = &'b str>) -> Result<(), SceneError> {
@@ -76,6 +77,7 @@ pub(super) fn check(scene: &SceneFile, file: &Path) -> Result<Vec<Program>, Scen
     if scene.format != 1 {
         return Err(top.error(format!("format = {} is unknown", scene.format), "this program reads format = 1"));
     }
+    check_name(&scene.name, &top)?;
     check_simulation(scene, &at("[simulation]".to_owned()))?;
     let programs = check_inputs(scene, file)?;
     if let Some(hydraulics) = &scene.hydraulics {
@@ -298,7 +300,7 @@ fn check_output(scene: &SceneFile, output: &OutputSpec, place: &Place) -> Result
     };
     match output.of.as_slice() {
         [one] => place.known("of", one, known),
-        _ => Err(place.error("`of` must name exactly one", format!("use one of: {}", known.join(", ")))),
+        _ => Err(place.error("`of` must name exactly one", one_of(known))),
     }
 }
 

@@ -116,7 +116,7 @@ fn check_channel(scene: &SceneFile, effect: &Effect<f64>) -> Result<(), Refusal>
         && !scene.output.iter().any(|o| o.channel == *channel)
     {
         let outputs: Vec<&str> = scene.output.iter().map(|o| o.channel.as_str()).collect();
-        return Err((format!("channel = \"{channel}\" is no output"), format!("use one of: {}", outputs.join(", "))));
+        return Err((format!("channel = \"{channel}\" is no output"), super::check_names::one_of(&outputs)));
     }
     Ok(())
 }

@@ -22,6 +22,7 @@ mod check_effects;
 mod check_keys;
 mod check_laws;
 mod check_muscles;
+mod check_names;
 mod check_standalone;
 mod differs;
 mod error;

@@ -91,6 +91,11 @@ impl Override {
         Self { key: key.into(), value: Value::Float(value) }
     }
 
+    /// A whole number for a key: counts take no other.
+    pub(crate) fn whole(key: impl Into<String>, value: i64) -> Self {
+        Self { key: key.into(), value: Value::Integer(value) }
+    }
+
     /// A law more, by its short form `PORT adds|scales EXPRESSION`.
     ///
     /// ```

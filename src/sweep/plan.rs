@@ -14,7 +14,7 @@ use super::point::Row;
 use super::sampling::Place;
 use super::spec::{SamplingSpec, SweepFile, VarySpec, concern_column};
 use super::vocabulary::Vocabulary;
-use crate::scene::{OutputSpec, Override, Scene, SceneError};
+use crate::scene::{OutputSpec, Override, Scene, SceneError, calibration_key};
 use crate::stock;
 use crate::system::{Concern, Schedule};
 
@@ -48,6 +48,8 @@ pub struct Plan {
     /// Values of the keys at every point.
     pub design: Design,
     set: Vec<Override>,
+    /// Keys under which the scene has a whole number: they take no other.
+    whole: Vec<String>,
     /// What the scene puts out besides its own: what the sweep's file names, and what its measures need.
     outputs: Vec<OutputSpec>,
     /// The scene's file as it was when the sweep began, and where it stands.
@@ -86,9 +88,11 @@ impl Plan {
         check_goals(&file)?;
         let fingerprint = fingerprint(&file, &base)?;
         let outputs = outputs(&file, &measures);
+        let is_whole = |key: &&str| base.value(&calibration_key(key)).is_some_and(|v| v.parse::<i64>().is_ok());
+        let whole = file.vary.iter().flat_map(VarySpec::keys).filter(is_whole).map(str::to_owned).collect();
         let path = base.path;
         let text = stock::read_text(&path).map_err(|source| SceneError::Unreadable { file: path.clone(), source })?;
-        let plan = Self { file, measures, schedule, design, set, outputs, text, path, fingerprint };
+        let plan = Self { file, measures, schedule, design, set, whole, outputs, text, path, fingerprint };
         plan.evolution()?;
         plan.check_ends()?;
         Ok(plan)
@@ -128,9 +132,18 @@ impl Plan {
     /// Values that the scene refuses.
     pub fn scene(&self, values: &[f64]) -> Result<Scene, SweepError> {
         let keys = self.file.vary.iter().zip(values).flat_map(|(v, value)| v.keys().map(move |k| (k, *value)));
-        let numbers = keys.map(|(key, value)| Override::number(key, value));
+        let numbers = keys.map(|(key, value)| self.number(key, value));
         let all: Vec<Override> = self.set.iter().cloned().chain(numbers).collect();
         with_outputs(Scene::parse(&self.text, &self.path, &all)?, &self.outputs)
+    }
+
+    /// A value for a key; a fraction where the scene has a whole number is left to the scene to refuse.
+    fn number(&self, key: &str, value: f64) -> Override {
+        let is_whole = value.fract() == 0.0 && value.abs() < 2.0_f64.powi(53);
+        match is_whole && self.whole.iter().any(|whole| whole == key) {
+            true => Override::whole(key, value as i64),
+            false => Override::number(key, value),
+        }
     }
 
     /// Names of the columns: index, keys, measures, times in trouble.
@@ -302,5 +315,11 @@ mod tests {
         assert!(wrong("muscles.friction.m0_n", -0.1, "max(elongation_mm)").contains("m0_n"));
         assert!(wrong("muscles.tube.wall", 0.1, "max(elongation_mm)").contains("no number"));
         assert!(wrong("muscles.friction.m0_n", 0.1, "max(elongation_m)").contains("elongation_mm"));
+    }
+    #[test]
+    fn whole_numbers_of_the_scene_are_varied_as_such() {
+        let plan = Plan::new(file("simulation.substeps", 10.0, 20.0, "range(elongation_mm)")).expect("right");
+        assert_eq!(plan.scene(&[15.0]).expect("whole").file.simulation.substeps, 15);
+        assert!(plan.scene(&[15.5]).is_err());
     }
 }

@@ -75,6 +75,24 @@ impl Table {
         all
     }
 
+    /// Refuses a folder whose `table.csv` is none of this sweep's: somebody else's would be lost.
+    ///
+    /// # Errors
+    /// Such a table.
+    #[doc(hidden)]
+    pub fn check_place(plan: &Plan, folder: &Path) -> Result<(), SweepError> {
+        let file = folder.join("table.csv");
+        let own = Self::new(plan, BTreeMap::new()).csv();
+        match std::fs::read_to_string(&file) {
+            Ok(there) if there.lines().next() != own.lines().next() => Err(SweepError::Table {
+                file,
+                message: "is a table of something else, it would be lost".to_owned(),
+                remedy: "give another folder with --out, or move the table away".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// Writes `table.csv` and `table.parquet`.
     ///
     /// # Errors

@@ -52,6 +52,7 @@ struct Builder<'a> {
 
 /// Builds the plant of a scene around its mechanism.
 pub(super) fn build(scene: &Scene, mechanism: Option<&Mechanism>) -> Result<Built, SystemError> {
+    super::joint_kinds::check(scene, mechanism)?;
     let joints = mechanism.map_or(0, |m| m.coordinates().len());
     let displaced = scene.file.muscles.as_ref().is_some_and(|m| m.displacement.is_some());
     let ends = if displaced { 0 } else { scene.file.muscle.iter().filter(|m| m.cable.is_some()).count() };

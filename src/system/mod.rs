@@ -37,6 +37,7 @@ mod halving;
 mod influence;
 mod inputs;
 mod install;
+mod joint_kinds;
 mod laws;
 mod ldl;
 mod lift;

@@ -1,10 +1,10 @@
 //! `smam conceal`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use smam::conceal::{Hiding, Rig, draw, write_case};
+use smam::conceal::{Hiding, Rig, Truth, draw, is_another_there, write_case};
 
 use super::score::{read_seals, write_seals};
 use crate::cli::CliError;
@@ -68,12 +68,20 @@ pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
         RigName::AntagonisticPulley => Rig::AntagonisticPulley,
         RigName::BendingCatheter => Rig::BendingCatheter,
     };
+    let last = arguments.seed.checked_add(arguments.count - 1).ok_or_else(|| {
+        let (seed, count) = (arguments.seed, arguments.count);
+        CliError::Usage(format!(
+            "--seed {seed}: {count} seeds from there on are more than there are, up to {}\n  remedy: begin at a smaller seed",
+            u64::MAX
+        ))
+    })?;
     make_folder(&arguments.out)?;
     let path = arguments.out.join("seals.txt");
     // Seals of cases that lie there already stay.
     let mut seals = if path.is_file() { read_seals(&path)? } else { Vec::new() };
-    for seed in arguments.seed..arguments.seed.saturating_add(arguments.count) {
+    for seed in arguments.seed..=last {
         let drawn = draw(&format!("case_{seed}"), rig, hiding(arguments.hiding, seed), seed)?;
+        refuse_another(&drawn.truth, &arguments.out)?;
         let seal = write_case(&drawn, &arguments.out)?;
         say!("{} {seal}", drawn.truth.name);
         seals.retain(|(name, _)| *name != drawn.truth.name);
@@ -82,6 +90,17 @@ pub fn conceal(arguments: &ConcealArguments) -> Result<ExitCode, CliError> {
     }
     eprintln!("written: {}; the answers lie in sealed/", arguments.out.display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// A case that is there under the same name stays, unless it is the same.
+fn refuse_another(truth: &Truth, out: &Path) -> Result<(), CliError> {
+    match is_another_there(truth, out) {
+        true => Err(CliError::Usage(format!(
+            "{}: another case of this name is there, it would be lost\n  remedy: give another folder with --out, or another --seed",
+            out.join(&truth.name).display()
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// Two of ten hide nothing, two something unlisted, three one effect, three several.

@@ -1,11 +1,12 @@
 //! `smam score`.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use smam::proof::{Folders, ProofError, Row, metrics, open, page, row};
 use smam::report::HtmlPage;
 
@@ -13,6 +14,7 @@ use super::markdown_page::add_markdown;
 use super::proof_figure::{proof_panels, proof_svg};
 use crate::cli::CliError;
 use crate::cli::files::{Together, write};
+use crate::cli::words::quoted;
 
 /// Arguments of `smam score`.
 #[derive(Args)]
@@ -54,16 +56,50 @@ fn open_answered(cases: &Path, answers: &Path) -> Result<Vec<Row>, CliError> {
     let is_answered = |name: &str| answers.join(name).join("diagnosis.json").is_file();
     let answered: Vec<_> = seals.iter().filter(|(name, _)| is_answered(name)).collect();
     if answered.is_empty() {
-        let (cases, answers) = (cases.display(), answers.display());
+        let (shown_cases, shown_answers) = (quoted(cases), quoted(answers));
         return Err(CliError::Usage(format!(
-            "{answers}: there is no answer to any of the {} cases of {cases}\n  \
-             remedy: smam diagnose {cases}/NAME --out {answers}/NAME, for each NAME in {cases}/seals.txt",
-            seals.len()
+            "{}: there is no answer to any of the {} cases of {}\n  remedy: smam diagnose {shown_cases}/NAME --out \
+             {shown_answers}/NAME, for each NAME in {shown_cases}/seals.txt",
+            answers.display(),
+            seals.len(),
+            cases.display()
         )));
     }
+    answered.iter().try_for_each(|(name, _)| refuse_answer_to_another(name, &folders))?;
     let rows = open_all(answered, &folders)?;
     eprintln!("{} of {} cases were answered", rows.len(), seals.len());
     Ok(rows)
+}
+
+/// What an answer says of its recordings.
+#[derive(Deserialize)]
+struct AnswersTo {
+    recordings: Vec<PathBuf>,
+}
+
+/// Refuses an answer that says it was found in other recordings than those of the case: under a case's name any answer would score.
+fn refuse_answer_to_another(name: &str, folders: &Folders) -> Result<(), CliError> {
+    let path = folders.answers.join(name).join("diagnosis.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    // What is no answer is said when it is opened.
+    let Ok(AnswersTo { recordings }) = serde_json::from_str(&text) else { return Ok(()) };
+    let own = folders.cases.join(name);
+    let is_own = |given: &PathBuf| match (given.canonicalize(), own.canonicalize()) {
+        (Ok(given), Ok(own)) if given == own => true,
+        // Diagnosed elsewhere, or as `.`: its name is all there is to go by.
+        _ => given.file_name().is_none_or(|folder| folder == OsStr::new(name)),
+    };
+    match recordings.iter().find(|given| !is_own(given)) {
+        None => Ok(()),
+        Some(other) => Err(CliError::Usage(format!(
+            "{}: answers to the recordings {}, not to {}\n  remedy: smam diagnose {} --out {}",
+            path.display(),
+            other.display(),
+            own.display(),
+            quoted(&own),
+            quoted(&folders.answers.join(name))
+        ))),
+    }
 }
 
 /// Names and seals, as they were published.

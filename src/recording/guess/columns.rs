@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::super::survey::median;
-use super::super::table::{Label, cell_number, clock_faults, file_unit, is_stamp, label};
+use super::super::table::{
+    FileOptions, Label, READ_STAMPS, cell_number, clock_faults, file_unit, is_formula, is_like_a_stamp, is_stamp,
+    is_unread, label, unread_unit,
+};
 use super::super::{TIME_COLUMN, parse_column};
 use super::footer;
 use super::layout::Layout;
@@ -29,17 +32,20 @@ pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Gue
         .map(|at| GuessedColumn {
             name: layout.names[at].clone(),
             unit: labels[at].unit,
+            unread_unit: unread(&layout.names[at], layout.units.get(at)).filter(|_| labels[at].unit.is_none()),
             channel: None,
             is_text: !layout
                 .rows
                 .iter()
-                .any(|row| row.get(at).is_some_and(|c| cell_number(c, &layout.options).is_some_and(f64::is_finite))),
+                .any(|row| row.get(at).is_some_and(|c| is_formula(c) || is_finite(c, &layout.options))),
             greatest: numbers(&layout, at).into_iter().filter(|v| v.is_finite()).map(f64::abs).reduce(f64::max),
         })
         .collect();
     assign(&mut columns, wanted);
     if time.is_none() {
-        layout.said.push(Said { what: "no column of times".to_owned(), sureness: Sureness::Likely });
+        let what = "no column of times: interval_s in recordings.toml takes rows at an even pace".to_owned();
+        layout.said.push(Said { what, sureness: Sureness::Likely });
+        layout.said.extend(unread_stamps(&layout));
     }
     Guess {
         file: file.to_owned(),
@@ -51,11 +57,30 @@ pub(super) fn guessed(file: &Path, mut layout: Layout, wanted: &[Wanted]) -> Gue
     }
 }
 
+fn is_finite(cell: &str, options: &FileOptions) -> bool {
+    cell_number(cell, options).is_some_and(f64::is_finite)
+}
+
+/// A column of dates or times of day in a form that is not read, and which is.
+fn unread_stamps(layout: &Layout) -> Option<Said> {
+    let first = layout.rows.first()?;
+    let at = first.iter().position(|cell| is_like_a_stamp(cell) && !is_stamp(cell))?;
+    let name = layout.names.get(at)?;
+    let what = format!("\"{name}\" holds \"{}\": {READ_STAMPS}", first[at]);
+    Some(Said { what, sureness: Sureness::Sure })
+}
+
 /// A header's label, with the unit of the row below where it states none.
 fn labelled(name: &str, unit: Option<&String>) -> Label {
     let own = label(name);
     let below = unit.and_then(|text| file_unit(text.trim_matches(['[', ']', '(', ')'])));
     Label { unit: own.unit.or(below), ..own }
+}
+
+/// A text in the place of a unit that is none, in the name or in the row of units.
+fn unread(name: &str, below: Option<&String>) -> Option<String> {
+    let below = below.map(|text| text.trim_matches(['[', ']', '(', ')']).trim()).filter(|text| is_unread(text));
+    unread_unit(name).or(below).map(str::to_owned)
 }
 
 /// A column called as the time is, else one in a unit of time, else the first if it rises throughout.
@@ -99,10 +124,12 @@ fn rises(layout: &Layout, at: usize) -> bool {
 fn is_clock(file: &Path, layout: &mut Layout, at: usize, label: &Label, sureness: Sureness) -> bool {
     let (options, count) = (layout.options.clone(), layout.said.len());
     declare_time(layout, at, label, sureness);
-    let is_one = repair_clock(file, layout, sureness);
-    if !is_one {
+    let refused = repair_clock(file, layout, sureness).err();
+    let is_one = refused.is_none();
+    if let Some(why) = refused {
         layout.options = options;
         layout.said.truncate(count);
+        layout.said.extend(why);
     }
     is_one
 }
@@ -180,24 +207,32 @@ fn pair(column: &GuessedColumn, wanted: &Wanted) -> f64 {
     }
 }
 
-/// Restarts and repeated stamps, over the whole file; `false` for a column that goes back so often, or at all where it was only
-/// assumed to be the time, that it is no clock.
-fn repair_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> bool {
+/// Restarts and repeated stamps, over the whole file; an error, with what is to be said of it, for a column that goes back so often, or
+/// at all where it was only assumed to be the time, that it is no clock.
+fn repair_clock(file: &Path, layout: &mut Layout, sureness: Sureness) -> Result<(), Option<Said>> {
     // What cannot be read at all is said when what was written is read.
-    let Ok(faults) = clock_faults(file, &layout.options) else { return true };
+    let Ok(faults) = clock_faults(file, &layout.options) else { return Ok(()) };
     let most = if sureness == Sureness::Assumed { 0 } else { faults.rows / FEWEST_ROWS };
     // A clock that stands still is none.
     let is_still = faults.repeats > 0 && faults.repeats + 1 >= faults.rows;
-    if faults.restarts > most || is_still {
-        return false;
+    let backwards = faults.restarts + faults.swaps;
+    if backwards > most || is_still {
+        let name = layout.options.time_name();
+        let what = format!(
+            "\"{name}\" goes back {backwards} times in {} rows: sort the rows by time, if it is the time",
+            faults.rows
+        );
+        let is_said = backwards > most && sureness > Sureness::Assumed;
+        return Err(is_said.then_some(Said { what, sureness: Sureness::Sure }));
     }
     layout.options.split_at_restart = faults.restarts > 0;
     layout.options.merge_repeated = faults.repeats > 0;
     let words = [
+        (faults.swaps, "rows that stand behind later ones: to be sorted by time"),
         (faults.restarts, "a clock that starts anew: split there, each part a start from rest"),
         (faults.repeats, "repeated stamps: the mean of their rows"),
     ];
     let found = words.into_iter().filter(|(count, _)| *count > 0);
     layout.said.extend(found.map(|(_, what)| Said { what: what.to_owned(), sureness: Sureness::Sure }));
-    true
+    Ok(())
 }

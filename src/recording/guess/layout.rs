@@ -26,9 +26,14 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
     match preview {
         Preview::Cells { rows, sheet, said } => {
             let lines: Vec<Line> = rows.iter().cloned().enumerate().map(|(i, cells)| (i + 1, cells)).collect();
-            let options = FileOptions { sheet: sheet.clone(), ..FileOptions::default() };
+            let plain = FileOptions { sheet: sheet.clone(), ..FileOptions::default() };
+            let options = marked(&lines, plain);
             let found = block(&lines, &options)?;
-            Some(with_names(&lines, found, options, said.iter().cloned().collect()))
+            let mut said: Vec<Said> = said.iter().cloned().chain(words(&options)).collect();
+            let rows = lines[found.clone()].to_vec();
+            let layout = with_names(&lines, found, options, Vec::new());
+            said.extend(remarks(&rows, layout.names.len()));
+            Some(Layout { said: [said, layout.said.clone()].concat(), ..layout })
         }
         Preview::Text { text, encoding, said } => {
             let said: Vec<Said> = said.iter().cloned().collect();
@@ -43,6 +48,20 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
             Some(with_labview_units(layout, labview_units(text)))
         }
     }
+}
+
+/// Numbers that a workbook holds as texts may have decimal commas.
+fn marked(lines: &[Line], plain: FileOptions) -> FileOptions {
+    let with_commas = FileOptions { decimal: Some(','), ..plain.clone() };
+    if score(lines, &with_commas) > score(lines, &plain) { with_commas } else { plain }
+}
+
+/// What stands beside a workbook's table, right of its last name.
+fn remarks(rows: &[Line], width: usize) -> Option<Said> {
+    let beside = |(_, cells): &Line| cells.iter().skip(width).find(|cell| !cell.is_empty()).cloned();
+    let first = rows.iter().find_map(beside)?;
+    let what = format!("what stands beside the table is not read: \"{first}\"");
+    Some(Said { what, sureness: Sureness::Likely })
 }
 
 /// The units that LabVIEW's header states stand in the place of a row of units.

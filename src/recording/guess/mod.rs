@@ -7,6 +7,7 @@ mod columns;
 mod footer;
 mod layout;
 mod likeness;
+mod open;
 mod preview;
 mod sizes;
 mod written;
@@ -63,6 +64,9 @@ pub struct GuessedColumn {
     pub name: String,
     /// The unit that its name or the row of units states.
     pub unit: Option<&'static FileUnit>,
+    /// What stands in the place of its unit, if it is none that is known.
+    #[doc(hidden)]
+    pub unread_unit: Option<String>,
     /// The channel of the scene that it may be.
     pub channel: Option<(Wanted, Sureness)>,
     /// Whether it holds texts or dates.
@@ -118,13 +122,23 @@ pub fn guess(file: &Path, wanted: &[Wanted]) -> Result<Guess, RecordingError> {
 /// As [`guess`]; a file that is no workbook or has no such sheet.
 pub fn guess_sheet(file: &Path, sheet: Option<&str>, wanted: &[Wanted]) -> Result<Guess, RecordingError> {
     let table = preview::preview(file, sheet)?;
-    let found = layout::layout(&table).ok_or_else(|| RecordingError::Format {
-        file: file.to_owned(),
-        problem: "no table of numbers is found in it\n  remedy: a row of names with rows of numbers below is what is looked for; \
-                  save the columns so"
-            .to_owned(),
-    })?;
+    let found = layout::layout(&table)
+        .ok_or_else(|| RecordingError::Format { file: file.to_owned(), problem: no_table(&table).to_owned() })?;
     Ok(columns::guessed(file, found, wanted))
 }
 
+fn no_table(table: &preview::Preview) -> &'static str {
+    match table.has_formulas() {
+        true => {
+            "its formulas have no saved values, so no table of numbers is found in it\n  remedy: open the file in a spreadsheet program, let \
+             it calculate, and save it"
+        }
+        false => {
+            "no table of numbers is found in it\n  remedy: a row of names with rows of numbers below is what is looked for; save the \
+             columns so"
+        }
+    }
+}
+
+pub(super) use open::TO_FILL_IN;
 pub use written::{OpenScene, to_toml};

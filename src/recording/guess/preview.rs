@@ -5,7 +5,7 @@ use std::path::Path;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::super::source::{read_settled, read_whole};
-use super::super::table::{check_labview, parquet_rows, sheet_names, workbook_rows};
+use super::super::table::{check_labview, is_formula, parquet_rows, sheet_names, without_nul_end, workbook_rows};
 use super::super::{FileFormat, RecordingError};
 use super::{Said, Sureness};
 
@@ -22,6 +22,16 @@ pub(super) enum Preview {
         sheet: Option<String>,
         said: Option<Said>,
     },
+}
+
+impl Preview {
+    /// Whether some cells hold formulas in the place of numbers.
+    pub(super) fn has_formulas(&self) -> bool {
+        match self {
+            Self::Text { .. } => false,
+            Self::Cells { rows, .. } => rows.iter().flatten().any(|cell| is_formula(cell)),
+        }
+    }
 }
 
 /// `sheet` is that of a workbook; its first one where none is named.
@@ -65,6 +75,8 @@ fn workbook(bytes: &[u8], file: &Path, sheet: Option<&str>) -> Result<Preview, R
 
 /// The text, its encoding where that has to be declared, and what is to be said of it.
 fn text(bytes: &[u8]) -> (String, Option<&'static Encoding>, Option<Said>) {
+    // That some bytes are left out is said when what was written is read.
+    let (bytes, _) = without_nul_end(bytes);
     let (encoding, sureness) = encoding(bytes);
     let (text, actual, _) = encoding.decode(bytes);
     let is_plain = encoding == UTF_8 || Encoding::for_bom(bytes).is_some();

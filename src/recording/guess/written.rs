@@ -6,6 +6,7 @@ use toml::Value;
 
 use super::super::table::{Header, TimeSource, label};
 use super::super::{Role, parse_column};
+use super::open;
 use super::sizes;
 use super::{FileOptions, Guess, GuessedColumn, Sureness, Wanted};
 
@@ -100,14 +101,17 @@ fn channel(column: &GuessedColumn) -> String {
 
 fn unit(column: &GuessedColumn, wanted: &Wanted) -> String {
     let Ok(own) = parse_column(&wanted.column) else { return String::new() };
+    let open = column.open_point();
+    match (&column.unread_unit, open) {
+        (Some(text), Some(point)) => return open::comment(text) + &open::scale_line(&point),
+        (None, Some(point)) => {
+            let unit = column.unit.map_or(String::new(), |unit| format!("unit = {}\n", quoted(unit.name)));
+            return unit + &open::scale_line(&point);
+        }
+        _ => {}
+    }
     match column.unit {
         None => sizes::no_unit(own.unit, column.greatest),
-        Some(unit) if unit.si_suffix != own.unit.si_suffix => format!(
-            "unit = {}\nscale = 1.0    # to be filled in: the {} of one {}\n",
-            quoted(unit.name),
-            own.unit.symbol,
-            unit.name
-        ),
         // The name says it itself.
         Some(_) if column.name == wanted.column || label(&column.name).unit == column.unit => String::new(),
         Some(unit) => format!("unit = {}\n", quoted(unit.name)),

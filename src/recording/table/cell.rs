@@ -1,7 +1,7 @@
 //! One cell of a table: a number, a moment, or nothing.
 
 use super::options::FileOptions;
-use super::stamp::is_like_a_stamp;
+use super::stamp::{READ_STAMPS, is_like_a_stamp};
 
 /// A cell as its file holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,9 @@ pub(super) fn number(text: &str, options: &FileOptions) -> Result<f64, String> {
     if is_missing(text, options) {
         return Ok(f64::NAN);
     }
-    match plain(text, options).and_then(|plain| plain.parse::<f64>().ok()) {
+    // Word processors and some spreadsheets write the mathematical minus.
+    let signed = text.strip_prefix('\u{2212}').map_or_else(|| text.to_owned(), |digits| format!("-{digits}"));
+    match plain(&signed, options).and_then(|plain| plain.parse::<f64>().ok()) {
         Some(value) if value.is_finite() => Ok(value),
         _ => Err(format!("{} is not a finite number\n  remedy: {}", shown(text), remedy(text, options))),
     }
@@ -75,6 +77,9 @@ fn plain(text: &str, options: &FileOptions) -> Option<String> {
 fn remedy(text: &str, options: &FileOptions) -> String {
     let with_point = text.replace(',', ".");
     let is_number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
+    if is_formula(text) {
+        return "this formula has no saved value: open the file in a spreadsheet program, let it calculate, and save it".to_owned();
+    }
     let marks = text.bytes().filter(|b| matches!(b, b'.' | b',')).count();
     let bare: String = text.chars().filter(|c| !matches!(c, '.' | ',' | '\'' | ' ')).collect();
     if options.decimal_mark() == '.' && text.contains(',') && is_number(&with_point) {
@@ -84,10 +89,24 @@ fn remedy(text: &str, options: &FileOptions) -> String {
     } else if marks > 1 && is_number(&bare) {
         "leave thousands marks out, or say thousands = \".\" (or \",\") in recordings.toml".to_owned()
     } else if is_like_a_stamp(text) {
-        "give the time in seconds as a number, counted from the first row or from any other moment".to_owned()
+        format!(
+            "give the time in seconds as a number, counted from the first row or from any other moment; {READ_STAMPS}"
+        )
+    } else if !text.contains(|c: char| c.is_ascii_digit()) {
+        format!(
+            "write a number with a point as decimal mark, or leave the cell empty where the sample is missing; if {} marks missing samples, \
+             say missing = [{}] in recordings.toml",
+            shown(text),
+            shown(text)
+        )
     } else {
         "write a number with a point as decimal mark, or leave the cell empty where the sample is missing".to_owned()
     }
+}
+
+/// Whether a cell holds a formula in the place of its value.
+pub(in crate::recording) fn is_formula(text: &str) -> bool {
+    text.len() > 1 && text.starts_with('=')
 }
 
 /// A cell as an error shows it: its beginning (an open quote takes in the rest of the file), with what cannot be seen escaped.
@@ -141,6 +160,15 @@ mod tests {
         for text in ["", " ", "NaN", "n.a.", "N/A", "-", "#N/A", "OVER"] {
             assert!(number(text, &options).is_ok_and(f64::is_nan), "{text}");
         }
-        assert!(number("over", &FileOptions::default()).is_err());
+        let said = number("over", &FileOptions::default()).unwrap_err();
+        assert!(said.contains("missing = [\"over\"]"), "{said}");
+        let formula = number("=C2*80", &options).unwrap_err();
+        assert!(formula.contains("remedy: this formula has no saved value"), "{formula}");
+    }
+
+    #[test]
+    fn the_mathematical_minus_is_one() {
+        assert_eq!(number("\u{2212}41,5", &with(',', None)), Ok(-41.5));
+        assert!(number("4\u{2212}1", &with('.', None)).is_err());
     }
 }

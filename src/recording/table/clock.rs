@@ -75,7 +75,7 @@ impl Clock {
             }
             (false, ..) => {
                 return Err(format!(
-                    "{said}remove repeated rows, sort the rows by time, or split the file where its clock starts anew; or say \
+                    "{said}sort the rows by time, if they stand in a wrong order; if the clock starts anew here, split the file, or say \
                      split_at_restart = true in recordings.toml: a run of its own from there"
                 ));
             }
@@ -103,7 +103,44 @@ impl Clock {
 
     /// What had to be put right.
     pub(super) fn faults(&self) -> ClockFaults {
-        ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1, repeats: self.repeated }
+        let swaps = self.swapped().count();
+        ClockFaults { rows: self.time_s.len(), restarts: self.starts.len() - 1 - swaps, swaps, repeats: self.repeated }
+    }
+
+    /// Rows that stand behind a later one: the time goes on past both of them, as if nothing had been. A clock that starts anew goes on
+    /// from where it has gone back to.
+    fn swapped(&self) -> impl Iterator<Item = usize> + '_ {
+        let t = &self.time_s;
+        self.starts.windows(2).filter_map(move |pair| {
+            let (from, at) = (pair[0], pair[1]);
+            let goes_on = t.get(at + 1).is_none_or(|next| *next > t[at - 1]);
+            (t[at] > t[from] && at + 1 < t.len() && goes_on).then_some(at)
+        })
+    }
+
+    /// Refuses to split where no clock starts anew: between two rows in a wrong order, or at every row of a file in the order of
+    /// another column.
+    pub(super) fn check_order(&self) -> Result<(), String> {
+        let (t, parts) = (&self.time_s, self.parts());
+        if let Some(at) = self.swapped().next() {
+            return Err(format!(
+                "{} stands behind {}, and {} rows do so in all: they are in a wrong order, no clock starts anew there\n  remedy: sort the \
+                 rows by time",
+                t[at],
+                t[at - 1],
+                self.swapped().count()
+            ));
+        }
+        let alone = parts.iter().filter(|rows| rows.len() == 1).count();
+        if parts.len() > 2 && 2 * alone > parts.len() {
+            return Err(format!(
+                "the time goes back {} times in {} rows: no clock starts anew so often\n  remedy: sort the rows by time, or name another \
+                 column as time_column",
+                parts.len() - 1,
+                t.len()
+            ));
+        }
+        Ok(())
     }
 
     /// The median time between rows of one part, rounded off, s.
@@ -112,13 +149,28 @@ impl Clock {
         (median(&mut intervals).unwrap_or(0.01) * 1e9).round() / 1e9
     }
 
+    /// Where most rows share their stamp, its clock is coarser than their pace: what keeps them all.
+    fn said_of_pace(&self) -> String {
+        if 2 * self.repeated < self.time_s.len() || self.starts.len() > 1 {
+            return String::new();
+        }
+        let mut counts: Vec<f64> = self.time_s.chunk_by(|a, b| a == b).map(|rows| rows.len() as f64).collect();
+        let rows = median(&mut counts).unwrap_or(1.0);
+        let interval_s = (self.usual_interval_s() / rows * 1e6).round() / 1e6;
+        format!(
+            "; {rows} rows share one, so the stamps are coarser than the pace of the rows: if that was even, say interval_s = {interval_s} in \
+             the place of the time column and of merge_repeated, which keeps every row"
+        )
+    }
+
     /// What was done to the times.
     pub(super) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.repeated > 0 {
             let count = self.repeated;
             notes.push(format!(
-                "merge_repeated: {count} rows had the stamp of the row before; each stamp has the mean of its rows"
+                "merge_repeated: {count} rows had the stamp of the row before; each stamp has the mean of its rows{}",
+                self.said_of_pace()
             ));
         }
         if self.starts.len() > 1 {
@@ -176,5 +228,36 @@ mod tests {
         assert!(clock.push(2e6).unwrap_err().contains("1e6 s after 0.5"));
         assert!(clock.push(f64::NAN).unwrap_err().contains("the time is missing"));
         assert_eq!(clock.time_s, [0.5]);
+    }
+
+    fn lenient(times: &[f64]) -> Clock {
+        let options = FileOptions { split_at_restart: true, merge_repeated: true, ..FileOptions::default() };
+        let mut clock = Clock::new(&options);
+        times.iter().for_each(|t| clock.push(*t).unwrap());
+        clock
+    }
+
+    #[test]
+    fn rows_in_a_wrong_order_are_no_clock_that_starts_anew() {
+        let swapped = lenient(&[0.0, 0.1, 0.3, 0.2, 0.4, 0.5]);
+        assert_eq!((swapped.faults().restarts, swapped.faults().swaps), (0, 1));
+        let said = swapped.check_order().unwrap_err();
+        assert!(said.contains("0.2 stands behind 0.3") && said.contains("remedy: sort the rows"), "{said}");
+        let falling: Vec<f64> = (0..20).rev().map(f64::from).collect();
+        assert!(lenient(&falling).check_order().unwrap_err().contains("goes back 19 times in 20 rows"));
+        // From zero, and from the middle of what was.
+        for times in [&[0.0, 0.1, 0.2, 0.0, 0.1, 0.2][..], &[0.0, 0.1, 0.2, 0.3, 0.15, 0.25, 0.35]] {
+            let clock = lenient(times);
+            assert_eq!((clock.faults().restarts, clock.faults().swaps), (1, 0), "{times:?}");
+            assert_eq!(clock.check_order(), Ok(()));
+        }
+    }
+
+    #[test]
+    fn whole_seconds_of_a_faster_clock_are_said() {
+        let times: Vec<f64> = (0..200).map(|row| f64::from(row / 50)).collect();
+        let notes = lenient(&times).notes();
+        assert!(notes[0].contains("interval_s = 0.02"), "{notes:?}");
+        assert!(!lenient(&[0.0, 0.1, 0.1, 0.2]).notes()[0].contains("interval_s"));
     }
 }

@@ -17,6 +17,8 @@ pub(super) struct Columns {
     /// Whether a column that nobody needs holds texts.
     pub(super) has_texts: Vec<bool>,
     pub(super) clock: Clock,
+    /// What is to be said of the file.
+    pub(super) notes: Vec<String>,
     time_unit: Option<&'static FileUnit>,
     /// What the first row's stamp was, where times are stamps.
     first: Option<Moment>,
@@ -32,6 +34,7 @@ impl Columns {
             values: vec![Vec::new(); count],
             has_texts: vec![false; count],
             clock: Clock::new(&options),
+            notes: Vec::new(),
             time_unit,
             first: None,
             rows: 0,
@@ -58,6 +61,11 @@ impl Columns {
             self.clock.tick();
         }
         Ok(())
+    }
+
+    /// The name of the time.
+    pub(super) fn time_name(&self) -> &str {
+        self.names.time.map_or("", |at| &self.names.columns[at])
     }
 
     fn number(&mut self, index: usize, cell: Cell<'_>) -> Result<f64, String> {

@@ -37,6 +37,20 @@ pub(super) fn decode(bytes: &[u8], said: Option<&'static Encoding>) -> Result<St
     Ok(text.into_owned())
 }
 
+/// The whole lines of a text that ends in NUL bytes, as one does whose machine lost its power while it was written, and what to say
+/// of it. Of the last line nobody knows how much of it is lost.
+pub(in crate::recording) fn without_nul_end(bytes: &[u8]) -> (&[u8], Option<String>) {
+    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    // UTF-16 has such bytes all over.
+    if end == bytes.len() || end == 0 || bytes[..end].contains(&0) {
+        return (bytes, None);
+    }
+    let whole = bytes[..end].iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    let line = if whole < end { format!(", and line {}, which they cut,", line_of(bytes, end)) } else { String::new() };
+    let count = bytes.len() - end;
+    (&bytes[..whole], Some(format!("ends in {count} NUL bytes, as after a loss of power: they{line} are left out")))
+}
+
 /// The line, from 1, of a byte. Ends of lines are `\n`, `\r\n` or `\r` alone.
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count()
@@ -51,6 +65,18 @@ mod tests {
     fn utf16(big_endian: bool, mark: bool) -> Vec<u8> {
         let units = mark.then_some(0xfeff).into_iter().chain(TEXT.encode_utf16());
         units.flat_map(|u: u16| if big_endian { u.to_be_bytes() } else { u.to_le_bytes() }).collect()
+    }
+
+    #[test]
+    fn nul_bytes_at_the_end_are_left_out_with_the_line_they_cut() {
+        let (whole, said) = without_nul_end(b"t,a\n0,1\n0.1,2\0\0\0");
+        assert_eq!(whole, b"t,a\n0,1\n");
+        assert!(said.is_some_and(|said| said.contains("3 NUL bytes") && said.contains("line 3, which they cut")));
+        let (whole, said) = without_nul_end(b"t,a\n0,1\n\0");
+        assert_eq!((whole, said.is_some_and(|said| !said.contains("cut"))), (&b"t,a\n0,1\n"[..], true));
+        for other in [&b"t,a\n0,1\n"[..], b"t\0,\0a\0\n\0", b"\0\0", b""] {
+            assert_eq!(without_nul_end(other), (other, None));
+        }
     }
 
     #[test]

@@ -42,9 +42,10 @@ pub const FILE_UNITS: &[FileUnit] = &[
     unit("rev", &["turn", "turns", "revolution", "revolutions"], "rad", 2.0 * std::f64::consts::PI),
     unit("Pa", &["pascal"], "pa", 1.0),
     unit("kPa", &["kpa", "KPa"], "pa", 1e3),
-    unit("MPa", &["mpa", "Mpa"], "pa", 1e6),
+    unit("MPa", &["mpa", "Mpa", "N/mm2", "N/mm²"], "pa", 1e6),
     unit("mbar", &["hPa"], "pa", 1e2),
     unit("bar", &["barg", "bar(g)"], "pa", 1e5),
+    unit("atm", &[], "pa", 101_325.0),
     unit("psi", &["psig", "lbf/in2"], "pa", 6_894.757_293_168_361),
     unit("mmHg", &["mmhg", "torr"], "pa", 133.322_387_415),
     unit("N", &["newton", "newtons"], "n", 1.0),
@@ -125,6 +126,7 @@ mod tests {
     fn factors_agree_with_each_other() {
         let factor = |name: &str| file_unit(name).unwrap().factor;
         assert!((760.0 * factor("mmHg") - 101_325.0).abs() < 0.1);
+        assert_eq!((factor("atm"), factor("N/mm²")), (101_325.0, 1e6));
         assert!((14.695_949 * factor("psi") - 101_325.0).abs() < 0.01);
         assert!((factor("lbf") / factor("in").powi(2) / factor("psi") - 1.0).abs() < 1e-12);
         assert!((factor("kgf") / factor("lbf") - 2.204_622_6).abs() < 1e-6);

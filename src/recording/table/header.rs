@@ -98,7 +98,7 @@ fn no_time(columns: &[String], options: &FileOptions) -> Problem {
     Problem::new(match options.time_column {
         None => format!(
             "no column \"{name}\" (found: {found})\n  remedy: name the time column \"{name}\" and give it in seconds, or say \
-             time_column = \"...\" in recordings.toml (`smam import` writes it)"
+             time_column = \"...\" in recordings.toml (`smam import` writes it); of rows at an even pace, their interval: interval_s = 0.01"
         ),
         Some(_) => format!("no column \"{name}\" (found: {found})\n  remedy: write one of these as time_column"),
     })

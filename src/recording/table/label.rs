@@ -33,6 +33,37 @@ pub fn label(text: &str) -> Label {
         .unwrap_or_else(|| Label { quantity: text.to_owned(), unit: None })
 }
 
+/// The text in a unit's place that is no known unit: `steps` of `Plunger [steps]`. Round brackets may hold any remark, so there it must
+/// look like a unit.
+pub(in crate::recording) fn unread_unit(text: &str) -> Option<&str> {
+    let text = text.trim();
+    let close = text.chars().last()?;
+    let open = match close {
+        ']' => '[',
+        ')' => '(',
+        _ => return None,
+    };
+    let at = text.rfind(open).filter(|at| !text[..*at].trim().is_empty())?;
+    let inside = text[at + 1..text.len() - 1].trim();
+    let is_unit = close == ']' || is_like_a_unit(inside);
+    (is_unit && is_unread(inside)).then_some(inside)
+}
+
+/// Whether a text in the place of a unit says one that is not known; a dash or a one says that there is none.
+pub(in crate::recording) fn is_unread(text: &str) -> bool {
+    !matches!(text, "" | "-" | "--" | "1") && file_unit(text).is_none()
+}
+
+/// Counts of devices that have no size of their own.
+const COUNTS: [&str; 10] =
+    ["step", "steps", "count", "counts", "digit", "digits", "pulse", "pulses", "increments", "lsb"];
+
+fn is_like_a_unit(text: &str) -> bool {
+    let is_word = |word: &str| COUNTS.contains(&word.to_lowercase().as_str()) || word == "at";
+    let begins = |mark: char| text.split(mark).next().is_some_and(|first| file_unit(first).is_some());
+    is_word(text) || begins('/') || begins(' ')
+}
+
 fn found(quantity: &str, unit: &str) -> Option<Label> {
     let unit = file_unit(unit)?;
     let quantity = quantity.trim().trim_end_matches([':', '_', '-']).trim();
@@ -79,5 +110,25 @@ mod tests {
         assert_eq!(label("drive_deg_s").unit.map(|u| u.name), Some("deg/s"));
         assert_eq!(label("Weg µm").unit.map(|u| u.name), Some("um"));
         assert_eq!(label("Winkel [°]").quantity, "Winkel");
+    }
+
+    #[test]
+    fn what_stands_in_a_units_place_and_is_none() {
+        for (text, unit) in [
+            ("Plunger [steps]", Some("steps")),
+            ("Plunger (steps)", Some("steps")),
+            ("Pressure [bar a]", Some("bar a")),
+            ("Pressure (bar abs)", Some("bar abs")),
+            ("Pressure [at]", Some("at")),
+            ("Stress (N/furlong)", Some("N/furlong")),
+            ("Pressure [N/mm²]", None),
+            ("Pressure [atm]", None),
+            ("Test (left)", None),
+            ("Share [-]", None),
+            ("[steps]", None),
+            ("plunger_mm", None),
+        ] {
+            assert_eq!(unread_unit(text), unit, "{text}");
+        }
     }
 }

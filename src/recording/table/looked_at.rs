@@ -98,8 +98,10 @@ pub(in crate::recording) fn parquet_rows(file: &Path) -> Result<Vec<Vec<String>>
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::recording) struct ClockFaults {
     pub(in crate::recording) rows: usize,
-    /// How often it went back.
+    /// How often it went back and began anew.
     pub(in crate::recording) restarts: usize,
+    /// How many rows stand behind a later one, in which it did not begin anew.
+    pub(in crate::recording) swaps: usize,
     /// How often it stood still.
     pub(in crate::recording) repeats: usize,
 }

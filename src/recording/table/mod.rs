@@ -3,6 +3,7 @@
 //! Bytes → text ([`decode`]) → rows of cells ([`rows`], [`sheet`]) → columns of numbers with a clock ([`columns`], [`clock`]). What a
 //! file does not say itself stands in [`FileOptions`]. Nothing is guessed here.
 
+mod beside;
 mod cell;
 mod clock;
 mod columns;
@@ -23,8 +24,10 @@ mod stamp;
 use std::path::Path;
 
 use super::source::{read_lines, read_settled};
+use super::survey::median;
 use super::{Channel, ChannelSpec, FileFormat, LoadedRun, Recording, RecordingError, TIME_COLUMN, parse_column};
 use crate::columns::Column;
+use beside::Beside;
 use cell::Cell;
 use columns::Columns;
 use header::{Names, Needed};
@@ -35,13 +38,17 @@ pub use label::{Label, label};
 pub use options::{Delimiter, FileOptions, Header, TimeSource};
 pub use source::TableSource;
 
+pub(super) use cell::is_formula;
+pub(super) use decode::without_nul_end;
 pub(super) use keys::{FILE_KEYS, file_options};
+pub(super) use label::{is_unread, unread_unit};
 pub(super) use looked_at::{
     cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
     sheet_names, times, workbook_rows,
 };
 pub(super) use options::TIME_UNITS;
 pub(super) use source::{TABLE_KEYS, table_source};
+pub(super) use stamp::{READ_STAMPS, is_like_a_stamp};
 
 /// Reads a CSV file of plain layout, every column of it.
 pub(super) fn read_plain(path: &Path) -> Result<Recording, RecordingError> {
@@ -121,7 +128,8 @@ fn each_row_of(path: &Path, options: &FileOptions, take: &mut rows::Take<'_>) ->
     match FileFormat::of(path)? {
         FileFormat::Workbook => sheet::each_row(&super::source::read_whole(path)?, options, take).map_err(refuse),
         FileFormat::Csv => {
-            let text = decode::decode(&read_settled(path)?, options.encoding).map_err(refuse)?;
+            let bytes = read_settled(path)?;
+            let text = decode::decode(without_nul_end(&bytes).0, options.encoding).map_err(refuse)?;
             let options = labview::with_labview(&text, options).map_err(refuse)?;
             rows::each_row(&text, &options, take).map_err(refuse)
         }
@@ -136,9 +144,11 @@ fn text_columns(
     needed: Needed<'_>,
 ) -> Result<(Columns, FileOptions), RecordingError> {
     let refuse = |problem: Problem| problem.in_file(file);
+    let (bytes, nul_end) = without_nul_end(bytes);
     let text = decode::decode(bytes, options.encoding).map_err(refuse)?;
     let options = labview::with_labview(&text, options).map_err(refuse)?;
-    let columns = collect(file, &options, needed, |take| rows::each_row(&text, &options, take))?;
+    let mut columns = collect(file, &options, needed, |take| rows::each_row(&text, &options, take))?;
+    columns.notes.extend(nul_end);
     Ok((columns, options))
 }
 
@@ -148,7 +158,10 @@ fn sheet_columns(
     options: &FileOptions,
     needed: Needed<'_>,
 ) -> Result<Columns, RecordingError> {
-    collect(file, options, needed, |take| sheet::each_row(bytes, options, take))
+    collect(file, options, needed, |take| {
+        let mut beside = Beside::new(options);
+        sheet::each_row(bytes, options, &mut |cells| take(&beside.without_remarks(cells)))
+    })
 }
 
 /// Names and rows of a Parquet file, as those of any table; the first row of numbers is line 2.
@@ -222,6 +235,20 @@ fn last_row(
     Ok(rows.saturating_sub(options.skip_last_rows))
 }
 
+/// A file whose own times contradict the interval that was declared in their place.
+fn other_pace(columns: &Columns, options: &FileOptions) -> Option<String> {
+    let TimeSource::Interval(declared_s) = options.time else { return None };
+    let at = columns.names.columns.iter().position(|name| name == TIME_COLUMN)?;
+    let mut intervals: Vec<f64> = columns.values[at].windows(2).map(|w| w[1] - w[0]).filter(|dt| *dt > 0.0).collect();
+    let own_s = median(&mut intervals)?;
+    ((own_s / declared_s - 1.0).abs() > 0.01).then(|| {
+        format!(
+            "interval_s = {declared_s}, but the times in its column \"{TIME_COLUMN}\" are {own_s:.6} s apart: without interval_s they are \
+             read"
+        )
+    })
+}
+
 /// Columns under the names and in the units of the channels.
 fn in_channels(
     mut columns: Columns,
@@ -237,6 +264,7 @@ fn in_channels(
         spec.table.convert(header, unit, &mut values).map_err(|text| Problem::in_column(header, text).or_line(|| 1))?;
         kept.push((spec.column.clone(), values));
     }
+    columns.notes.extend(other_pace(&columns, options));
     let mut texts = Vec::new();
     for (index, name) in columns.names.columns.iter().enumerate() {
         if Some(index) == columns.names.time || columns.names.is_needed[index] || name.is_empty() {
@@ -249,7 +277,10 @@ fn in_channels(
         }
     }
     let (names, values): (Vec<String>, Vec<Vec<f64>>) = kept.into_iter().unzip();
+    let in_clock = |text: String| Problem::new(format!("column \"{}\": {text}", columns.time_name()));
+    columns.clock.check_order().map_err(in_clock)?;
     let mut notes = columns.clock.notes();
+    notes.append(&mut columns.notes);
     if !texts.is_empty() {
         notes.push(format!("columns of texts, dates or no use are not read: {}", texts.join(", ")));
     }

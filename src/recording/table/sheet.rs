@@ -1,8 +1,9 @@
 //! Rows of a workbook (`.xlsx`).
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use calamine::{Data, Reader, Xlsx};
+use calamine::{Data, Range, Reader, Xlsx};
 
 use super::cell::Cell;
 use super::options::{FileOptions, Header};
@@ -23,18 +24,42 @@ pub(super) fn each_row(bytes: &[u8], options: &FileOptions, take: &mut Take<'_>)
     };
     refuse_huge(&mut book, &name)?;
     let range = book.worksheet_range(&name).map_err(|e| unreadable(&e.to_string()))?;
+    let formulas = unsaved(&mut book, &name, &range)?;
     let first = range.start().map_or(0, |(row, _)| row as usize);
     let skipped = match options.header {
         Some(Header::Line(line)) => line.saturating_sub(1),
         _ => options.skip_rows,
     };
     for (index, row) in range.rows().enumerate().skip(skipped.saturating_sub(first)) {
-        let cells: Vec<Cell<'_>> = row.iter().map(cell).collect();
+        let mut cells: Vec<Cell<'_>> = row.iter().map(cell).collect();
+        for (at, formula) in formulas.get(&index).into_iter().flatten() {
+            cells[*at] = Cell::Text(formula);
+        }
         if !cells.iter().all(Cell::is_empty) {
             take(&cells).map_err(|problem| problem.or_line(|| first + index + 1))?;
         }
     }
     Ok(())
+}
+
+/// Formulas by the rows and columns of a range.
+type Formulas = BTreeMap<usize, Vec<(usize, String)>>;
+
+/// Formulas whose values the workbook does not hold: what writes a workbook without calculating it leaves them out. They are handed on as
+/// they stand, `=C2*80`, so that they are never taken for missing samples.
+fn unsaved(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, values: &Range<Data>) -> Result<Formulas, Problem> {
+    let mut found = Formulas::new();
+    let mut cells = book.worksheet_cells_reader(name).map_err(|e| unreadable(&e.to_string()))?;
+    let Some((first_row, first_column)) = values.start() else { return Ok(found) };
+    while let Some(cell) = cells.next_formula().map_err(|e| unreadable(&e.to_string()))? {
+        let at = cell.get_position();
+        let is_empty = values.get_value(at).is_some_and(|value| *value == Data::Empty);
+        if is_empty && !cell.get_value().is_empty() {
+            let (row, column) = ((at.0 - first_row) as usize, (at.1 - first_column) as usize);
+            found.entry(row).or_default().push((column, format!("={}", cell.get_value())));
+        }
+    }
+    Ok(found)
 }
 
 /// Names of the sheets, in their order.

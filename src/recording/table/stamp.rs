@@ -13,6 +13,9 @@ const FORMATS: [&str; 6] = [
     "%d.%m.%Y %H:%M:%S%.f",
 ];
 
+/// What is read, for messages.
+pub(in crate::recording) const READ_STAMPS: &str = "stamps are read as 2026-03-29 13:59:50.02, 29.03.2026 13:59:50.02 or 13:59:50.02, days before months and in 24 hours";
+
 /// A moment, as a stamp gives it. Moments of different kinds have no difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moment {
@@ -63,7 +66,7 @@ fn of_day(text: &str) -> Option<Moment> {
 }
 
 /// Whether a text looks like a stamp, be it one that is read or not.
-pub(super) fn is_like_a_stamp(text: &str) -> bool {
+pub(in crate::recording) fn is_like_a_stamp(text: &str) -> bool {
     let is_dated = ['-', '/', '.'].iter().any(|mark| text.matches(*mark).count() == 2);
     let is_of_a_stamp = |c: char| c.is_ascii_digit() || "-/.:,+ TZAMPamp".contains(c);
     text.starts_with(|c: char| c.is_ascii_digit())
