@@ -130,3 +130,16 @@ fn a_finger_that_lacks_nothing_is_left_alone() {
     let d = answer(folder.path());
     assert_eq!(d.verdict, Verdict::Adequate, "{}", d.summary);
 }
+
+/// The joint further out stiffens as it bends: a law of that joint alone, which no law of the two together can stand for.
+#[test]
+fn val_a_law_of_one_joint_is_found_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let law = "[[law]]\nname = \"stiffens\"\nport = \"joint(knuckle).stiffness\"\nscales = \"1 + 2.0 * angle_rad^2\"";
+    recordings(folder.path(), law);
+    let d = answer(folder.path());
+    let law = d.effects.iter().find(|e| e.hypothetical).unwrap_or_else(|| panic!("{}", d.summary));
+    assert!(law.port.starts_with("joint(knuckle)."), "{}", d.summary);
+    assert_eq!(law.variables, ["angle_rad"], "{}", d.summary);
+    assert!(d.fit.gap_closed > 0.95 && d.fit.full_scene.agrees, "{:?}", d.fit);
+}

@@ -242,6 +242,11 @@ fn named(
 ) -> (Vec<NamedEffect>, Vec<String>) {
     let mut effects = verdict::named(found, complete, left);
     add_curves(&Problem { case, runs: case.subset(RunSet::All), noise }, complete, &mut effects);
+    for (index, placed) in found.best.model.effects.iter().enumerate() {
+        if let Some(own) = effects.iter_mut().find(|e| verdict::is_said(e, placed)) {
+            verdict::name_forms(case, found.forms_of(index), &mut own.forms);
+        }
+    }
     let sizes = consistency::sizes_by_run(case, complete, noise);
     let contradicted = consistency::report(sizes, complete, &mut effects, warnings);
     (effects, contradicted)
@@ -271,6 +276,7 @@ fn add_curves(whole: &Problem, complete: &Fit, effects: &mut [NamedEffect]) {
                 own.curve = first.and_then(|(first, curve)| verdict::together(&first, &curve, &own.acts));
                 continue;
             }
+            verdict::name_over(placed, curve.as_ref(), &mut own.known_as);
             own.curve = curve;
             if let Some(curve) = &mut own.curve {
                 curve.freehand = freehand::freehand(whole, complete, at, curve);

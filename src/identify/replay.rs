@@ -1,5 +1,6 @@
 //! Simulating what was recorded.
 
+use crate::recording::figures::mean;
 use crate::recording::{
     Channel, PiecewiseLinear, Recording, RecordingError, RecordingSet, Role, Run, SET_FILE_NAME, parse_column, smoothed,
 };
@@ -174,7 +175,7 @@ pub fn replay(
     let times = way_s.iter().chain(run.recording.time_s().iter().step_by(every.max(1))).copied().collect();
     let played = record(&mut simulation, &Schedule::at(times))?;
     let recorded = without_beginning(&played, way_s.len())?;
-    Ok(begin_where_recorded(simulation.scene(), &recorded, &run.recording, every.max(1))?)
+    Ok(about_its_own_zero(simulation.scene(), &recorded, &run.recording, every.max(1))?)
 }
 
 fn without_beginning(played: &Recording, samples: usize) -> Result<Recording, RecordingError> {
@@ -182,8 +183,9 @@ fn without_beginning(played: &Recording, samples: usize) -> Result<Recording, Re
     Recording::new(played.time_s()[samples..].to_vec(), played.channels().iter().map(rest).collect())
 }
 
-/// Shifts the outputs that count from the start of a recording to the recording's first sample.
-fn begin_where_recorded(
+/// Shifts the outputs whose zero is a recording's own by their mean difference from it, as a diagnosis does: one sample alone would
+/// carry its noise through the whole run.
+fn about_its_own_zero(
     scene: &Scene,
     simulated: &Recording,
     measured: &Recording,
@@ -192,9 +194,9 @@ fn begin_where_recorded(
     let shifted = simulated.channels().iter().map(|channel| {
         let spec = scene.file.output.iter().find(|o| o.channel == channel.column);
         let known = spec.filter(|s| s.counts_from_start).and_then(|_| measured.find(&channel.column));
-        // Both at one instant: the first at which something was measured and is simulated.
         let pairs = known.into_iter().flat_map(|m| m.values.iter().step_by(every).zip(&channel.values));
-        let shift = pairs.map(|(m, s)| m - s).find(|d| d.is_finite()).unwrap_or(0.0);
+        let apart: Vec<f64> = pairs.map(|(m, s)| m - s).filter(|d| d.is_finite()).collect();
+        let shift = if apart.is_empty() { 0.0 } else { mean(&apart) };
         Channel::new(channel.column.clone(), channel.values.iter().map(|v| v + shift).collect())
     });
     Recording::new(simulated.time_s().to_vec(), shifted.collect())

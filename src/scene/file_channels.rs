@@ -27,7 +27,8 @@ pub struct OutputSpec {
     /// Length of the rod that `of` bends, m; for `arc_tip_x` and `arc_tip_z`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arc_length_m: Option<f64>,
-    /// A recording's zero is its first sample: a comparison shifts the simulation to begin where the recording does.
+    /// A recording's zero is its own (a laser zeroed before each run, a camera with another origin): a comparison shifts the simulation
+    /// by the mean difference of each run.
     #[serde(default)]
     pub counts_from_start: bool,
 }

@@ -183,6 +183,18 @@ impl Rom {
         self.outputs.iter().map(|o| o.column.as_str())
     }
 
+    /// Names of the joints that are coordinates of their own and share a cable with another one.
+    pub(crate) fn joints_that_share_a_cable(&self) -> Vec<&str> {
+        let joints = self.site.joints;
+        let turns = |jacobian: &[f64], i: usize| jacobian[i] != 0.0;
+        let shares = |i: usize| {
+            let mut cables = self.plant.cables.iter().map(|cable| &cable.jacobian[..joints]);
+            cables.any(|own| turns(own, i) && (0..joints).any(|other| other != i && turns(own, other)))
+        };
+        let names = self.site.names.iter().enumerate().filter(|(i, _)| shares(*i));
+        names.filter_map(|(_, names)| if let [name] = names.as_slice() { Some(name.as_str()) } else { None }).collect()
+    }
+
     /// The parameter behind a scene key; `None` when the reduced-order model cannot vary it.
     pub fn parameter(&self, key: &str) -> Option<RomParameter> {
         parameter::resolve(self, &crate::scene::calibration_key(key))

@@ -318,8 +318,7 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
     let (count, together) = match spec.carrier {
         Carrier::Muscle => (file.muscle.len(), true),
         Carrier::Cable => (file.cable.len(), true),
-        // On a slider that a muscle moves itself a force on the joint is one of the muscle.
-        Carrier::Joint => (usize::from(file.mechanism.is_some() && !file.cable.is_empty()), false),
+        Carrier::Joint => return of_joints(case, spec),
         Carrier::Alone => (usize::from(stands_alone(case, spec)), false),
         Carrier::Sensor => (0, false),
     };
@@ -336,6 +335,18 @@ fn addresses(case: &Case, spec: &PortSpec) -> Vec<String> {
         1 => vec![name(None)],
         n => (1..=n).map(|i| name(Some(i))).chain(together.then(|| name(None))).collect(),
     }
+}
+
+/// The joints that move as one, and, where one cable bends several, each of them. On a slider that a muscle moves itself a force
+/// on the joint is one of the muscle.
+fn of_joints(case: &Case, spec: &PortSpec) -> Vec<String> {
+    let file = &case.scene.file;
+    if file.mechanism.is_none() || file.cable.is_empty() {
+        return Vec::new();
+    }
+    let each = case.runs.first().map_or_else(Vec::new, |run| run.rom.joints_that_share_a_cable());
+    let named = each.into_iter().map(|name| format!("{}({name}).{}", spec.element, spec.term));
+    std::iter::once(spec.name()).chain(named).collect()
 }
 
 /// Whether a case is of the element that stands alone, and of one alone: each of several chambers leaks in its own way.

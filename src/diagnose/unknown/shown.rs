@@ -259,7 +259,7 @@ fn parts<'a>(all: &'a [Slot], slot: &'a Slot) -> impl Iterator<Item = &'a Slot> 
             (other.port, &other.variable, other.reading.word()) == (slot.port, &slot.variable, slot.reading.word());
         is_same && other.reading.is_like(&slot.reading) && other.address != slot.address
     };
-    let is_whole = slot.port != Port::Sensor && Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
+    let is_whole = slot.port.spec().is_numbered() && Address::parse(&slot.address).is_ok_and(|a| a.number.is_none());
     let others: Vec<&Slot> = if is_whole { all.iter().filter(is_part).collect() } else { Vec::new() };
     if others.is_empty() { vec![slot].into_iter() } else { others.into_iter() }
 }

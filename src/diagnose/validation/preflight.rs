@@ -109,9 +109,12 @@ fn channels(case: &Case, found: &mut Preflight) {
 const BEGINNING_S: f64 = 0.3;
 const BEGINS_OFF: f64 = 10.0;
 const BEGINS_OFF_SHARE: f64 = 0.05;
+/// A difference that changes by less than this share of itself over a run is one of zeros, wherever the scene begins.
+const SAME_THROUGHOUT: f64 = 0.2;
 
 /// Initial offset of a channel from the scene that all runs starting at zero share. What only grows in the first
-/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide.
+/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide, unless the
+/// difference stays what it is (a camera with an origin of its own).
 fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
     let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
     let offsets: Vec<f64> = at_zero
@@ -123,7 +126,9 @@ fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) ->
             let (measured, first) = *known.first()?;
             let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
             let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
-            Some(if is_zero { mean } else { 0.0 })
+            let whole: Vec<f64> = residual[channel].iter().copied().filter(|r| r.is_finite()).collect();
+            let stays = spread(&whole) < SAME_THROUGHOUT * mean.abs();
+            Some(if is_zero || stays { mean } else { 0.0 })
         })
         .collect();
     let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
@@ -201,7 +206,7 @@ fn other_zero(column: &str, off: f64) -> String {
     let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
     format!(
         "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
-         absolute pressure), subtract it"
+         absolute pressure, a camera's origin), say it in its [[channel]] (zero = {off:.4} where the file has {unit})"
     )
 }
 

@@ -74,10 +74,15 @@ pub fn known_as(law: &Law, values: &[f64], value: &dyn Fn(f64) -> f64) -> Option
             Memory::Rate => return None,
         });
     }
+    let scale = law.parameters.iter().zip(values).find(|(p, _)| p.name.starts_with("scale"))?.1;
+    over(law, [value(0.02 * scale), value(2.0 * scale)])
+}
+
+/// The same of a law without memory whose values are known where its variable was least and greatest in magnitude.
+pub fn over(law: &Law, [near, far]: [f64; 2]) -> Option<&'static str> {
     let [variable] = law.variables()[..] else { return None };
     let (port, variable) = (law.address.port.spec().name(), variable.name());
-    let scale = law.parameters.iter().zip(values).find(|(p, _)| p.name.starts_with("scale"))?.1;
-    let trend = if value(2.0 * scale) >= value(0.02 * scale) { Grows } else { Falls };
+    let trend = if far >= near { Grows } else { Falls };
     let fits =
         |row: &&(&str, &str, Trend, &str)| row.0 == port && row.1 == variable && [Either, trend].contains(&row.2);
     NAMES.iter().find(fits).map(|row| row.3)
@@ -99,6 +104,15 @@ mod tests {
         let name = |a: f64| known_as(&law, &law.values(), &|x| 1.0 + a * (-x.abs() / 2e-3).exp());
         assert!(name(0.4).expect("a name").starts_with("breakaway"));
         assert!(name(-0.4).expect("a name").contains("grows with speed"));
+    }
+
+    /// A law that rises where the rig has been may fall towards zero.
+    #[test]
+    fn where_the_runs_have_been_decides_on_the_name() {
+        let law = law("name = 'f'\nport = 'muscle.area'\nscales = '1 + a * elongation_m/scale_m'\n\
+             parameter.a = { value = 0.1 }\nparameter.scale_m = { value = 0.01 }");
+        assert!(over(&law, [0.92, 1.0]).is_some_and(|name| name.contains("widens")));
+        assert!(over(&law, [1.07, 1.0]).is_some_and(|name| name.contains("narrows")));
     }
 
     #[test]

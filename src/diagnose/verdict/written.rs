@@ -188,6 +188,25 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     Some(Curve { variable: variable.name(), x, y, low, high, freehand: None })
 }
 
+/// Names an effect, or a form, by its curve where the runs have been.
+pub fn name_over(placed: &Placed, curve: Option<&Curve>, known_as: &mut Option<String>) {
+    let (Some(own), Some(curve)) = (written(placed), curve) else { return };
+    let by_size = |a: &&usize, b: &&usize| curve.x[**a].abs().total_cmp(&curve.x[**b].abs());
+    let all: Vec<usize> = (0..curve.x.len()).collect();
+    if let (Some(&near), Some(&far)) = (all.iter().min_by(by_size), all.iter().max_by(by_size)) {
+        *known_as = known_as::over(&own.law, [curve.y[near], curve.y[far]]).map(str::to_owned);
+    }
+}
+
+/// The same of the alternatives to an effect.
+pub fn name_forms(case: &Case, fits: &[Fit], forms: &mut [Form]) {
+    let laws = fits.iter().filter_map(|fit| Some((fit, fit.model.effects.len().checked_sub(1)?)));
+    let written = laws.filter(|(fit, at)| written(&fit.model.effects[*at]).is_some());
+    for ((fit, at), form) in written.zip(forms) {
+        name_over(&fit.model.effects[at], curve(case, fit, at).as_ref(), &mut form.known_as);
+    }
+}
+
 /// Common name of a law.
 fn known_as(own: &WrittenLaw, parameters: &[f64]) -> Option<String> {
     known_as::known_as(&own.law, &own.values(parameters), &|x| value(own, parameters, x)).map(str::to_owned)
