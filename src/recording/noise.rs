@@ -48,6 +48,12 @@ pub fn noise_sd(time_s: &[f64], values: &[f64]) -> Option<f64> {
 }
 
 fn noise_of_neighbours(time_s: &[f64], values: &[f64]) -> Option<f64> {
+    let sd = white_sd(time_s, values)?.max(resolution(values)? / 12f64.sqrt());
+    (sd > 0.0).then_some(sd)
+}
+
+/// The same without the floor of quantisation.
+pub(super) fn white_sd(time_s: &[f64], values: &[f64]) -> Option<f64> {
     let limit_s = gap_limit_s(time_s);
     let mut residuals: Vec<f64> = time_s
         .windows(4)
@@ -58,9 +64,7 @@ fn noise_of_neighbours(time_s: &[f64], values: &[f64]) -> Option<f64> {
     if residuals.len() < MIN_RESIDUALS {
         return None;
     }
-    let white_sd = median(&mut residuals)? / MEDIAN_OVER_SD;
-    let sd = white_sd.max(resolution(values)? / 12f64.sqrt());
-    (sd > 0.0).then_some(sd)
+    Some(median(&mut residuals)? / MEDIAN_OVER_SD)
 }
 
 /// Correlation of neighbouring third differences: -3/4 of white noise, near 1 of what is smooth. `None` of too few.
@@ -92,7 +96,7 @@ fn third_difference(time_s: &[f64], values: &[f64]) -> f64 {
 }
 
 /// The smallest change between neighbouring samples; `None` when nothing ever changes.
-fn resolution(values: &[f64]) -> Option<f64> {
+pub(super) fn resolution(values: &[f64]) -> Option<f64> {
     values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|change| *change > 0.0).min_by(f64::total_cmp)
 }
 

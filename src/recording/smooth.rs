@@ -6,12 +6,16 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::gap_limit_s;
-use super::noise::{alternation, noise_sd};
+use super::noise::{alternation, resolution, white_sd};
 
 /// White noise makes neighbouring third differences alternate: their correlation is -3/4. Of a smooth signal it is near 1.
 const ALTERNATES: f64 = -0.4;
 /// Noise below this share of the range is what numbers of five digits leave.
 const DIGITS: f64 = 1e-5;
+/// Rounded numbers differ by whole steps, to this share of one.
+const OFF_GRID: f64 = 0.01;
+/// Rounding shows in third differences by this share of a step and more.
+const SHOWS: f64 = 0.1;
 /// A residual of noise alone exceeds its limit once in `exp(LIKELY)`.
 const LIKELY: f64 = 7.0;
 /// Half of the narrowest window, in samples: of five a parabola leaves two degrees of freedom. Wider ones grow by a third.
@@ -34,8 +38,8 @@ pub struct Smoothed {
 /// sum r² <= sd² (k + 2 sqrt(7 k) + 14),  k = samples - 3
 /// ```
 /// holds of noise alone but for one window in a thousand (Laurent and Massart, Ann. Statist. 28 (2000), lemma 1), so windows are narrow
-/// where the input bends and wide where it does not; from sample to sample half of a window changes by one at most. `noise_sd` is stated or
-/// found ([`noise_sd`]); of rounded numbers it is `q/sqrt(12)`.
+/// where the input bends and wide where it does not; from sample to sample half of a window changes by one at most. `sd` is stated, or that of
+/// third differences as in [`noise_sd`](super::noise_sd); of numbers rounded to `q` it is `q/sqrt(12)` at least.
 ///
 /// `None` where nothing is to be done: the noise is stated as zero, or none is seen (third differences of neighbours do not alternate),
 /// or it is below 1e-5 of the range.
@@ -61,7 +65,7 @@ pub fn smoothed(time_s: &[f64], values: &[f64], stated_sd: Option<f64>) -> Optio
     let known: Vec<f64> = there.iter().map(|&i| values[i]).collect();
     let noise_sd = match stated_sd {
         Some(sd) => sd,
-        None => noise_sd(&times, &known).filter(|_| alternation(&times, &known).is_some_and(|c| c < ALTERNATES))?,
+        None => seen(&times, &known)?,
     };
     let range = super::figures::range(&known);
     if noise_sd <= DIGITS * range {
@@ -82,6 +86,25 @@ pub fn smoothed(time_s: &[f64], values: &[f64], stated_sd: Option<f64>) -> Optio
         begins = ends;
     }
     Some(Smoothed { values: smooth, noise_sd })
+}
+
+/// Noise of an input, if some is seen: third differences of neighbours alternate.
+fn seen(times_s: &[f64], values: &[f64]) -> Option<f64> {
+    alternation(times_s, values).filter(|correlation| *correlation < ALTERNATES)?;
+    let white = white_sd(times_s, values)?;
+    Some(white.max(step(values, white).unwrap_or(0.0) / 12f64.sqrt())).filter(|sd| *sd > 0.0)
+}
+
+/// The step of rounded numbers. A ramp sampled evenly has steps as well, one like the other: those of rounding differ from sample to sample, which
+/// shows as noise, or stand alone between samples that do not change.
+fn step(values: &[f64], white_sd: f64) -> Option<f64> {
+    let step = resolution(values)?;
+    let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
+    let is_whole = |change: &f64| (change - change.round()).abs() < OFF_GRID;
+    let changed = || (1..changes.len().saturating_sub(1)).filter(|&i| changes[i] != 0.0);
+    let alone = changed().filter(|&i| changes[i - 1] == 0.0 && changes[i + 1] == 0.0).count();
+    let is_rounded = white_sd > SHOWS * step || 2 * alone > changed().count();
+    (is_rounded && changes.iter().all(is_whole)).then_some(step)
 }
 
 /// Where pieces without a gap end.
@@ -186,6 +209,31 @@ mod tests {
             let worst = found.values.iter().zip(&signal).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / sd;
             assert!(worst < 5.0, "{worst} of {sd}");
         }
+    }
+
+    /// Ramps that were sampled evenly have steps of their own; a clock that jitters gives them noise, far below those.
+    #[test]
+    fn corners_of_even_ramps_stay() {
+        let time_s = times(1000);
+        let triangle: Vec<f64> = (0..1000).map(|i| f64::from((i % 200 - 100i32).abs())).collect();
+        assert_eq!(smoothed(&time_s, &triangle, None), None);
+        let jittered: Vec<f64> = noisy(&triangle, 1e-3);
+        let found = smoothed(&time_s, &jittered, None).expect("it is noisy");
+        assert!((found.noise_sd / 1e-3 - 1.0).abs() < 0.1, "{}", found.noise_sd);
+        let worst = found.values.iter().zip(&triangle).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 5e-3, "{worst}");
+    }
+
+    /// Slow stairs: most samples stand still, and a step stands alone.
+    #[test]
+    fn slow_stairs_become_a_ramp() {
+        let time_s = times(2000);
+        let stairs: Vec<f64> = (0..2000).map(|i| f64::from(i / 13) * 0.01).collect();
+        let found = smoothed(&time_s, &stairs, None).expect("it is rounded");
+        assert!((found.noise_sd - 0.01 / 12f64.sqrt()).abs() < 1e-6, "{}", found.noise_sd);
+        let ramp = |i: usize| 0.01 * (i as f64 - 6.0) / 13.0;
+        let worst = (100..1900).map(|i| (found.values[i] - ramp(i)).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.002, "{worst}");
     }
 
     /// A step between two samples stays one.

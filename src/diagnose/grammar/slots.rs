@@ -32,7 +32,8 @@ fn variables(spec: &PortSpec) -> &'static [Quantity] {
         Carrier::Muscle => &[Q::Pressure, Q::Flow, Q::Elongation, Q::Time],
         Carrier::Cable => &[Q::Angle, Q::Tension, Q::Stretch, Q::Drive, Q::AngularSpeed, Q::Time],
         Carrier::Joint => &[Q::Angle, Q::AngularSpeed, Q::Time],
-        // Each has few, and all of them are tried.
+        // A curve over its stretch is what a strip's rubber laws are for.
+        Carrier::Alone if spec.element == "strip" => &[Q::Time],
         Carrier::Alone => spec.variables(),
         Carrier::Sensor => &[],
     }
@@ -354,7 +355,8 @@ fn stands_alone(case: &Case, spec: &PortSpec) -> bool {
     let file = &case.scene.file;
     match spec.element {
         "axis" => file.axis.is_some(),
-        "strip" => file.strip.is_some(),
+        // Of one pull nothing tells time from stretch.
+        "strip" => file.strip.is_some() && case.runs.iter().filter(|run| !run.is_held_out).count() > 1,
         _ => file.chamber.is_some() && case.runs.iter().all(|run| run.scene.file.chamber == file.chamber),
     }
 }
