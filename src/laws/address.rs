@@ -92,6 +92,10 @@ impl Address {
             }
             return Ok(Self { port: spec.port, number: None, of });
         }
+        if let Some((name, 0)) = numbered(element).filter(|(name, _)| find(name).is_some_and(PortSpec::is_numbered)) {
+            let remedy = format!("the first is {name}_1");
+            return Err((format!("port = \"{text}\": elements are numbered from 1"), remedy));
+        }
         let found = numbered(element).and_then(|(name, number)| Some((find(name)?, number.checked_sub(1)?)));
         match found {
             Some((spec, number)) if of.is_none() && spec.is_numbered() => {
@@ -158,6 +162,8 @@ mod tests {
         for wrong in ["", "muscle", "muscle_0.friction", "muscle.speed", "joint_1.torque", "muscle(a).pull", "sensor"] {
             assert!(Address::parse(wrong).is_err(), "{wrong}");
         }
+        let nought = Address::parse("muscle_0.friction").expect_err("there is none");
+        assert!(nought.0.contains("numbered from 1") && nought.1.contains("muscle_1"), "{nought:?}");
         for written in ["line2.outflow", "line 2.outflow", "line[2].outflow"] {
             assert_eq!(Address::parse(written).map(|a| a.to_string()).as_deref(), Ok("line_2.outflow"), "{written}");
         }

@@ -137,7 +137,8 @@ impl Slot {
 
     /// Name of its law.
     pub fn name(&self) -> String {
-        format!("{}{}", self.address.replace('.', "_"), self.reading.word())
+        // joint(knuckle).stiffness: joint_knuckle_stiffness.
+        format!("{}{}", self.address.replace(['.', '('], "_").replace(')', ""), self.reading.word())
     }
 }
 

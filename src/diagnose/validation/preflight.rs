@@ -4,7 +4,7 @@ use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::{Model, Problem};
 use crate::recording::figures::{correlation, spread};
 use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
-use crate::scene::Scene;
+use crate::scene::{Quantity, Scene};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
 /// Minimum number of samples.
@@ -109,13 +109,15 @@ fn channels(case: &Case, found: &mut Preflight) {
 const BEGINNING_S: f64 = 0.3;
 const BEGINS_OFF: f64 = 10.0;
 const BEGINS_OFF_SHARE: f64 = 0.05;
-/// A difference that changes by less than this share of itself over a run is one of zeros, wherever the scene begins.
+/// A place whose difference changes by less than this share of itself over a run has another origin, wherever the scene begins.
 const SAME_THROUGHOUT: f64 = 0.2;
 
 /// Initial offset of a channel from the scene that all runs starting at zero share. What only grows in the first
-/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide, unless the
-/// difference stays what it is (a camera with an origin of its own).
+/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide, unless it is
+/// a place whose difference stays what it is (a camera with an origin of its own).
 fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
+    let output = &problem.case.scene.file.output[problem.case.channels[channel].output];
+    let is_place = [Quantity::BodyX, Quantity::BodyY, Quantity::BodyZ].contains(&output.quantity);
     let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
     let offsets: Vec<f64> = at_zero
         .filter_map(|(run, residual)| {
@@ -127,7 +129,7 @@ fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) ->
             let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
             let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
             let whole: Vec<f64> = residual[channel].iter().copied().filter(|r| r.is_finite()).collect();
-            let stays = spread(&whole) < SAME_THROUGHOUT * mean.abs();
+            let stays = is_place && spread(&whole) < SAME_THROUGHOUT * mean.abs();
             Some(if is_zero || stays { mean } else { 0.0 })
         })
         .collect();
