@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::port::{Carrier, PORTS, Port, PortSpec};
+use super::port::{Carrier, Port, PortSpec};
+use super::ports::PORTS;
 use crate::nearest::did_you_mean;
 
 /// What others call a term of an element.

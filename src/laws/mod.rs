@@ -21,6 +21,7 @@ mod dimension;
 mod example;
 mod law;
 mod port;
+mod ports;
 mod program;
 mod quantity;
 mod read;
@@ -30,7 +31,8 @@ mod tree;
 mod units;
 
 pub use law::{Law, Parameter};
-pub use port::{PORTS, Port, PortSpec};
+pub use port::{Port, PortSpec};
+pub use ports::PORTS;
 pub use quantity::{QUANTITIES, Quantity, QuantitySpec};
 pub use read::{LawError, Surroundings};
 pub use table::{LawTable, ParameterTable, StateTable};

@@ -3,6 +3,7 @@
 //! May import `fit` and `case`.
 
 mod acting;
+mod addresses;
 mod reading;
 mod shaped;
 mod shapes;
