@@ -276,7 +276,9 @@ fn add_curves(whole: &Problem, complete: &Fit, effects: &mut [NamedEffect]) {
                 own.curve = first.and_then(|(first, curve)| verdict::together(&first, &curve, &own.acts));
                 continue;
             }
-            verdict::name_over(placed, curve.as_ref(), &mut own.known_as);
+            if let Some(curve) = &curve {
+                verdict::name_over(placed, (&curve.x, &curve.y), &mut own.known_as);
+            }
             own.curve = curve;
             if let Some(curve) = &mut own.curve {
                 curve.freehand = freehand::freehand(whole, complete, at, curve);

@@ -217,11 +217,11 @@ mod tests {
         let time_s = times(1000);
         let triangle: Vec<f64> = (0..1000).map(|i| f64::from((i % 200 - 100i32).abs())).collect();
         assert_eq!(smoothed(&time_s, &triangle, None), None);
-        let jittered: Vec<f64> = noisy(&triangle, 1e-3);
+        let jittered: Vec<f64> = noisy(&triangle, 1e-2);
         let found = smoothed(&time_s, &jittered, None).expect("it is noisy");
-        assert!((found.noise_sd / 1e-3 - 1.0).abs() < 0.1, "{}", found.noise_sd);
+        assert!((found.noise_sd / 1e-2 - 1.0).abs() < 0.1, "{}", found.noise_sd);
         let worst = found.values.iter().zip(&triangle).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(worst < 5e-3, "{worst}");
+        assert!(worst < 5e-2, "{worst}");
     }
 
     /// Slow stairs: most samples stand still, and a step stands alone.

@@ -135,7 +135,7 @@ fn drives(open: &Problem, fit: &Fit) -> bool {
     let own = fit.model.effects[last].spec().unlisted();
     let scales_a_loss = own.is_some_and(|own| own.law.acts == Acts::Scales && own.law.address.port.spec().dissipates);
     scales_a_loss
-        && verdict::curve(open.case, fit, last).is_some_and(|curve| curve.y.iter().any(|factor| *factor < 0.0))
+        && verdict::line(open.case, fit, last).is_some_and(|(_, _, factors)| factors.iter().any(|factor| *factor < 0.0))
 }
 
 /// The alternatives that an answer names: one on every other element first, then one at every other place, then other

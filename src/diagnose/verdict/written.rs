@@ -165,6 +165,17 @@ pub fn forms(fits: &[Fit], against: f64, unit: f64) -> Vec<Form> {
 
 /// The curve of a written law over the visited range, with the band from its own parameters.
 pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
+    let (variable, x, y) = line(case, fit, at)?;
+    let own = written(&fit.model.effects[at])?;
+    let over = |parameters: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, parameters, x)).collect() };
+    let half = band(fit, at, &values(fit, at), &y, &over);
+    let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
+    let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
+    Some(Curve { variable, x, y, low, high, freehand: None })
+}
+
+/// The variable of a written law, where the runs have been, and the law there; `None` of several variables or with memory.
+pub fn line(case: &Case, fit: &Fit, at: usize) -> Option<(String, Vec<f64>, Vec<f64>)> {
     let own = written(&fit.model.effects[at])?;
     let [variable] = own.law.variables()[..] else { return None };
     let visited = case.runs.iter().filter_map(|run| {
@@ -180,21 +191,17 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
     }
     let x: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect();
     let best = values(fit, at);
-    let over = |parameters: &[f64]| -> Vec<f64> { x.iter().map(|&x| value(own, parameters, x)).collect() };
-    let y = over(&best);
-    let half = band(fit, at, &best, &y, &over);
-    let low = y.iter().zip(&half).map(|(y, h)| y - h).collect();
-    let high = y.iter().zip(&half).map(|(y, h)| y + h).collect();
-    Some(Curve { variable: variable.name(), x, y, low, high, freehand: None })
+    let y = x.iter().map(|&x| value(own, &best, x)).collect();
+    Some((variable.name(), x, y))
 }
 
 /// Names an effect, or a form, by its curve where the runs have been.
-pub fn name_over(placed: &Placed, curve: Option<&Curve>, known_as: &mut Option<String>) {
-    let (Some(own), Some(curve)) = (written(placed), curve) else { return };
-    let by_size = |a: &&usize, b: &&usize| curve.x[**a].abs().total_cmp(&curve.x[**b].abs());
-    let all: Vec<usize> = (0..curve.x.len()).collect();
-    if let (Some(&near), Some(&far)) = (all.iter().min_by(by_size), all.iter().max_by(by_size)) {
-        *known_as = known_as::over(&own.law, [curve.y[near], curve.y[far]]).map(str::to_owned);
+pub fn name_over(placed: &Placed, (x, y): (&[f64], &[f64]), known_as: &mut Option<String>) {
+    let Some(own) = written(placed) else { return };
+    let by_size = |a: &(&f64, &f64), b: &(&f64, &f64)| a.0.abs().total_cmp(&b.0.abs());
+    let pairs = || x.iter().zip(y);
+    if let (Some((_, &near)), Some((_, &far))) = (pairs().min_by(by_size), pairs().max_by(by_size)) {
+        *known_as = known_as::over(&own.law, [near, far]).map(str::to_owned);
     }
 }
 
@@ -203,7 +210,9 @@ pub fn name_forms(case: &Case, fits: &[Fit], forms: &mut [Form]) {
     let laws = fits.iter().filter_map(|fit| Some((fit, fit.model.effects.len().checked_sub(1)?)));
     let written = laws.filter(|(fit, at)| written(&fit.model.effects[*at]).is_some());
     for ((fit, at), form) in written.zip(forms) {
-        name_over(&fit.model.effects[at], curve(case, fit, at).as_ref(), &mut form.known_as);
+        if let Some((_, x, y)) = line(case, fit, at) {
+            name_over(&fit.model.effects[at], (&x, &y), &mut form.known_as);
+        }
     }
 }
 
