@@ -4,7 +4,6 @@ use super::elsewhere::elsewhere;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
 use crate::diagnose::verdict::{self, misfit};
-use crate::laws::Acts;
 use crate::parallel;
 
 /// Fits are called equally good within so many units of chi²: odds of one to twenty.
@@ -21,8 +20,6 @@ const SEEN: f64 = 3.0;
 pub(super) const CLEARLY: f64 = 20.0;
 /// Price per letter of a law among equally good forms, in units of the criterion.
 const PER_LETTER: f64 = 0.02;
-/// Price of a law by which something drives that the scene has to damp: odds of one to twenty against it.
-const DRIVES: f64 = SAME;
 /// Maximum number of alternatives named.
 const MOST_FORMS: usize = 4;
 
@@ -118,24 +115,10 @@ pub(in crate::diagnose) fn equally_good(open: &Problem, fits: &[Fit], before: f6
     let first = fits.first()?;
     let criterion = Criterion::of(open, [first]);
     let tie = tie(open, first, before);
-    let price = |fit: &Fit| {
-        let driving = if drives(open, fit) { DRIVES } else { 0.0 };
-        criterion.at(fit) + PER_LETTER * letters(fit) as f64 + driving
-    };
-    let as_good = fits.iter().filter(|f| f.cost <= first.cost + tie);
-    let mut priced: Vec<(f64, &Fit)> = as_good.map(|fit| (price(fit), fit)).collect();
-    priced.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let same: Vec<&Fit> = priced.into_iter().map(|(_, fit)| fit).collect();
+    let mut same: Vec<&Fit> = fits.iter().filter(|f| f.cost <= first.cost + tie).collect();
+    let price = |fit: &Fit| criterion.at(fit) + PER_LETTER * letters(fit) as f64;
+    same.sort_by(|a, b| price(a).total_cmp(&price(b)));
     Some(((*same.first()?).clone(), other_forms(same[0], same.into_iter())))
-}
-
-/// Whether the last law makes what the scene damps with drive it somewhere that the runs have been: its factor is below zero there.
-fn drives(open: &Problem, fit: &Fit) -> bool {
-    let Some(last) = fit.model.effects.len().checked_sub(1) else { return false };
-    let own = fit.model.effects[last].spec().unlisted();
-    let scales_a_loss = own.is_some_and(|own| own.law.acts == Acts::Scales && own.law.address.port.spec().dissipates);
-    scales_a_loss
-        && verdict::line(open.case, fit, last).is_some_and(|(_, _, factors)| factors.iter().any(|factor| *factor < 0.0))
 }
 
 /// The alternatives that an answer names: one on every other element first, then one at every other place, then other
@@ -190,41 +173,8 @@ mod tests {
 
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
-    use crate::diagnose::fit::made::Bench;
     use crate::diagnose::fit::{Model, Placed};
-    use crate::diagnose::grammar::{Reach, slots, variant};
     use crate::effects::{Element, ElementKind, find};
-
-    /// Of two laws that fit alike the one that turns a damper into a drive comes second, whatever its letters.
-    #[test]
-    fn a_damper_that_drives_comes_after_what_fits_as_well() {
-        let bench = Bench::with(&[]);
-        let open = bench.open();
-        let from = bench.baseline();
-        let slot = |address: &str| {
-            let mut all = slots(&bench.case, &from, Reach::Plain).into_iter();
-            all.find(|slot| slot.address == address && slot.variable == "speed_m_s").expect("a slot")
-        };
-        let with = |address: &str, size: f64, cost: f64| {
-            let slot = slot(address);
-            let own = variant(&bench.case, &slot, &slot.shapes()[0], 1.0).expect("a law");
-            let values: Vec<f64> = std::iter::once(size).chain(own.values[1..].iter().copied()).collect();
-            let model = Model::baseline().plus(&own.placed, &values);
-            Fit { x: open.start(&model, None), model, cost, ..from.clone() }
-        };
-        let places = |fits: &[Fit]| -> Vec<String> {
-            let (first, others) = equally_good(&open, fits, 1e3).expect("some");
-            std::iter::once(&first)
-                .chain(&others)
-                .filter_map(|fit| fit.model.effects.last())
-                .map(verdict::port)
-                .collect()
-        };
-        let pull = with("muscle.pull", 0.01, 1.0);
-        for (size, expected) in [(0.1, ["muscle.damping", "muscle.pull"]), (-2.0, ["muscle.pull", "muscle.damping"])] {
-            assert_eq!(places(&[with("muscle.damping", size, 0.0), pull.clone()]), expected, "{size}");
-        }
-    }
 
     /// Noise-free recordings with nothing hidden: every converged fit leaves nothing. Fits that cannot come near the
     /// first, or are beyond `most`, stay rough.

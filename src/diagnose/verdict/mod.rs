@@ -13,4 +13,4 @@ pub(super) use named::{
     Confirmed, Open, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
 };
 pub(super) use parameters::discrepancy;
-pub(super) use written::{curve, line, name_forms, name_over, port, together};
+pub(super) use written::{curve, name_forms, name_over, port, together};

@@ -175,7 +175,7 @@ pub fn curve(case: &Case, fit: &Fit, at: usize) -> Option<Curve> {
 }
 
 /// The variable of a written law, where the runs have been, and the law there; `None` of several variables or with memory.
-pub fn line(case: &Case, fit: &Fit, at: usize) -> Option<(String, Vec<f64>, Vec<f64>)> {
+fn line(case: &Case, fit: &Fit, at: usize) -> Option<(String, Vec<f64>, Vec<f64>)> {
     let own = written(&fit.model.effects[at])?;
     let [variable] = own.law.variables()[..] else { return None };
     let visited = case.runs.iter().filter_map(|run| {
