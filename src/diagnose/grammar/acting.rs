@@ -21,8 +21,7 @@ pub fn action(port: Port) -> Option<(Acts, &'static str, f64)> {
         Port::Stretch => (Adds, "m", 1e-4),
         Port::Torque => (Adds, "N m", 1e-4),
         Port::AxisForce | Port::AxisFriction => (Adds, "N", 3.0),
-        Port::ChamberOutflow => (Adds, "Pa/s", 100.0),
-        Port::Sensor => return None,
+        Port::ChamberOutflow | Port::Sensor => return None,
         _ => (Scales, "1", 0.05),
     })
 }

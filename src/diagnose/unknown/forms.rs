@@ -45,10 +45,7 @@ impl Criterion {
 /// replaced only if the law predicts whole left-out runs better; by one that leaves something itself, only if the two differ by
 /// more than equally good ones do: both are descriptions then, and the effect is the one with a name.
 pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> bool {
-    let gain = found.best.cost - lawful.cost;
-    let seen = misfit::left(open, lawful).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
-    let is_alike = gain < SAME * verdict::unit(found.baseline.cost - lawful.cost, seen);
-    if is_alike && !found.best.model.effects.is_empty() {
+    if !found.best.model.effects.is_empty() && is_as_good_as_a_name(open, found, lawful) {
         return false;
     }
     let criterion = Criterion::of(open, [&found.best, lawful]);
@@ -57,6 +54,12 @@ pub(super) fn is_clearly_better(open: &Problem, found: &Found, lawful: &Fit) -> 
         false => cross_validates_runs(open, &found.best, lawful),
     };
     criterion.at(lawful) < criterion.at(&found.best) - CLEARLY && predicts()
+}
+
+/// Whether the answer's effects do as well as a law, by what the law itself leaves to be seen.
+fn is_as_good_as_a_name(open: &Problem, found: &Found, lawful: &Fit) -> bool {
+    let left = misfit::left(open, lawful).map_or(0.0, |(excess, _)| excess.max(0.0) * open.samples() as f64);
+    found.best.cost - lawful.cost < SAME * verdict::unit(found.baseline.cost - lawful.cost, left)
 }
 
 /// Whether a fit leaves more than noise, and enough for a search to act on.
