@@ -75,9 +75,8 @@ fn is_place_of(fit: &Fit, slot: &Slot) -> bool {
         let variables = &e.spec().variables;
         let is_over_own = variables.contains(&slot.variable) || variables.is_empty() && slot.is_constant();
         let is_over = is_over_own && slot.reading == Reading::Plain;
-        // No curve of what is there now is a place for what remembers, and none that scales one for what is added.
-        let acts_alike = !e.spec().remembers && e.spec().acts == slot.action.acts;
-        e.spec().unlisted().is_none() && acts_alike && is_over && slot.address == verdict::port(e)
+        // No curve of what is there now is a place for what remembers.
+        e.spec().unlisted().is_none() && !e.spec().remembers && is_over && slot.address == verdict::port(e)
     };
     is_law_of(fit, slot) || fit.model.effects.last().is_some_and(is_listed_there)
 }
