@@ -106,4 +106,13 @@ fn a_concealed_case_takes_no_others_place_and_an_answer_is_to_its_own() {
     std::fs::write(answer.join("diagnosis.json"), "{\"recordings\": [\"cases/case_4\"]}").expect("written");
     let output = smam(&["score", "cases", "--answers", "answers"], here.path());
     refused(&output, &["answers to the recordings cases/case_4, not to cases/case_3"]);
+    // A copy of its runs under another name is the case: what is refused then is that this is no answer.
+    let (case, copy) = (here.path().join("cases/case_3"), here.path().join("cases/case_4"));
+    std::fs::create_dir_all(&copy).expect("a folder");
+    for entry in std::fs::read_dir(case).expect("the case").flatten() {
+        std::fs::copy(entry.path(), copy.join(entry.file_name())).expect("copied");
+    }
+    let output = smam(&["score", "cases", "--answers", "answers"], here.path());
+    assert!(!said(&output).contains("answers to the recordings"), "{}", said(&output));
+    refused(&output, &["diagnosis.json"]);
 }

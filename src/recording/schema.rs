@@ -62,6 +62,9 @@ fn channel() -> Value {
         "type": "object",
         "properties": keys,
         "required": ["column", "role"],
+        // Of an output, weights follow from its noise; an input that has none is taken as it was recorded.
+        "if": { "properties": { "role": { "const": "output" } }, "required": ["role"] },
+        "then": { "properties": { "noise_sd": { "exclusiveMinimum": 0 }, "constant": false } },
         "dependencies": Map::from_iter(super::bag_source::BAG_KEYS[1..].iter().map(|key| ((*key).to_owned(), json!(["topic"])))),
         "additionalProperties": false,
     })

@@ -86,8 +86,8 @@ fn refuse_answer_to_another(name: &str, folders: &Folders) -> Result<(), CliErro
     let own = folders.cases.join(name);
     let is_own = |given: &PathBuf| match (given.canonicalize(), own.canonicalize()) {
         (Ok(given), Ok(own)) if given == own => true,
-        // Diagnosed elsewhere, or as `.`: its name is all there is to go by.
-        _ => given.file_name().is_none_or(|folder| folder == OsStr::new(name)),
+        // Diagnosed elsewhere, or as `.`: its name is all there is to go by, or that it is a copy.
+        _ => given.file_name().is_none_or(|folder| folder == OsStr::new(name)) || holds_runs_of(given, &own),
     };
     match recordings.iter().find(|given| !is_own(given)) {
         None => Ok(()),
@@ -100,6 +100,17 @@ fn refuse_answer_to_another(name: &str, folders: &Folders) -> Result<(), CliErro
             quoted(&folders.answers.join(name))
         ))),
     }
+}
+
+/// Whether every run of a case lies in a folder, byte for byte.
+fn holds_runs_of(folder: &Path, case: &Path) -> bool {
+    let files = std::fs::read_dir(case).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut runs = files.filter(|path| path.extension().is_some_and(|e| e == "csv")).peekable();
+    let is_copied = |run: PathBuf| {
+        let copy = run.file_name().map(|name| folder.join(name));
+        copy.is_some_and(|copy| matches!((std::fs::read(copy), std::fs::read(run)), (Ok(copy), Ok(run)) if copy == run))
+    };
+    runs.peek().is_some() && runs.all(is_copied)
 }
 
 /// Names and seals, as they were published.
