@@ -119,7 +119,7 @@ fn assert_is_the_peers(bag: &Path) {
     assert_eq!(
         run.notes,
         [
-            "one time for all topics, that of /joint_states (200 samples); brought to it: /syringe/position (200 samples), \
+            "one time for all channels, that of /joint_states (200 samples); brought to it: /syringe/position (200 samples), \
           /line/pressure (100 samples), /ft/wrench (40 samples), /rig/state (40 samples)"
         ]
     );

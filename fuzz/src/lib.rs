@@ -51,7 +51,8 @@ fn looked_at(bytes: &[u8]) {
         Ok(found) => found,
         Err(e) => return check_words(&e.to_string(), "fuzz.csv"),
     };
-    let text = to_toml(&[found], OpenScene { name: "muscle_bench", channels: &wanted }, &|_| "fuzz.csv".to_owned());
+    let text =
+        to_toml(&[found], &[], OpenScene { name: "muscle_bench", channels: &wanted }, &|_| "fuzz.csv".to_owned());
     match RecordingSet::parse(&text, &folder.path().join("recordings.toml")) {
         Err(e) => check_words(&e.to_string(), "recordings.toml"),
         Ok(set) => {

@@ -123,7 +123,7 @@ pub fn scene_files(scene: &Scene) -> Vec<PathBuf> {
 
 /// The files of a folder of recordings, and the scene that it names where that is a file.
 pub fn recorded_files(set: &RecordingSet) -> Vec<PathBuf> {
-    let runs = set.runs.iter().map(|run| set.dir.join(&run.file));
+    let runs = set.runs.iter().flat_map(|run| run.files()).map(|file| set.dir.join(file));
     runs.chain([set.dir.join(SET_FILE_NAME), PathBuf::from(set.scene_path())]).collect()
 }
 

@@ -5,14 +5,15 @@ use std::process::ExitCode;
 
 use clap::Args;
 use smam::recording::{
-    Guess, GuessedColumn, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role, SET_FILE_NAME, Sureness,
-    Wanted, guess_sheet, to_toml,
+    AlsoGuess, Guess, GuessedColumn, LoadedRun, OpenScene, Recording, RecordingError, RecordingSet, Role,
+    SET_FILE_NAME, Sureness, Wanted, guess_sheet, to_toml,
 };
 use smam::scene::Scene;
 use smam::stock;
 
 use super::CliError;
 use super::files::{make_folder, write};
+use super::import_also::{also_guesses, fill_in_starts};
 use super::import_files::{Described, describe, files};
 use super::words::quoted;
 
@@ -20,7 +21,8 @@ use super::words::quoted;
 #[derive(Args)]
 #[command(after_help = "Examples:
   smam import rig/monday --scene muscle_bench      every table in the folder; writes rig/monday/recordings.toml
-  smam import sine.txt step.txt --scene my.toml    two files of one kind")]
+  smam import sine.txt step.txt --scene my.toml    two files of one kind
+  smam import pull.csv --also camera.csv --scene my.toml    a run whose motion a camera wrote, by its own clock")]
 pub struct ImportArguments {
     /// Files of one kind (CSV, text, .lvm, .xlsx, .parquet), or their folder
     #[arg(required = true, value_name = "FILE")]
@@ -31,6 +33,9 @@ pub struct ImportArguments {
     /// Sheet of the workbooks [default: the first]
     #[arg(long, value_name = "NAME")]
     sheet: Option<String>,
+    /// A further file of each run, in their order: what a camera or a second logger wrote, with a clock of its own
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    also: Vec<PathBuf>,
     /// Where to write recordings.toml [default: the files' folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -59,20 +64,27 @@ pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
     }
     let (scene, channels) = scene_of_any(arguments.scene.as_deref(), &files, sheet)?;
     let Described { guesses, left_out } = describe(&files, sheet, &channels)?;
-    guesses.iter().for_each(say_guess);
+    let mut also = also_guesses(&arguments.also, &guesses, &channels)?;
+    guesses.iter().chain(also.iter().map(|also| &also.guess)).for_each(say_guess);
     left_out.iter().for_each(|file| eprintln!("left out: {}", file.why));
     make_folder(&folder)?;
     let scene = scene_from(&folder, &scene);
-    let mut text = to_toml(&guesses, OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
+    let text_with = |also: &[AlsoGuess]| {
+        to_toml(&guesses, also, OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder))
+    };
+    let mut text = text_with(&also);
+    fill_in_starts(&mut also, &text, &written);
+    text = text_with(&also);
     left_out.iter().for_each(|file| text += &file.comment());
     write(&written, &text)?;
     say!("written: {}", written.display());
-    let open = open_points(&guesses[0]);
+    let all = std::iter::once(&guesses[0]).chain(also.first().map(|also| &also.guess));
+    let open: Vec<String> = all.clone().flat_map(open_points).collect();
     if !open.is_empty() {
         open.iter().for_each(|point| eprintln!("not complete: {}: {point}", written.display()));
         return Ok(ExitCode::from(1));
     }
-    let missing = absent_input(&guesses[0], &channels);
+    let missing = absent_input(&all.collect::<Vec<_>>(), &channels);
     Ok(match (read_back(&written), missing) {
         (Ok(()), Some(input)) => {
             eprintln!(
@@ -109,7 +121,7 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
         eprintln!("note: {}: {} ({})", path.display(), what, sureness.word());
     }
     let folder = folder_of(path);
-    if let Some(input) = absent_input(&found, &channels) {
+    if let Some(input) = absent_input(&[&found], &channels) {
         return Err(CliError::Usage(format!(
             "{}: no column is like the input {} of the scene {scene} (found: {})\n  remedy: name the column so; or run `smam import` on \
              the file and fill in what it could not know",
@@ -125,7 +137,7 @@ pub fn recordings(path: &Path, named: Option<&str>) -> Result<RecordingSet, CliE
         )));
     }
     let scene = scene_from(&folder, &scene);
-    let text = to_toml(&[found], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
+    let text = to_toml(&[found], &[], OpenScene { name: &scene, channels: &channels }, &|file| called(file, &folder));
     Ok(RecordingSet::parse(&text, &folder.join(SET_FILE_NAME))?)
 }
 
@@ -144,8 +156,9 @@ fn open_points(found: &Guess) -> Vec<String> {
 }
 
 /// An input of the scene that no column was found for.
-fn absent_input<'a>(found: &Guess, channels: &'a [Wanted]) -> Option<&'a Wanted> {
-    let is_found = |w: &Wanted| found.columns.iter().any(|c| c.channel.as_ref().is_some_and(|(f, _)| f == w));
+fn absent_input<'a>(found: &[&Guess], channels: &'a [Wanted]) -> Option<&'a Wanted> {
+    let columns = found.iter().flat_map(|guess| &guess.columns);
+    let is_found = |w: &Wanted| columns.clone().any(|c| c.channel.as_ref().is_some_and(|(f, _)| f == w));
     channels.iter().find(|w| w.role == Role::Input && !is_found(w))
 }
 

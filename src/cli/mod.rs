@@ -19,6 +19,7 @@ mod files;
 mod identify;
 mod identify_page;
 mod import;
+mod import_also;
 mod import_files;
 mod interrupt;
 mod junit;

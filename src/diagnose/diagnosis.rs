@@ -226,6 +226,12 @@ pub struct Proof {
     /// Share of the gap between baseline and noise that the effects close on held-out runs.
     pub gap_closed: f64,
     pub gain_ci95: [f64; 2],
+    /// Gain of twice the log-likelihood per sample, the size of each channel's misfit unknown but not below its noise: below zero the
+    /// answer predicts worse, though the gap may be smaller.
+    #[serde(default)]
+    pub score_gain: f64,
+    #[serde(default)]
+    pub score_gain_ci95: [f64; 2],
     /// What wrong effects gained through the same door.
     pub placebo_gap_closed: Vec<(String, f64)>,
     pub full_scene: FullScene,

@@ -270,8 +270,9 @@ fn hold_against_full_scene(case: &Case, explained: &mut Explained, seed: u64, sa
     let Explained { found, proof, noise, of_found, .. } = explained;
     let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise };
     proof.placebo_gap_closed = confirm::placebos(&held_out, found, seed);
-    if !confirm::check_on_full_scene(&held_out, found, proof, seed, of_found) {
-        harm::without_unplayable(case, noise, found, proof, of_found);
+    match confirm::check_on_full_scene(&held_out, found, proof, seed, of_found) {
+        true => harm::without_harm_on_full_scene(case, noise, found, proof, of_found),
+        false => harm::without_unplayable(case, noise, found, proof, of_found),
     }
 }
 

@@ -5,7 +5,7 @@ use super::folder_keys::Keys;
 use super::folder_tables::{TOP_KEYS, channels, check_format, layout, runs};
 use super::source::unopened;
 use super::table::FILE_KEYS;
-use super::{FileOptions, Recording, RecordingError, TableSource};
+use super::{AlsoFile, FileOptions, Recording, RecordingError, TableSource};
 use crate::files::read_text;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -71,6 +71,16 @@ pub struct Run {
     pub specimen: Option<String>,
     /// How its file is laid out.
     pub layout: FileOptions,
+    /// Other files with channels of the same run.
+    pub also: Vec<AlsoFile>,
+}
+
+impl Run {
+    /// All its files, relative to the folder.
+    #[doc(hidden)]
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(self.file.as_str()).chain(self.also.iter().map(|also| also.file.as_str()))
+    }
 }
 
 /// The recordings of one folder.

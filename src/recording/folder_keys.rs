@@ -152,9 +152,30 @@ impl<'a> Keys<'a> {
         tables.ok_or_else(wrong)
     }
 
+    /// The tables of `[[above.key]]` below this one, which is an `[[above]]`; there may be none.
+    pub(super) fn tables_below(&self, above: &str, key: &str) -> Result<Vec<Self>, RecordingError> {
+        if !self.has(key) {
+            return Ok(Vec::new());
+        }
+        let named = |(index, table): (usize, &'a Table)| {
+            Keys::new(
+                self.file,
+                format!("{}, {}", self.name, label(&format!("{above}.{key}"), index, table.get("file"))),
+                table,
+            )
+        };
+        Ok(self.tables(key)?.into_iter().enumerate().map(named).collect())
+    }
+
     /// The keys that are not among `known`.
     pub(super) fn others(&self, known: &[&str]) -> Vec<&'a str> {
         let keys = self.table.keys().map(String::as_str);
         keys.filter(|key| !known.contains(key)).collect()
     }
+}
+
+/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
+pub(super) fn label(kind: &str, index: usize, name: Option<&Value>) -> String {
+    let name = name.map_or(String::new(), |name| format!(" ({name})"));
+    format!("[[{kind}]] {}{name}", index + 1)
 }

@@ -34,6 +34,7 @@ impl RecordingSet {
         let file = self.dir.join(&run.file);
         let declared = self.channels_of(run);
         let parts = match FileFormat::of(&file)? {
+            _ if !run.also.is_empty() => vec![self.load_joined(run, &declared)?],
             FileFormat::Mcap => {
                 check_topics(&declared, &file)?;
                 self.check_absent_from_bag(run, &file)?;

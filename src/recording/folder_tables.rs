@@ -1,7 +1,8 @@
 //! The tables of `recordings.toml`: `[file]`, `[[channel]]`, `[[run]]`.
 
+use super::also::also;
 use super::bag_source::{BAG_KEYS, bag_source};
-use super::folder_keys::Keys;
+use super::folder_keys::{Keys, label};
 use super::table::{FILE_KEYS, TABLE_KEYS, file_options, table_source};
 use super::{ChannelSpec, FileOptions, RecordingError, Role, Run, RunUse, TIME_COLUMN, TableSource, parse_column};
 use crate::nearest::did_you_mean;
@@ -11,7 +12,7 @@ use std::path::Path;
 const FORMAT: i64 = 1;
 pub(super) const TOP_KEYS: [&str; 5] = ["format", "scene", "file", "channel", "run"];
 pub(super) const CHANNEL_KEYS: [&str; 4] = ["column", "role", "noise_sd", "constant"];
-pub(super) const RUN_KEYS: [&str; 4] = ["file", "use", "not_recorded", "specimen"];
+pub(super) const RUN_KEYS: [&str; 5] = ["file", "use", "not_recorded", "specimen", "also"];
 
 pub(super) fn check_format(top: &Keys<'_>) -> Result<(), RecordingError> {
     match top.number("format")? {
@@ -129,12 +130,15 @@ fn run(keys: &Keys<'_>, channels: &[ChannelSpec], layout: &FileOptions) -> Resul
             conditions.insert(key.to_owned(), value);
         }
     }
+    let file = keys.required_text("file", "sine.csv")?.to_owned();
+    let layout = file_options(keys, layout)?;
     Ok(Run {
-        file: keys.required_text("file", "sine.csv")?.to_owned(),
+        also: also(keys, &file, &layout)?,
+        file,
         run_use: keys.word("use", &[("fit", RunUse::Fit), ("holdout", RunUse::Holdout)])?,
         not_recorded: not_recorded(keys, channels)?,
         specimen: keys.text("specimen")?.map(str::to_owned),
-        layout: file_options(keys, layout)?,
+        layout,
         conditions,
     })
 }
@@ -155,10 +159,4 @@ fn not_recorded(keys: &Keys<'_>, channels: &[ChannelSpec]) -> Result<Vec<String>
             outputs.join(", ")
         ))),
     }
-}
-
-/// `[[run]] 2 ("sine.csv")`: the number counts from 1.
-fn label(kind: &str, index: usize, name: Option<&toml::Value>) -> String {
-    let name = name.map_or(String::new(), |name| format!(" ({name})"));
-    format!("[[{kind}]] {}{name}", index + 1)
 }

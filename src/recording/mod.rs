@@ -19,6 +19,7 @@
 //! # }
 //! ```
 
+mod also;
 mod bag_read;
 mod bag_source;
 mod blocks;
@@ -35,6 +36,8 @@ mod folder_load;
 mod folder_tables;
 mod formats;
 mod guess;
+mod join;
+mod line_up;
 mod lost;
 mod noise;
 mod one_clock;
@@ -49,6 +52,7 @@ mod table;
 mod unit;
 mod writer;
 
+pub use also::AlsoFile;
 pub use channels::{Channel, Recording};
 pub use compare::{ChannelFit, compare};
 pub use csv_read::read_csv;
@@ -74,7 +78,9 @@ pub use {
     csv_write::{CsvWriter, RowWriter},
     folder::{ChannelSpec, SET_FILE_NAME},
     formats::FileFormat,
-    guess::{Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, guess_sheet, to_toml},
+    guess::{AlsoGuess, Guess, GuessedColumn, OpenScene, Said, Sureness, Wanted, guess, guess_sheet, to_toml},
+    join::Start,
+    line_up::LinedUp,
     lost::LONGEST_LOST_S,
     schema::recordings_schema,
     strays::strays,

@@ -40,7 +40,7 @@ fn note(clock: &Sampled, sampled: &[Sampled]) -> Option<String> {
     }
     (!others.is_empty()).then(|| {
         let (topic, count) = (&clock.topic, clock.time_s.len());
-        format!("one time for all topics, that of {topic} ({count} samples); brought to it: {}", others.join(", "))
+        format!("one time for all channels, that of {topic} ({count} samples); brought to it: {}", others.join(", "))
     })
 }
 
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(time_s.len(), 11);
         let expected: Vec<f64> = time_s.iter().map(|t| (2.0 * t).clamp(0.25, 4.75)).collect();
         assert_eq!(values[1], expected);
-        assert_eq!(note.unwrap(), "one time for all topics, that of a (11 samples); brought to it: b (10 samples)");
+        assert_eq!(note.unwrap(), "one time for all channels, that of a (11 samples); brought to it: b (10 samples)");
     }
 
     #[test]

@@ -130,6 +130,7 @@ fn run() -> Value {
             "description": "Declared outputs that this run was recorded without.",
         }),
     );
+    keys.insert("also".to_owned(), tables(&also()));
     keys.insert(
         "specimen".to_owned(),
         text("Which sample, or set-up, it was recorded on: calibrated numbers are each one's own in a diagnosis."),
@@ -143,6 +144,29 @@ fn run() -> Value {
     })
 }
 
+/// `[[run.also]]`.
+fn also() -> Value {
+    let mut keys = file_keys();
+    keys.insert(
+        "file".to_owned(),
+        text("Another table with channels of this run, in this folder: what a camera or a second logger wrote."),
+    );
+    keys.insert(
+        "starts_s".to_owned(),
+        json!({
+            "type": "number",
+            "description": "Where its time 0 lies in the time of the run's file, s; stamps in both files say it themselves.",
+        }),
+    );
+    json!({
+        "type": "object",
+        "description": "Another file of the run, with a clock of its own; [file] does not hold for it.",
+        "properties": keys,
+        "required": ["file"],
+        "additionalProperties": false,
+    })
+}
+
 fn tables(item: &Value) -> Value {
     json!({ "type": "array", "minItems": 1, "items": item })
 }
@@ -153,6 +177,7 @@ fn text(description: &str) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use super::super::also::ALSO_KEYS;
     use super::super::folder_tables::{CHANNEL_KEYS, RUN_KEYS, TOP_KEYS};
     use super::*;
     use crate::recording::bag_source::BAG_KEYS;
@@ -177,5 +202,6 @@ mod tests {
         assert_eq!(keys(&channel()), sorted(&[&CHANNEL_KEYS[..], &TABLE_KEYS, &BAG_KEYS].concat()));
         assert_eq!(keys(&file()), sorted(&FILE_KEYS));
         assert_eq!(keys(&run()), sorted(&[&RUN_KEYS[..], &FILE_KEYS].concat()));
+        assert_eq!(keys(&also()), sorted(&[&ALSO_KEYS[..], &FILE_KEYS].concat()));
     }
 }

@@ -63,7 +63,7 @@ fn is_as_good_as_a_name(open: &Problem, found: &Found, lawful: &Fit) -> bool {
 }
 
 /// Whether a fit leaves more than noise, and enough for a search to act on.
-pub(super) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
+pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     misfit::left(open, fit).is_none_or(|(excess, error)| {
         excess > SEEN * error && excess * open.samples() as f64 > least_gain(open.samples())
     })

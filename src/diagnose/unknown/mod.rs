@@ -20,5 +20,5 @@ mod sums;
 pub(super) mod tried;
 mod unlisted;
 
-pub(super) use forms::{SAME, equally_good};
+pub(super) use forms::{SAME, equally_good, leaves_something};
 pub(super) use unlisted::propose;

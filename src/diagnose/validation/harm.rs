@@ -3,12 +3,12 @@
 use super::fewer::with_one_less;
 use super::prove;
 use crate::diagnose::case::{Case, CaseRun, Noise, RunSet, Step};
-use crate::diagnose::diagnosis::Proof;
+use crate::diagnose::diagnosis::{ChannelProof, Proof};
 use crate::diagnose::fit::{Fit, Problem, simulate};
 use crate::diagnose::full::play_full;
 use crate::diagnose::grammar::Reach;
 use crate::diagnose::search::Found;
-use crate::diagnose::unknown::{SAME, equally_good, propose};
+use crate::diagnose::unknown::{SAME, equally_good, leaves_something, propose};
 use crate::diagnose::verdict::Confirmed;
 
 /// Returns the answer if it does no harm. Otherwise, if cables go slack, the equally good fit (unlisted laws included)
@@ -27,8 +27,9 @@ pub(in crate::diagnose) fn without(
         return (found, Confirmed::Yes);
     }
     warnings.push(format!(
-        "{} predicts the held-out runs worse than the calibrated scene: it is not put into scene.toml",
-        found.best.model.title()
+        "{} predicts the held-out runs worse than the calibrated scene{}: it is not put into scene.toml",
+        found.best.model.title(),
+        most_harmed(proof)
     ));
     let [held_out, open] = [RunSet::HeldOut, RunSet::Open].map(|runs| Problem { case, runs: case.subset(runs), noise });
     let harmless = |other: Found| {
@@ -65,6 +66,7 @@ fn withhold(found: &mut Found, proof: &mut Proof) {
     found.withheld = Some(Box::new(known));
     proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
     (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
+    (proof.score_gain, proof.score_gain_ci95) = (0.0, [0.0, 0.0]);
 }
 
 /// The same if the full scene diverges with the answer but not without it: nobody could run that scene.toml.
@@ -81,6 +83,24 @@ pub(in crate::diagnose) fn without_unplayable(
     warnings.push(format!(
         "the full scene cannot be played with {}: it is not put into scene.toml",
         found.best.model.title()
+    ));
+    withhold(found, proof);
+}
+
+/// The same if the full scene, whose figures count where the reduced-order model differs, predicts the held-out runs worse with it.
+pub(in crate::diagnose) fn without_harm_on_full_scene(
+    case: &Case,
+    noise: &[Noise],
+    found: &mut Found,
+    proof: &mut Proof,
+    warnings: &mut Vec<String>,
+) {
+    if !proof.full_scene.differs() || !is_refused(case, noise, found, proof) {
+        return;
+    }
+    let (title, harmed) = (found.best.model.title(), most_harmed(proof));
+    warnings.push(format!(
+        "on the full scene {title} predicts the held-out runs worse than the calibrated scene{harmed}: it is not put into scene.toml"
     ));
     withhold(found, proof);
 }
@@ -155,8 +175,22 @@ fn exchange(found: &mut Found, other: Place, own: Fit) {
 /// the calibrated scene see [`without`].
 pub(in crate::diagnose) fn is_worse(held_out: &Problem, listed: &Found, lawful: &Fit, seed: u64) -> bool {
     let has_listed = !listed.best.model.effects.is_empty();
-    let is_beyond_chance = |p: Proof| p.gap_closed < 0.0 && p.gain_ci95[1] < 0.0;
-    has_listed && prove::prove(held_out, &listed.best, lawful, seed).is_none_or(is_beyond_chance)
+    has_listed && prove::prove(held_out, &listed.best, lawful, seed).is_none_or(|p| is_beyond_chance(&p))
+}
+
+/// Whether it predicts worse, not by the draw of the moments.
+fn is_beyond_chance(proof: &Proof) -> bool {
+    proof.score_gain < 0.0 && proof.score_gain_ci95[1] < 0.0
+}
+
+/// The channel that loses most, for the reader: the sum of squares may say otherwise.
+fn most_harmed(proof: &Proof) -> String {
+    let factor = |own: &ChannelProof| own.rmse_corrected.max(own.noise_sd) / own.rmse_baseline.max(own.noise_sd);
+    let harmed = proof.channels.iter().max_by(|a, b| factor(a.1).total_cmp(&factor(b.1)));
+    harmed.filter(|(_, own)| factor(own) > 1.0).map_or(String::new(), |(column, own)| {
+        let [before, after] = [own.rmse_baseline, own.rmse_corrected].map(|rmse| rmse / own.noise_sd);
+        format!(" ({column}: {before:.2} -> {after:.2} of the noise)")
+    })
 }
 
 /// Whether an answer with what describes its discrepancy predicts held-out runs worse than the answer or the calibrated
@@ -174,10 +208,11 @@ pub(in crate::diagnose) fn does_harm(
         || play_full(case, described, noise).is_err()
 }
 
-/// Whether a fit predicts held-out runs worse than the calibrated scene, beyond chance; or gains less there than it
-/// loses on samples left out of the fit, where a joint is almost free and a small wrong force moves it anywhere.
+/// Whether a fit predicts held-out runs worse than the calibrated scene: beyond chance, or at all if it leaves something of the open
+/// runs and so has no claim to be the truth; or gains less there than it loses on samples left out of the fit, where a joint is almost free and a small wrong force moves it anywhere.
 fn is_harmful(case: &Case, noise: &[Noise], baseline: &Fit, fit: &Fit, proof: &Proof) -> bool {
-    if proof.gap_closed < 0.0 && proof.gain_ci95[1] < 0.0 {
+    let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+    if is_beyond_chance(proof) || proof.score_gain < 0.0 && leaves_something(&open, fit) {
         return true;
     }
     if !case.goes_slack() {
@@ -218,7 +253,6 @@ fn at_left_out(case: &Case, run: &CaseRun, noise: &[Noise], fit: &Fit) -> Option
 mod tests {
     use super::*;
     use crate::diagnose::case::made;
-    use crate::diagnose::diagnosis::ChannelProof;
     use crate::diagnose::fit::{Model, Placed};
     use crate::diagnose::grammar;
     use crate::diagnose::search::Begun;
@@ -279,7 +313,7 @@ mod tests {
         let mut found = Begun::with_one(&open, baseline, &[], &|_| {}).found();
         (found.rivals_against, found.rivals, found.best) = (best.cost, vec![Vec::new(); 2], best);
 
-        let mut proof = Proof { gap_closed: -1.0, gain_ci95: [-2.0, -1.0], ..Proof::default() };
+        let mut proof = Proof { score_gain: -1.0, score_gain_ci95: [-2.0, -1.0], ..Proof::default() };
         let mut warnings = Vec::new();
         let (kept, confirmed) = without(&case, &noise, found.clone(), &mut proof, 1, (&mut warnings, &|_| {}));
         assert_eq!(kept.best.model.effects, found.best.model.effects[..1]);
@@ -289,7 +323,7 @@ mod tests {
         assert_eq!(stays, "sensor_gain on pressure_kpa alone does not, and stays");
 
         // Nothing is left of one.
-        let mut proof = Proof { gap_closed: -1.0, gain_ci95: [-2.0, -1.0], ..Proof::default() };
+        let mut proof = Proof { score_gain: -1.0, score_gain_ci95: [-2.0, -1.0], ..Proof::default() };
         let (kept, confirmed) = without(&case, &noise, kept, &mut proof, 1, (&mut warnings, &|_| {}));
         assert!(confirmed == Confirmed::Yes && kept.withheld.is_some() && kept.best.model.effects.is_empty());
     }

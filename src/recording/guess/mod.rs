@@ -141,4 +141,4 @@ fn no_table(table: &preview::Preview) -> &'static str {
 }
 
 pub(super) use open::TO_FILL_IN;
-pub use written::{OpenScene, to_toml};
+pub use written::{AlsoGuess, OpenScene, to_toml};

@@ -19,9 +19,23 @@ pub struct OpenScene<'a> {
     pub channels: &'a [Wanted],
 }
 
-/// The text of a `recordings.toml` for files of one kind; the columns are those of the first. `in_folder` says how the file calls a
-/// recording.
-pub fn to_toml(guesses: &[Guess], scene: OpenScene<'_>, in_folder: &dyn Fn(&Path) -> String) -> String {
+/// A further file of a run as it was guessed, and where its time 0 lies, if that is to be written.
+#[derive(Clone, Debug)]
+pub struct AlsoGuess {
+    /// The file.
+    pub guess: Guess,
+    /// Where its time 0 lies in the time of the run's file, s, and what is to be said of it.
+    pub starts_s: Option<(f64, String)>,
+}
+
+/// The text of a `recordings.toml` for files of one kind; the columns are those of the first. `also` has the further file of each, or
+/// nothing. `in_folder` says how the file calls a recording.
+pub fn to_toml(
+    guesses: &[Guess],
+    also: &[AlsoGuess],
+    scene: OpenScene<'_>,
+    in_folder: &dyn Fn(&Path) -> String,
+) -> String {
     let mut text = String::from(
         "# Written by `smam import`: look it over, change what is wrong. Keys: `smam schema recordings`.\nformat = 1\n",
     );
@@ -37,14 +51,29 @@ pub fn to_toml(guesses: &[Guess], scene: OpenScene<'_>, in_folder: &dyn Fn(&Path
                  # if their pace is not known (nothing that depends on rate can then be judged):\n#   time = \"index\"\n#   interval_s = 0.1\n";
     }
     first.columns.iter().for_each(|column| text += &channel(column));
-    text += &absent(&first.columns, scene.channels);
-    for guess in guesses {
+    let others = also.first().map_or(Vec::new(), |also| columns_beside(&also.guess, first));
+    others.iter().for_each(|column| text += &channel(column));
+    text += &absent(&[&first.columns[..], &others].concat(), scene.channels);
+    for (index, guess) in guesses.iter().enumerate() {
         text += &format!("\n[[run]]\nfile = {}\n", quoted(&in_folder(&guess.file)));
         if !is_common {
             text += &layout_lines(&guess.options);
         }
+        text += &also.get(index).map_or(String::new(), |also| also_lines(also, in_folder));
     }
     text
+}
+
+/// The columns of a further file that are channels which the first has not.
+fn columns_beside(also: &Guess, first: &Guess) -> Vec<GuessedColumn> {
+    let is_taken = |wanted: &Wanted| first.columns.iter().any(|c| c.channel.as_ref().is_some_and(|(w, _)| w == wanted));
+    also.columns.iter().filter(|c| c.channel.as_ref().is_some_and(|(w, _)| !is_taken(w))).cloned().collect()
+}
+
+fn also_lines(also: &AlsoGuess, in_folder: &dyn Fn(&Path) -> String) -> String {
+    let file = quoted(&in_folder(&also.guess.file));
+    let start = also.starts_s.as_ref().map_or(String::new(), |(s, said)| format!("starts_s = {s:.3}{said}\n"));
+    format!("[[run.also]]\nfile = {file}\n{start}{}", layout_lines(&also.guess.options))
 }
 
 fn quoted(text: &str) -> String {

@@ -63,6 +63,11 @@ impl Columns {
         Ok(())
     }
 
+    /// What the first row's stamp was, where times are stamps.
+    pub(super) fn first_moment(&self) -> Option<Moment> {
+        self.first
+    }
+
     /// The name of the time.
     pub(super) fn time_name(&self) -> &str {
         self.names.time.map_or("", |at| &self.names.columns[at])

@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 use std::path::Path;
 
-use super::super::RecordingError;
+use super::super::{ChannelSpec, RecordingError};
 use super::any_columns;
 use super::cell::{Cell, number};
 use super::header::Needed;
 use super::labview::{is_labview, units, with_labview};
 use super::options::{FileOptions, Header};
 use super::sheet;
-use super::stamp::stamp;
+use super::stamp::{Moment, stamp};
 
 /// The number of a cell, NaN where it says that it is missing; `None` where it is none.
 pub(in crate::recording) fn cell_number(cell: &str, options: &FileOptions) -> Option<f64> {
@@ -83,6 +83,32 @@ pub(in crate::recording) fn last_rows(
 pub(in crate::recording) fn times(path: &Path, options: &FileOptions) -> Result<Vec<f64>, RecordingError> {
     let lenient = FileOptions { split_at_restart: true, merge_repeated: true, ..options.clone() };
     Ok(any_columns(path, &lenient, Needed::These(&[]))?.0.clock.time_s)
+}
+
+/// What a file has, without the numbers.
+#[derive(Clone, Debug)]
+pub(in crate::recording) struct Seen {
+    pub(in crate::recording) names: Vec<String>,
+    /// The stamp of its first row, where its times are stamps.
+    first: Option<Moment>,
+}
+
+impl Seen {
+    /// Whether a channel is one of its columns.
+    pub(in crate::recording) fn has(&self, spec: &ChannelSpec) -> bool {
+        self.names.iter().any(|name| name == spec.name_in_table())
+    }
+
+    /// How long after another file it begins, where both have stamps of one kind.
+    pub(in crate::recording) fn seconds_after(&self, other: &Self) -> Option<f64> {
+        self.first?.seconds_after(other.first?)
+    }
+}
+
+/// Looks at a file.
+pub(in crate::recording) fn seen(path: &Path, options: &FileOptions) -> Result<Seen, RecordingError> {
+    let (columns, _) = any_columns(path, options, Needed::These(&[]))?;
+    Ok(Seen { first: columns.first_moment(), names: columns.names.columns })
 }
 
 /// Names and rows of a Parquet file.

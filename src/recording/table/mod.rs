@@ -43,8 +43,8 @@ pub(super) use decode::without_nul_end;
 pub(super) use keys::{FILE_KEYS, file_options};
 pub(super) use label::{is_unread, unread_unit};
 pub(super) use looked_at::{
-    cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
-    sheet_names, times, workbook_rows,
+    Seen, cell_number, check_labview, clock_faults, is_stamp, labview_options, labview_units, last_rows, parquet_rows,
+    seen, sheet_names, times, workbook_rows,
 };
 pub(super) use options::TIME_UNITS;
 pub(super) use source::{TABLE_KEYS, table_source};
