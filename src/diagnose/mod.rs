@@ -145,7 +145,8 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     let said = if withheld.is_empty() { &effects } else { &withheld };
     let location = location::location(&case, &found, said, &whole, &before, verdict);
     say("next experiment".to_owned());
-    let experiment = next_experiment(&whole, &found, left)?;
+    let leaves_a_part = verdict == Verdict::UnknownPhysics && verdict::leaves_a_part(&found, excess);
+    let experiment = next_experiment(&whole, &found, left, leaves_a_part)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let mut diagnosis = Diagnosis {
         format: 1,
@@ -225,10 +226,15 @@ fn said(
 }
 
 /// What would set apart what stays open, or else the answer from what comes next to it; `left` is the chi² that the best leaves beyond noise.
-fn next_experiment(whole: &Problem, found: &Found, left: f64) -> Result<Experiment, RecordingError> {
+fn next_experiment(
+    whole: &Problem,
+    found: &Found,
+    left: f64,
+    leaves_a_part: bool,
+) -> Result<Experiment, RecordingError> {
     let open = verdict::open(found, left);
     if open.rivals.is_empty() {
-        return experiment::confirm(whole, &found.best, found.rivals.iter().flatten());
+        return experiment::confirm(whole, &found.best, found.rivals.iter().flatten(), leaves_a_part);
     }
     experiment::settle(whole, &found.best, &open)
 }

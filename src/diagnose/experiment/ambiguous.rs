@@ -1,7 +1,8 @@
 //! For an ambiguous answer: the input trajectory, and the sensor if needed, that would decide.
 
 use super::design::{
-    Candidate, DURATION_S, Experiment, Promise, Sensed, best_sensor, candidates, first, none_to_play, proposal,
+    Candidate, DURATION_S, Experiment, Promise, Sensed, Standing, best_sensor, candidates, first, none_to_play,
+    proposal,
 };
 use super::discrimination::{More, Question};
 use crate::diagnose::diagnosis::{NextExperiment, SETTLES_SIGMA};
@@ -75,15 +76,15 @@ fn settle_what_can_be(
     if promise.sigma > SURE_SIGMA {
         let winner = tried.swap_remove(at).swap_remove(winner);
         let sensor = best_sensor(question, std::slice::from_ref(&winner), promise.sigma);
-        return Ok(proposal(best, true, (winner, promise), sensor));
+        return Ok(proposal(best, Standing::Open, (winner, promise), sensor));
     }
     let sensed = sensed(question, &tried, &firsts).filter(|(_, sensor)| sensor.sigma > promise.sigma);
     Ok(match sensed {
-        None => proposal(best, true, (tried.swap_remove(at).swap_remove(winner), promise), None),
+        None => proposal(best, Standing::Open, (tried.swap_remove(at).swap_remove(winner), promise), None),
         Some((at, sensor)) => {
             let same = tried.swap_remove(at).swap_remove(sensor.candidate);
             let alone = first(question, std::slice::from_ref(&same)).map_or(promise, |(_, alone)| alone);
-            proposal(best, true, (same, alone), Some(sensor))
+            proposal(best, Standing::Open, (same, alone), Some(sensor))
         }
     })
 }

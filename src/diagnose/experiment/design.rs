@@ -35,6 +35,7 @@ impl Candidate {
 }
 
 /// The trajectory that best separates the answer from its closest alternative, for answers that are not ambiguous.
+/// `leaves_a_part`: no trajectory settles an answer that does not explain the recordings.
 ///
 /// # Errors
 /// Input columns without a known unit.
@@ -42,12 +43,16 @@ pub fn confirm<'a>(
     whole: &Problem,
     best: &Fit,
     rivals: impl Iterator<Item = &'a Fit>,
+    leaves_a_part: bool,
 ) -> Result<Experiment, RecordingError> {
     // Another law under the same name would be the same answer.
     let own_title = best.model.title();
     let others = rivals.filter(|rival| rival.model.title() != own_title);
     let Some(nearest) = others.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
         let why = match best.model.effects.is_empty() {
+            true if leaves_a_part => {
+                "nothing that is known here explains what is left, so no run decides anything: look where it is located"
+            }
             true => "nothing stays open that a rival could explain",
             false => "no other effect of the catalogue comes near",
         };
@@ -58,7 +63,18 @@ pub fn confirm<'a>(
     let Some((at, promise)) = first(&question, &programmes) else { return Ok(none_to_play()) };
     let winner = programmes.swap_remove(at);
     let sensor = best_sensor(&question, std::slice::from_ref(&winner), promise.sigma);
-    Ok(proposal(best, false, (winner, promise), sensor))
+    let standing = if leaves_a_part { Standing::InPart } else { Standing::Settled };
+    Ok(proposal(best, standing, (winner, promise), sensor))
+}
+
+/// How the answer stands to its nearest alternative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// Both explain the recordings.
+    Open,
+    Settled,
+    /// It is ahead, and explains the recordings in part.
+    InPart,
 }
 
 /// Least separation, and the alternative that has it.
@@ -89,14 +105,15 @@ pub(super) fn none_to_play() -> Experiment {
 
 pub(super) fn proposal(
     best: &Fit,
-    is_open: bool,
+    standing: Standing,
     (winner, promise): (Candidate, Promise),
     sensor: Option<Sensed>,
 ) -> Experiment {
     let [of_best, of_rival] = [best.model.title(), promise.rival.model.title()];
-    let question = match is_open {
-        true => format!("{of_best} and {of_rival} explain these recordings about equally well"),
-        false => format!("{of_best} is settled; the nearest rival is {of_rival}"),
+    let question = match standing {
+        Standing::Open => format!("{of_best} and {of_rival} explain these recordings about equally well"),
+        Standing::Settled => format!("{of_best} is settled; the nearest rival is {of_rival}"),
+        Standing::InPart => format!("{of_best} comes nearer than {of_rival}, and neither explains the recordings"),
     };
     let (sensor, sensor_sigma) = sensor.map(|s| (s.column, s.sigma)).unzip();
     let mut next = NextExperiment {

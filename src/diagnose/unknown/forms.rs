@@ -1,6 +1,7 @@
 //! Chooses among equally good fits, and the alternatives that an answer names.
 
 use super::elsewhere::elsewhere;
+use super::simpler::simpler;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
 use crate::diagnose::verdict::{self, misfit};
@@ -69,7 +70,7 @@ pub(in crate::diagnose) fn leaves_something(open: &Problem, fit: &Fit) -> bool {
     })
 }
 
-/// A fit with a law, and the converged fits with a law elsewhere that does the same. If one of these is better, also
+/// A fit with a law, the converged fits with a law elsewhere that does the same, and those with a simpler one. If one of these is better, also
 /// the alternatives to that one, which may bring another shape at the first place. `before`: chi² without the law.
 pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> {
     let others = |fit: &Fit| -> Vec<Fit> {
@@ -79,6 +80,7 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
         parallel::map(&named, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect()
     };
     let mut fits = others(&fit);
+    fits.extend(simpler(open, &fit));
     let better = fits.iter().filter(|other| other.cost < fit.cost - SAME_LAW).min_by(|a, b| a.cost.total_cmp(&b.cost));
     let more = better.map(others);
     fits.extend(more.into_iter().flatten());

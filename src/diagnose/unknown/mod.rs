@@ -14,6 +14,7 @@ pub(super) mod one_law;
 pub(super) mod pair;
 mod shape_refits;
 mod shown;
+mod simpler;
 mod span;
 pub(super) mod stand_ins;
 mod sums;
