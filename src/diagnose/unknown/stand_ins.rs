@@ -2,6 +2,7 @@
 
 use super::forms::{CLEARLY, Criterion, leaves_something, other_forms, tie, with_elsewhere};
 use super::grown::in_its_place;
+use super::simpler::simpler;
 use super::tried::Lawful;
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
@@ -49,7 +50,12 @@ pub(in crate::diagnose) fn of_several(case: &Case, noise: &[Noise], found: &mut 
         let criterion = Criterion::of(&open, [&last]);
         let better = again.into_iter().flatten().chain(elsewhere).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let better = better.filter(|better| criterion.at(better) < criterion.at(&last) - CLEARLY);
-        exchanged = exchanged.or(better);
+        // What came later may have made a part of it idle.
+        let simple = || {
+            let simple = simpler(&open, &last).into_iter().min_by(|a, b| criterion.at(a).total_cmp(&criterion.at(b)));
+            simple.filter(|simple| criterion.at(simple) < criterion.at(&last))
+        };
+        exchanged = exchanged.or(better).or_else(simple);
     }
     found.forms = all;
     // Should it not stand, what was found keeps its forms.
