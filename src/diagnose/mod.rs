@@ -143,9 +143,9 @@ fn answer(case: Case, explained: Explained, say: &dyn Fn(String)) -> Result<Outc
     warnings.extend(specimens::words(&case, &specimens));
     let withheld = found.withheld.as_ref().map_or_else(Vec::new, |known| verdict::named(known, &known.best, left));
     let said = if withheld.is_empty() { &effects } else { &withheld };
-    let location = location::location(&case, &found, said, &whole, &before, verdict);
-    say("next experiment".to_owned());
     let leaves_a_part = verdict == Verdict::UnknownPhysics && verdict::leaves_a_part(&found, excess);
+    let location = location::location(&case, &found, said, &whole, &before, (verdict, leaves_a_part));
+    say("next experiment".to_owned());
     let experiment = next_experiment(&whole, &found, left, leaves_a_part)?;
     let just_visible = found.screened.iter().filter_map(Screened::just_visible).collect();
     let mut diagnosis = Diagnosis {

@@ -22,17 +22,20 @@ pub fn location(
     effects: &[NamedEffect],
     whole: &Problem,
     before: &[Vec<Vec<f64>>],
-    verdict: Verdict,
+    (verdict, leaves_a_part): (Verdict, bool),
 ) -> Location {
     if verdict == Verdict::Adequate {
         return Location::default();
     }
     let open = Problem { case, runs: case.subset(RunSet::Open), noise: whole.noise };
     let is_law = effects.iter().any(|e| e.hypothetical);
-    let latents = if is_law || effects.is_empty() { of_baseline(&open, &found.baseline) } else { Vec::new() };
+    // Effects of the catalogue that explain everything give the place; those that explain a part stand where they happen to.
+    let is_asked = is_law || effects.is_empty() || leaves_a_part;
+    let latents = if is_asked { of_baseline(&open, &found.baseline) } else { Vec::new() };
     let by_place = by_place(found, &latents);
     let ranked = if by_place.is_empty() { by_probability(found, effects) } else { by_place };
-    let law = effects.iter().rfind(|e| e.hypothetical).map(|e| e.element.clone());
+    // A law that the held-out runs refuse is no witness.
+    let law = effects.iter().rfind(|e| e.hypothetical && found.withheld.is_none()).map(|e| e.element.clone());
     Location {
         element: law.or_else(|| ranked.first().map(|(e, _)| e.clone())),
         ranked,
@@ -43,7 +46,7 @@ pub fn location(
     }
 }
 
-/// Balances of the calibrated scene's misfit. Empty if effects of the catalogue explain it: they give the place.
+/// Balances of the calibrated scene's misfit.
 fn of_baseline(open: &Problem, baseline: &Fit) -> Vec<Latent> {
     let known = open.rows_of(baseline);
     known.map_or_else(Vec::new, |known| latents(open, baseline, &known))

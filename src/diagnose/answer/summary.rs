@@ -87,7 +87,10 @@ fn place(location: &Location) -> String {
         return String::new();
     }
     let ports: Vec<&str> = near.iter().map(|b| b.port.as_str()).collect();
-    format!(" (something unknown at {} leaves no other balance open)", ports.join(" or "))
+    // An answer may stand elsewhere than the balances alone would have it.
+    let agrees = near.iter().any(|b| location.element.as_ref() == Some(&b.element));
+    let though = if agrees { "" } else { "though " };
+    format!(" ({though}something unknown at {} leaves no other balance open)", ports.join(" or "))
 }
 
 /// Probability from which laws at other ports are mentioned.
@@ -164,4 +167,30 @@ fn mere_number(effect: &NamedEffect) -> Option<String> {
         "scales" => format!("{} times {:.4}", effect.port, 1.0 + constant),
         _ => format!("{} of {constant:.4e} in SI units", effect.port),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sentence does not contradict itself where an answer stands elsewhere than the balances point.
+    #[test]
+    fn balances_that_point_elsewhere_are_said_as_such() {
+        let balance = |port: &str, element: &str, behind| Balance {
+            port: port.to_owned(),
+            element: element.to_owned(),
+            behind,
+            left_sigma: std::collections::BTreeMap::new(),
+            closes: true,
+        };
+        let balances = vec![balance("muscle.pull", "muscle", 0.0), balance("line.outflow", "line", 50.0)];
+        let at = |element: &str| Location {
+            element: Some(element.to_owned()),
+            balances: balances.clone(),
+            ..Location::default()
+        };
+        let said = "something unknown at muscle.pull leaves no other balance open)";
+        assert_eq!(place(&at("muscle")), format!(" ({said}"));
+        assert_eq!(place(&at("line")), format!(" (though {said}"));
+    }
 }
