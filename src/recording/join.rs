@@ -50,6 +50,7 @@ impl RecordingSet {
     ///
     /// # Errors
     /// As [`RecordingSet::load_run`], but for starts that are unknown.
+    #[doc(hidden)]
     pub fn starts(&self, run: &Run) -> Result<Vec<Start>, RecordingError> {
         let parts = self.parts(run, &self.channels_of(run))?;
         Ok(starts(run, &parts))
