@@ -94,6 +94,9 @@ fn stamps_in_both_files_are_one_clock() {
     let set = SET.replace("file = \"camera.csv\"\n", "file = \"camera.csv\"\nstarts_s = 1.2\n");
     fs::write(here.path().join("recordings.toml"), set).expect("written");
     check(&load(here.path()).expect("joined"), 0.2);
+    let other = folder(SET, &logger(|i| stamp(10 * i)), &camera(|i| stamp(600_000 + 40 * i)));
+    let said = load(other.path()).expect_err("ten minutes later").to_string();
+    assert!(said.contains("no moment in common") && said.contains("say what is right as starts_s"), "{said}");
 }
 
 /// The remedy of the message is what is to be written, and it is nearly the truth.
@@ -165,4 +168,27 @@ fn import_describes_the_further_file_and_where_it_begins() {
     );
     let said = String::from_utf8_lossy(&done.stderr);
     assert!(done.status.code() == Some(2) && said.contains("--also names 2 files, and there are 1 runs"), "{said}");
+    let done = smam(&["import", ".", "--scene", "muscle_bench", "--force", "--also", "camera.csv"], here.path());
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.code() == Some(2) && said.contains("--also: . is a folder"), "{said}");
+
+    // A motion that repeats itself is begun nowhere by guess.
+    let sine = |text: &str, of: fn(f64) -> f64, interval_s: f64, mark: &str| {
+        let mut own = format!("{text}\n");
+        (0..(20.0 / interval_s) as usize).for_each(|i| {
+            let t = interval_s * i as f64;
+            writeln!(own, "{t:.2}{mark}{:.5}", of(t)).expect("a text");
+        });
+        own
+    };
+    let logger = sine("time_s,plunger_mm", |t| 1.0 - (2.0 * t).cos(), 0.01, ",");
+    let camera = sine("time_s;elongation_mm", |t| 9.0 - 9.0 * (2.0 * (t + 1.4)).cos(), 0.04, ";");
+    fs::write(here.path().join("logger.csv"), logger).expect("written");
+    fs::write(here.path().join("camera.csv"), camera).expect("written");
+    let done =
+        smam(&["import", "logger.csv", "--scene", "muscle_bench", "--force", "--also", "camera.csv"], here.path());
+    let said = String::from_utf8_lossy(&done.stderr);
+    let written = fs::read_to_string(here.path().join("recordings.toml")).expect("written");
+    assert!(done.status.code() == Some(1) && said.contains("the motion repeats itself"), "{said}");
+    assert!(!written.contains("starts_s"), "{written}");
 }

@@ -13,7 +13,7 @@ use smam::stock;
 
 use super::CliError;
 use super::files::{make_folder, write};
-use super::import_also::{also_guesses, fill_in_starts};
+use super::import_also::{also_guesses, fill_in_starts, refuse_folders};
 use super::import_files::{Described, describe, files};
 use super::words::quoted;
 
@@ -46,6 +46,7 @@ pub struct ImportArguments {
 
 /// Runs the command. Exit code 1 when what was written has to be completed before it can be read.
 pub fn import(arguments: &ImportArguments) -> Result<ExitCode, CliError> {
+    refuse_folders(&arguments.also, &arguments.files)?;
     let files = files(&arguments.files)?;
     let folder = arguments.out.clone().unwrap_or_else(|| folder_of(&files[0].path));
     let written = folder.join(SET_FILE_NAME);

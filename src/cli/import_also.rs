@@ -6,6 +6,18 @@ use smam::recording::{AlsoGuess, Guess, LinedUp, RecordingSet, Start, Wanted, gu
 
 use super::CliError;
 
+/// Refuses further files beside a folder, whose order nobody has given: a file would go to another's run.
+pub fn refuse_folders(also: &[PathBuf], given: &[PathBuf]) -> Result<(), CliError> {
+    match given.iter().find(|path| path.is_dir()).filter(|_| !also.is_empty()) {
+        None => Ok(()),
+        Some(folder) => Err(CliError::Usage(format!(
+            "--also: {} is a folder, and further files go to runs in their order\n  remedy: name the files of the runs, then --also and \
+             theirs",
+            folder.display()
+        ))),
+    }
+}
+
 /// One further file for each run, in their order.
 pub fn also_guesses(also: &[PathBuf], runs: &[Guess], channels: &[Wanted]) -> Result<Vec<AlsoGuess>, CliError> {
     if !also.is_empty() && also.len() != runs.len() {
@@ -21,17 +33,17 @@ pub fn also_guesses(also: &[PathBuf], runs: &[Guess], channels: &[Wanted]) -> Re
     also.iter().map(guessed).collect()
 }
 
-/// Fills in where each begins, as far as its motion tells; what is in the way of reading it will be said when it is read.
+/// Fills in where each begins, as far as its motion tells one place; what is in the way of reading it, or that there are several, will be
+/// said when it is read.
 pub fn fill_in_starts(also: &mut [AlsoGuess], text: &str, written: &Path) {
     let Ok(set) = RecordingSet::parse(text, written) else { return };
     for (file, run) in also.iter_mut().zip(&set.runs) {
-        if let Some(Start::Likely(found)) = set.starts(run).ok().and_then(|starts| starts.first().copied()) {
-            file.starts_s = Some((found.starts_s, said(found)));
+        let start = set.starts(run).ok().and_then(|starts| starts.first().copied());
+        if let Some(Start::Likely(LinedUp { starts_s, likeness, or_s: None })) = start {
+            let said = format!(
+                "    # likely: there it moves when the run's file does (likeness {likeness:.2} of 1; what lags counts as late)"
+            );
+            file.starts_s = Some((starts_s, said));
         }
     }
-}
-
-fn said(LinedUp { likeness, or_s, .. }: LinedUp) -> String {
-    let or = or_s.map_or(String::new(), |s| format!("; {s:.3} is as likely: the motion repeats itself"));
-    format!("    # likely: there it moves when the run's file does (likeness {likeness:.2} of 1){or}")
 }

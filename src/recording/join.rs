@@ -222,9 +222,16 @@ fn outside(part: &Part, shift_s: f64, main: &Part) -> RecordingError {
         let t = recording.time_s();
         format!("{:.3} to {:.3} s", t[0] + shift_s, t[t.len() - 1] + shift_s)
     };
+    let remedy = match part.seen.seconds_after(&main.seen) {
+        Some(stamped_s) if stamped_s == shift_s => {
+            "these are not of one run, or the stamps are of clocks that differ: say what is right as starts_s"
+                .to_owned()
+        }
+        Some(_) => format!("correct starts_s, now {shift_s:.3}; left out, the stamps decide"),
+        None => format!("correct starts_s, now {shift_s:.3}; left out, it is looked for"),
+    };
     let problem = format!(
-        "its rows are of {} in the time of {}, which has {}: they have no moment in common\n  remedy: correct starts_s, now {shift_s:.3}; left \
-         out, it is looked for",
+        "its rows are of {} in the time of {}, which has {}: they have no moment in common\n  remedy: {remedy}",
         span(&part.run.recording, shift_s),
         main.name,
         span(&main.run.recording, 0.0)

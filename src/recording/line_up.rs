@@ -1,7 +1,8 @@
 //! Two recordings of one motion whose clocks were started by hand: by how much one lies behind the other.
 //!
-//! Whatever the two measure, it moves when the rig moves: compared is how fast each changes, without its sign. The shift is that at
-//! which these speeds are most alike. What truly lags behind the motion is taken for a late clock: that is said to the user.
+//! Whatever the two measure, it moves when the rig moves: compared is how fast each changes, either way round (a triangle goes at one speed
+//! and differs in direction alone), and without its sign (what is bent goes one way twice). The shift is that at which these speeds are most
+//! alike. What truly lags behind the motion is taken for a late clock: that is said to the user.
 
 use super::median_interval_s;
 
@@ -11,8 +12,9 @@ const MOST_POINTS: f64 = 4000.0;
 const REACH: usize = 2;
 /// Speeds less alike than this say nothing.
 const LEAST_LIKENESS: f64 = 0.5;
-/// Another shift within this of the best's likeness is as good.
-const AS_GOOD: f64 = 0.95;
+/// Another shift is as good if the variance that is not in common is at most so many times the best's, or this share.
+const AS_GOOD: f64 = 2.0;
+const LEAST_APART: f64 = 0.02;
 
 /// Something that was seen to move.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +43,9 @@ pub(super) fn line_up(first: Motion<'_>, second: Motion<'_>) -> Option<LinedUp> 
     let (a, b) = (speeds(first, interval_s), speeds(second, interval_s));
     let least = (a.len().min(b.len()) / 2).max(4) as isize;
     let shifts: Vec<isize> = (least - b.len() as isize..=a.len() as isize - least).collect();
-    let likeness: Vec<f64> = shifts.iter().map(|shift| likeness(&a, &b, *shift)).collect();
+    let [a_without, b_without] = [&a, &b].map(|speeds| speeds.iter().map(|v| v.abs()).collect::<Vec<_>>());
+    let likest = |shift: &isize| likeness(&a, &b, *shift).abs().max(likeness(&a_without, &b_without, *shift));
+    let likeness: Vec<f64> = shifts.iter().map(likest).collect();
     let best = (0..likeness.len()).max_by(|i, j| likeness[*i].total_cmp(&likeness[*j]))?;
     if likeness[best] < LEAST_LIKENESS {
         return None;
@@ -58,7 +62,7 @@ fn extent(motion: Motion<'_>) -> Option<(f64, f64)> {
     (to > from).then_some((from, to))
 }
 
-/// How fast it changes at even instants, without sign.
+/// How fast it changes at even instants.
 fn speeds(motion: Motion<'_>, interval_s: f64) -> Vec<f64> {
     let known: Vec<(f64, f64)> =
         motion.time_s.iter().copied().zip(motion.values.iter().copied()).filter(|(_, v)| !v.is_nan()).collect();
@@ -71,7 +75,7 @@ fn speeds(motion: Motion<'_>, interval_s: f64) -> Vec<f64> {
         v0 + (v1 - v0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0)
     };
     let values: Vec<f64> = (0..points).map(value).collect();
-    let speed = |at: usize| (values[(at + REACH).min(points - 1)] - values[at.saturating_sub(REACH)]).abs();
+    let speed = |at: usize| values[(at + REACH).min(points - 1)] - values[at.saturating_sub(REACH)];
     (0..points).map(speed).collect()
 }
 
@@ -103,7 +107,9 @@ fn vertex(values: &[f64], at: usize) -> f64 {
 
 /// A peak elsewhere that is as high as the best one.
 fn as_good(values: &[f64], best: usize) -> Option<usize> {
-    let is_high = |index: usize| values[index] >= AS_GOOD * values[best];
+    let apart = |index: usize| 1.0 - values[index].powi(2);
+    let most = (AS_GOOD * apart(best)).max(LEAST_APART);
+    let is_high = |index: usize| apart(index) <= most;
     let left = (0..best).rev().find(|i| !is_high(*i)).unwrap_or(0);
     let right = (best..values.len()).find(|i| !is_high(*i)).unwrap_or(values.len());
     let others = (0..left).chain(right..values.len()).filter(|i| is_high(*i));
@@ -143,6 +149,18 @@ mod tests {
             assert!((found.starts_s - starts_s).abs() < 0.02, "{starts_s}: {found:?}");
             assert!(found.or_s.is_none() && found.likeness > 0.9, "{starts_s}: {found:?}");
         }
+    }
+
+    /// Which goes up and down at one speed, once higher than the other time.
+    #[test]
+    fn a_triangle_is_lined_up_by_its_turns() {
+        let triangle = |t: f64| 6.0 - (t - 6.0).abs().min((t - 21.0).abs() - 3.0).min(6.0);
+        let (t, plunger) = sampled(0.0, 0.01, 3200, triangle);
+        let (own_s, mut seen) = sampled(0.0, 0.04, 760, |t| 9.0 * triangle(t + 1.3));
+        seen.iter_mut().enumerate().for_each(|(i, v)| *v += 0.3 * noise(i));
+        let found = line_up(Motion { time_s: &t, values: &plunger }, Motion { time_s: &own_s, values: &seen });
+        let found = found.expect("alike");
+        assert!((found.starts_s - 1.3).abs() < 0.02 && found.likeness > 0.9, "{found:?}");
     }
 
     #[test]
