@@ -60,7 +60,7 @@ pub struct DiagnoseArguments {
     /// Threads [default: all cores]; the answer does not depend on it
     #[arg(long, value_parser = threads())]
     threads: Option<usize>,
-    /// Say at each step how many seconds have gone by, and how many million samples have been simulated
+    /// Say at each step how many seconds have gone by, and how many million time steps have been simulated
     #[arg(long)]
     timings: bool,
 }
@@ -117,7 +117,7 @@ pub fn diagnose(arguments: &DiagnoseArguments) -> Result<ExitCode, CliError> {
     let (start, effort) = (Instant::now(), case.effort.watched());
     let progress = |line: String| match arguments.timings {
         true => {
-            let [seconds, millions] = [start.elapsed().as_secs_f64(), effort.samples() as f64 * 1e-6];
+            let [seconds, millions] = [start.elapsed().as_secs_f64(), effort.time_steps() as f64 * 1e-6];
             eprintln!("{seconds:7.1} s {millions:7.1} M  {line}");
         }
         false => eprintln!("{line}"),

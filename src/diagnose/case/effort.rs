@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Samples simulated after which no optional step begins: some two minutes on two cores for a pulley (ADR 0022). What has begun goes on to its end, and what checks an answer is never optional.
-const ENOUGH: u64 = 60_000_000;
+/// Time steps of the reduced-order model after which no optional step of the search begins: some two minutes on two cores for a pulley
+/// (ADR 0022). What has begun goes on to its end, and what checks an answer is never optional.
+const ENOUGH: u64 = 240_000_000;
 
 /// A step that a search can do without, at the risk of another answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,28 +31,28 @@ impl Optional {
     }
 }
 
-/// Samples that the reduced-order model has simulated, and optional steps that were not begun.
+/// Time steps that the reduced-order model has taken, and optional steps of the search that were not begun.
 #[derive(Debug, Default)]
 pub struct Effort {
-    samples: Arc<AtomicU64>,
+    time_steps: Arc<AtomicU64>,
     not_begun: Arc<Mutex<BTreeSet<Optional>>>,
     is_thorough: bool,
 }
 
 impl Effort {
-    pub(in crate::diagnose) fn add(&self, samples: usize) {
-        self.samples.fetch_add(samples as u64, Ordering::Relaxed);
+    pub(in crate::diagnose) fn add(&self, time_steps: u64) {
+        self.time_steps.fetch_add(time_steps, Ordering::Relaxed);
     }
 
     /// The same wherever no simulation is under way.
-    pub fn samples(&self) -> u64 {
-        self.samples.load(Ordering::Relaxed)
+    pub fn time_steps(&self) -> u64 {
+        self.time_steps.load(Ordering::Relaxed)
     }
 
     /// The same count, to look at from elsewhere.
     pub fn watched(&self) -> Self {
-        let (samples, not_begun) = (Arc::clone(&self.samples), Arc::clone(&self.not_begun));
-        Self { samples, not_begun, is_thorough: self.is_thorough }
+        let (time_steps, not_begun) = (Arc::clone(&self.time_steps), Arc::clone(&self.not_begun));
+        Self { time_steps, not_begun, is_thorough: self.is_thorough }
     }
 
     /// Every step is worth its cost.
@@ -61,7 +62,7 @@ impl Effort {
 
     /// Whether an optional step may begin; if not, it is noted. Asked only where no simulation is under way.
     pub(in crate::diagnose) fn allows(&self, step: Optional) -> bool {
-        let is_allowed = self.is_thorough || self.samples() < ENOUGH;
+        let is_allowed = self.is_thorough || self.time_steps() < ENOUGH;
         if !is_allowed {
             self.not_begun.lock().unwrap_or_else(PoisonError::into_inner).insert(step);
         }
@@ -74,7 +75,7 @@ impl Effort {
         let words: Vec<&str> = steps.iter().map(|step| step.words()).collect();
         (!words.is_empty()).then(|| {
             format!(
-                "the search ended after {} million simulated samples without {}: --thorough goes on to the end",
+                "the search ended after {} million time steps without {}: --thorough goes on to the end",
                 ENOUGH / 1_000_000,
                 words.join(", ")
             )
@@ -98,14 +99,14 @@ mod tests {
         let effort = Effort::default();
         let (copy, watched) = (effort.clone(), effort.watched());
         effort.add(11);
-        assert_eq!([effort.samples(), watched.samples(), copy.samples()], [11, 11, 0]);
+        assert_eq!([effort.time_steps(), watched.time_steps(), copy.time_steps()], [11, 11, 0]);
     }
 
     #[test]
     fn what_is_not_begun_is_said_unless_all_is_wanted() {
         let mut effort = Effort::default();
         assert!(effort.allows(Optional::SecondLaw) && effort.note().is_none());
-        effort.add(usize::try_from(ENOUGH).expect("a few millions"));
+        effort.add(ENOUGH);
         assert!(!effort.allows(Optional::SecondLaw) && !effort.allows(Optional::WiderLaws));
         let note = effort.note().expect("something was left out");
         assert!(

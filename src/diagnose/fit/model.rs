@@ -163,7 +163,7 @@ pub(in crate::diagnose) fn simulate_many(
 ) -> Vec<Option<Vec<Vec<f64>>>> {
     let compared =
         |series: Vec<Vec<f64>>| case.channels.iter().map(|c| series[c.output][run.lead_in..].to_vec()).collect();
-    case.effort.add(settings.len() * run.drive.times_s.len());
+    case.effort.add(settings.len() as u64 * run.rom.steps(&run.drive));
     let many = run.rom.simulate_many(&run.drive, settings);
     many.into_iter().map(|series| series.map(compared)).collect()
 }

@@ -3,14 +3,17 @@
 use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::{Model, Problem};
 use crate::recording::figures::{correlation, spread};
-use crate::recording::{BySize, PiecewiseLinear, noise_sd, strays, unit_by_size};
-use crate::scene::{Quantity, Scene};
+use crate::recording::{BySize, PiecewiseLinear, noise_sd, parse_column, strays, unit_by_size};
+use crate::scene::{InputSpec, Quantity, Scene};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
 /// Minimum number of samples.
 const LEAST_SAMPLES: usize = 200;
 /// Share of samples at one end value from which a channel is saturated.
 const SATURATED_SHARE: f64 = 0.2;
+
+/// Held-out runs go farther than the open ones if they exceed their range by this share of it.
+const FARTHER: f64 = 0.1;
 
 /// Reasons for refusing, and warnings.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +33,7 @@ pub(in crate::diagnose) fn preflight(case: &Case, problem: &Problem) -> Result<P
         found.unusable.push(format!("only {samples} samples: record at least some ten seconds at 50 Hz"));
     }
     inputs(case, &mut found);
+    found.warnings.extend(goes_farther_held_out(case));
     channels(case, &mut found);
     // A scene that nothing drives stands still: its spread says nothing of units.
     if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
@@ -77,6 +81,31 @@ fn inputs(case: &Case, found: &mut Preflight) {
             ));
         }
     }
+}
+
+/// Inputs that leave, in held-out runs, what the open ones went through: nothing there was fitted.
+fn goes_farther_held_out(case: &Case) -> Vec<String> {
+    let words = |(i, input): (usize, &InputSpec)| {
+        let values = |is_held_out: bool| -> Vec<f64> {
+            let runs = case.runs.iter().filter(|run| run.is_held_out == is_held_out);
+            runs.flat_map(|run| run.drive.inputs[i][run.lead_in..].iter().copied()).collect()
+        };
+        let ([low, high], [lowest, highest]) = (ends(&values(false)).into(), ends(&values(true)).into());
+        let beyond = FARTHER * (high - low);
+        let (to, end) = match (lowest < low - beyond, highest > high + beyond) {
+            (true, _) => (lowest, low),
+            (false, true) => (highest, high),
+            (false, false) => return None,
+        };
+        let unit = parse_column(&input.channel).ok()?.unit;
+        Some(format!(
+            "{}: goes to {:.4} where it is held out, and to {:.4} where it is fitted: the held-out error there says how the answer extrapolates",
+            input.channel,
+            unit.from_si(to),
+            unit.from_si(end)
+        ))
+    };
+    case.scene.file.input.iter().enumerate().filter_map(words).collect()
 }
 
 fn channels(case: &Case, found: &mut Preflight) {
@@ -214,4 +243,24 @@ fn other_zero(column: &str, off: f64) -> String {
 
 fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::made;
+
+    #[test]
+    fn a_held_out_run_that_goes_farther_is_said_in_the_unit_of_its_column() {
+        let mut case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        assert!(case.runs.iter().any(|run| run.is_held_out) && goes_farther_held_out(&case).is_empty());
+        let open = case.runs.iter().filter(|run| !run.is_held_out).flat_map(|run| &run.drive.inputs[0]);
+        let (low, high) = open.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+        let held_out = case.runs.iter_mut().find(|run| run.is_held_out).expect("one is held out");
+        let last = held_out.drive.inputs[0].last_mut().expect("samples");
+        *last = high + 0.2 * (high - low);
+        let said = goes_farther_held_out(&case);
+        let expected = format!("plunger_mm: goes to {:.4} where it is held out", 1e3 * (high + 0.2 * (high - low)));
+        assert!(said.len() == 1 && said[0].starts_with(&expected), "{said:?} {expected}");
+    }
 }

@@ -75,6 +75,11 @@ impl Rom {
         Some(Arc::from(plan))
     }
 
+    /// Steps that a simulation of a run takes.
+    pub(crate) fn steps(&self, run: &RomRun) -> u64 {
+        (1..run.times_s.len()).map(|k| u64::from(self.steps_in(run, k))).sum()
+    }
+
     /// Steps of the interval that ends at sample `k`.
     pub(super) fn steps_in(&self, run: &RomRun, k: usize) -> u16 {
         run.plan.as_ref().map_or_else(|| self.steps_by_rule(run, k), |plan| plan[k - 1])
