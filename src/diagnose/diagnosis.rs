@@ -111,7 +111,10 @@ pub struct NamedEffect {
     pub probability: f64,
     pub rivals: Vec<String>,
     pub parameters: BTreeMap<String, Estimate>,
-    /// Its first number as each run by itself would have it.
+    /// Its numbers differ from run to run: `parameters` are their means, with intervals that hold those of all runs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub differs_by_run: bool,
+    /// Its first number as each run by itself would have it; as each has it, if they differ.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub size_by_run: BTreeMap<String, Estimate>,
     /// Its expression; of a law outside the catalogue with its parameters, and behind semicolons what it remembers.

@@ -6,6 +6,7 @@ use super::diagnosis::Proof;
 use super::error::DiagnoseError;
 use super::fit::{Fit, Problem, Variant, baseline};
 use super::search::{Begun, Bound, Found, candidates, creep, detection_limit, discrepancy, reweight};
+use super::unknown::by_run::{by_run, untied};
 use super::unknown::hypothesis;
 use super::unknown::one_law::{OneLaw, one_law, one_law_from_effect};
 use super::unknown::pair::{self, Pair};
@@ -51,13 +52,38 @@ pub(super) fn explain(
             let begun = search.from(case, &base.noise, (base.fit, fit));
             search.several(case, begun, base.noise, *tried)?
         }
-        OneLaw::Part(tried) => search.several(case, begun, base.noise, *tried)?,
+        OneLaw::Part(tried) => match by_run(case, &base.noise, (&begun.found(), &variants), say) {
+            Some((found, noise)) => {
+                return differing(case, found, noise, ([warnings, base.warnings].concat(), seed), say);
+            }
+            None => search.several(case, begun, base.noise, *tried)?,
+        },
     };
     let explained = without_misplaced(case, explained, seed, say)?;
     let mut explained = at_better_places(case, explained, seed)?;
+    let noise = explained.noise.clone();
+    if let Some((found, noise)) = untied(case, &noise, &explained.found, say) {
+        return differing(case, found, noise, ([warnings, base.warnings].concat(), seed), say);
+    }
     explained.warnings = [warnings, base.warnings, case.notes()].concat();
     withhold_harm(case, &mut explained, seed, say)?;
     describe_discrepancy(case, &mut explained, &variants, seed, say);
+    hold_against_full_scene(case, &mut explained, seed, say);
+    Ok(explained)
+}
+
+/// The answer where numbers differ from run to run.
+fn differing(
+    case: &Case,
+    found: Found,
+    noise: Vec<Noise>,
+    (warnings, seed): (Vec<String>, u64),
+    say: &dyn Fn(String),
+) -> Result<Explained, DiagnoseError> {
+    say("held-out runs".to_owned());
+    let mut explained = proven(case, found, noise, seed)?;
+    explained.warnings = [warnings, case.notes()].concat();
+    withhold_harm(case, &mut explained, seed, say)?;
     hold_against_full_scene(case, &mut explained, seed, say);
     Ok(explained)
 }

@@ -4,7 +4,7 @@ use crate::diagnose::diagnosis::{Balance, Diagnosis, Location, NamedEffect, Verd
 
 /// The verdict in two sentences, with caveats.
 pub fn summary(d: &Diagnosis, caveats: &[String]) -> String {
-    let verdict = verdict(d);
+    let verdict = verdict(d) + &differing(d);
     if caveats.is_empty() { verdict } else { format!("{verdict} Read it with care: {}.", caveats.join("; ")) }
 }
 
@@ -19,6 +19,32 @@ fn verdict(d: &Diagnosis) -> String {
 
 fn title(e: &NamedEffect) -> String {
     placed(&e.name, &e.element, e.channel.as_deref())
+}
+
+/// The numbers of an effect that differs from run to run.
+fn in_each_run(e: &NamedEffect) -> Option<String> {
+    let acts = if e.acts == "scales" && e.hypothetical { 1.0 } else { 0.0 };
+    let each: Vec<String> =
+        e.size_by_run.iter().map(|(run, own)| format!("{:.4} in {run}", acts + own.value)).collect();
+    e.differs_by_run.then(|| each.join(", "))
+}
+
+/// What differs from run to run, in a sentence; nothing if nothing does.
+fn differing(d: &Diagnosis) -> String {
+    let one = |e: &NamedEffect| {
+        let what = if e.hypothetical { e.port.clone() } else { title(e) };
+        let key =
+            e.parameters.keys().next().filter(|_| !e.hypothetical).map_or(String::new(), |key| format!(" ({key})"));
+        in_each_run(e).map(|each| format!("{what}{key}: {each}"))
+    };
+    let all: Vec<String> = d.effects.iter().filter_map(one).collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    format!(
+        " It differs from run to run: {}. A new recording has a number of its own; scene.toml has the mean, and a held-out run has decided its own.",
+        all.join("; ")
+    )
 }
 
 /// An effect with its place.
@@ -164,6 +190,7 @@ fn mere_number(effect: &NamedEffect) -> Option<String> {
     let is_one = effect.hypothetical && effect.variables.is_empty() && !effect.port.is_empty();
     let constant = effect.parameters.values().next().filter(|_| is_one)?.value;
     Some(match effect.acts.as_str() {
+        _ if effect.differs_by_run => format!("{}, another in each run,", effect.port),
         "scales" => format!("{} times {:.4}", effect.port, 1.0 + constant),
         _ => format!("{} of {constant:.4e} in SI units", effect.port),
     })

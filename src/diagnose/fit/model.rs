@@ -1,5 +1,7 @@
 //! The model that is compared with recordings: calibrated parameters and a set of effects.
 
+use std::sync::Arc;
+
 use crate::effects::{Effect, Element, Entry, EntryId};
 use crate::system::RomSetting;
 
@@ -56,6 +58,9 @@ pub struct Model {
     pub values: Vec<Vec<f64>>,
     /// Of each effect: which of its parameters are fitted.
     pub fitted: Vec<Vec<usize>>,
+    /// Of each effect: the run that alone has it, by its file. Effects of one place, one for every run, are one effect whose numbers differ
+    /// from run to run.
+    pub only_in: Vec<Option<Arc<str>>>,
 }
 
 impl Model {
@@ -69,7 +74,11 @@ impl Model {
         if self.effects.is_empty() {
             return "calibration alone".to_owned();
         }
-        self.effects.iter().map(Placed::title).collect::<Vec<_>>().join(" + ")
+        let one = |i: usize| match self.of_each_run(i).first() {
+            None => Some(self.effects[i].title()),
+            Some(first) => (*first == i).then(|| format!("{}, different in each run", self.effects[i].title())),
+        };
+        (0..self.effects.len()).filter_map(one).collect::<Vec<_>>().join(" + ")
     }
 
     /// One effect more, its parameters starting at `values`.
@@ -79,7 +88,28 @@ impl Model {
         model.effects.push(placed.clone());
         model.values.push(values.to_vec());
         model.fitted.push((0..spec.parameters.len()).filter(|&i| spec.parameters[i].is_fitted).collect());
+        model.only_in.push(None);
         model
+    }
+
+    /// One effect more, with numbers of its own in each of these runs.
+    pub(in crate::diagnose) fn plus_in_each(&self, placed: &Placed, values: &[f64], files: &[Arc<str>]) -> Self {
+        files.iter().fold(self.clone(), |model, file| {
+            let mut model = model.plus(placed, values);
+            if let Some(last) = model.only_in.last_mut() {
+                *last = Some(Arc::clone(file));
+            }
+            model
+        })
+    }
+
+    /// The effects that are one with this one but for their run, if it belongs to a run; in the order of the runs.
+    pub(in crate::diagnose) fn of_each_run(&self, effect: usize) -> Vec<usize> {
+        if self.only_in[effect].is_none() {
+            return Vec::new();
+        }
+        let is_one = |i: &usize| self.only_in[*i].is_some() && self.effects[*i] == self.effects[effect];
+        (0..self.effects.len()).filter(is_one).collect()
     }
 
     /// Whether an effect may be added: once per element, except relaxation, which has a spectrum.
@@ -94,6 +124,7 @@ impl Model {
         model.effects.remove(index);
         model.values.remove(index);
         model.fitted.remove(index);
+        model.only_in.remove(index);
         model
     }
 
@@ -103,6 +134,7 @@ impl Model {
         model.effects.push(self.effects[index].clone());
         model.values.push(self.values[index].clone());
         model.fitted.push(self.fitted[index].clone());
+        model.only_in.push(self.only_in[index].clone());
         model
     }
 
@@ -124,6 +156,42 @@ impl Model {
         }
         effects
     }
+
+    /// The same as a run has them; of what differs from run to run, its own, or the mean in a run that nobody recorded.
+    pub(crate) fn effects_in(&self, file: Option<&str>, x: &[f64]) -> Vec<Effect<f64>> {
+        let all = self.effects_at(x);
+        let as_it_is_there = |i: usize| {
+            let of_each = self.of_each_run(i);
+            match of_each.first() {
+                None => Some(all[i].clone()),
+                Some(first) if *first != i => None,
+                Some(_) => Some(self.in_a_run(file, &of_each, &all)),
+            }
+        };
+        (0..all.len()).filter_map(as_it_is_there).collect()
+    }
+
+    fn in_a_run(&self, file: Option<&str>, of_each: &[usize], all: &[Effect<f64>]) -> Effect<f64> {
+        let own = of_each.iter().find(|i| self.only_in[**i].as_deref() == file);
+        own.map_or_else(|| mean(of_each, all), |own| all[*own].clone())
+    }
+
+    /// All numbers of one effect; of one that differs from run to run, their means.
+    pub(in crate::diagnose) fn values_of(&self, effect: usize, x: &[f64]) -> Vec<f64> {
+        let all = self.effects_at(x);
+        match &self.of_each_run(effect)[..] {
+            [] => all[effect].values.clone(),
+            of_each => mean(of_each, &all).values,
+        }
+    }
+}
+
+fn mean(of_each: &[usize], all: &[Effect<f64>]) -> Effect<f64> {
+    let mut mean = all[of_each[0]].clone();
+    for (n, value) in mean.values.iter_mut().enumerate() {
+        *value = of_each.iter().map(|i| all[*i].values[n]).sum::<f64>() / of_each.len() as f64;
+    }
+    mean
 }
 
 impl Model {
@@ -132,7 +200,7 @@ impl Model {
     pub(in crate::diagnose) fn setting(&self, case: &Case, run: &CaseRun, x: &[f64]) -> RomSetting<f64> {
         let parameters = case.rom_parameters(run, x);
         let mut effects = case.known_effects.clone();
-        effects.extend(self.effects_at(&x[case.parameters.len()..]));
+        effects.extend(self.effects_in(Some(&run.file), &x[case.parameters.len()..]));
         RomSetting { parameters, effects }
     }
 

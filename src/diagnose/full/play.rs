@@ -69,7 +69,7 @@ pub fn play_on_full(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Vec<Vec<f64
 /// # Errors
 /// Parameters that the scene's own checks refuse.
 pub fn full_simulation(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Simulation, DiagnoseError> {
-    let scene = corrected_run_scene(case, fit, run.specimen.as_deref(), &run.scene)?;
+    let scene = corrected_run_scene(case, fit, run)?;
     let columns: Vec<String> = scene.file.input.iter().map(|i| i.channel.clone()).collect();
     let mut simulation = Simulation::new(scene)?;
     for (column, values) in columns.iter().zip(&run.drive.inputs) {

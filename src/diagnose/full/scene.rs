@@ -6,7 +6,7 @@ use crate::laws::LawTable;
 use crate::scene::{Override, Scene, SceneError, SceneFile};
 use crate::stock;
 
-use crate::diagnose::case::Case;
+use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::Fit;
 
 /// The scene of a specimen (or of the only one) with the parameters of a fit, `suffix` added to its name. The mechanism's file is named by its full path: the
@@ -29,17 +29,18 @@ pub fn fitted_scene(
     file.name = format!("{}_{suffix}", file.name);
     file.title = title.to_owned();
     file.expect.clear();
-    let text = with_parameters(case, fit, specimen, file)?;
+    let text = with_parameters(case, fit, (specimen, None), file)?;
     Scene::parse(&text, &case.scene.path, &[])?;
     Ok(text)
 }
 
-/// The scene of a run of a specimen, its conditions kept, with the parameters of a fit.
+/// The scene of a run, its conditions kept, with the parameters of a fit.
 ///
 /// # Errors
 /// A fitted number that the scene's own checks refuse.
-pub fn corrected_run_scene(case: &Case, fit: &Fit, specimen: Option<&str>, base: &Scene) -> Result<Scene, SceneError> {
-    Scene::parse(&with_parameters(case, fit, specimen, base.file.clone())?, &case.scene.path, &[])
+pub fn corrected_run_scene(case: &Case, fit: &Fit, run: &CaseRun) -> Result<Scene, SceneError> {
+    let of = (run.specimen.as_deref(), Some(run.file.as_str()));
+    Scene::parse(&with_parameters(case, fit, of, run.scene.file.clone())?, &case.scene.path, &[])
 }
 
 /// A law under a name that no other has.
@@ -50,8 +51,14 @@ fn with_own_name(law: LawTable, others: &[LawTable]) -> LawTable {
     LawTable { name: name.unwrap_or_default(), ..law }
 }
 
-fn with_parameters(case: &Case, fit: &Fit, specimen: Option<&str>, mut file: SceneFile) -> Result<String, SceneError> {
-    let effects = fit.model.effects_at(&fit.x[case.parameters.len()..]);
+/// `specimen` and `run`: what numbers may belong to.
+fn with_parameters(
+    case: &Case,
+    fit: &Fit,
+    (specimen, run): (Option<&str>, Option<&str>),
+    mut file: SceneFile,
+) -> Result<String, SceneError> {
+    let effects = fit.model.effects_in(run, &fit.x[case.parameters.len()..]);
     file.law.retain(|law| !law.candidate);
     for effect in &effects {
         match effect.law_table() {

@@ -13,4 +13,4 @@ pub(super) use acting::{Action, injected};
 pub(super) use reading::Reading;
 pub(super) use shaped::{SECOND_SIZE, Term, candidate, curve, is_sum, scales_of_sum, sum, variant};
 pub(super) use shapes::{SHAPES, Shape};
-pub(super) use slots::{Place, Reach, SCALE, Slot, places, slots, steady};
+pub(super) use slots::{Place, Reach, SCALE, Slot, constants, places, slots, steady};

@@ -217,7 +217,7 @@ fn beyond(case: &Case, own: &Slot, all: &[Slot]) -> Vec<Slot> {
 
 /// Slots of constants that are parameters of the rig. Those that add to the fluid or pull are left out: a steady flow or
 /// pressure is physics.
-fn constants(case: &Case) -> Vec<Slot> {
+pub fn constants(case: &Case) -> Vec<Slot> {
     constants_at(case, is_parameter)
 }
 

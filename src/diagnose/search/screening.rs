@@ -189,6 +189,7 @@ impl<'a> Trial<'a> {
         model.effects.push(variant.placed.clone());
         model.values.push(values);
         model.fitted.push(vec![0]);
+        model.only_in.push(None);
         let parameters = problem.parameters(&model);
         let number = parameters[fit.x.len()];
         let small = probe(&number, 0.0, fit.x.len(), Sides::One);

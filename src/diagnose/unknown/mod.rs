@@ -2,6 +2,7 @@
 //!
 //! May import `verdict`, `search`, `latent`, `grammar`, `fit`, `case` and `diagnosis`.
 
+pub(super) mod by_run;
 mod elsewhere;
 mod forms;
 pub(super) mod freehand;

@@ -22,12 +22,15 @@ pub struct RunSizes {
 }
 
 /// Size of every effect by run: one least-squares step from the common fit, calibration held. Intervals grow with the
-/// run's residual. Logarithmic creep is excluded: its size is the stiffness at the first instant, which a run at rest
+/// run's residual. What differs from run to run anyway is left out, and logarithmic creep: its size is the stiffness at the first instant, which a run at rest
 /// hardly shows.
 pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let first = case.parameters.len();
     let mut sizes: Vec<RunSizes> = Vec::new();
-    let sizes_of = |&(_, (effect, index)): &(usize, (usize, usize))| index == 0 && !is_broad(&fit.model, effect);
+    let is_of_all = |effect: usize| fit.model.only_in[effect].is_none();
+    let sizes_of = |&(_, (effect, index)): &(usize, (usize, usize))| {
+        index == 0 && !is_broad(&fit.model, effect) && is_of_all(effect)
+    };
     for (place, (effect, index)) in fit.model.places().into_iter().enumerate().filter(sizes_of) {
         let key = fit.model.effects[effect].spec().parameters[index].key.as_str();
         let runs = case.runs.iter().filter_map(|run| {

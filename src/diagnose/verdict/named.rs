@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::misfit::Excess;
-use super::parameters::{add_branch, parameters};
+use super::parameters::{add_branch, over_runs, parameters, size_in_each};
 use super::written;
 use crate::diagnose::diagnosis::{NamedEffect, Verdict};
 use crate::diagnose::fit::{Fit, Placed};
@@ -80,6 +80,10 @@ pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess, is_open_s
 pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     let mut effects = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
+        let of_each = found.best.model.of_each_run(index);
+        if of_each.first().is_some_and(|first| *first != index) {
+            continue;
+        }
         let standing = standing(found, index, placed, left);
         let rivals = |own: &Placed| {
             standing.iter().filter(|(p, _, _)| !p.says_the_same(own)).map(|(p, _, _)| p.title()).collect::<Vec<_>>()
@@ -107,6 +111,12 @@ pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
                 ..NamedEffect::default()
             };
             written::describe(&mut named, rival, source, at);
+            let of_each = source.model.of_each_run(at);
+            if !of_each.is_empty() {
+                named.differs_by_run = true;
+                named.parameters = over_runs(source, &of_each);
+                named.size_by_run = size_in_each(source, &of_each);
+            }
             if is_best {
                 named.forms = written::forms(found.forms_of(index), found.best.cost, unit_of(found, left));
             }
@@ -156,6 +166,10 @@ pub struct Open<'a> {
 pub fn open(found: &Found, left: f64) -> Open<'_> {
     let mut rivals = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
+        let of_each = found.best.model.of_each_run(index);
+        if of_each.first().is_some_and(|first| *first != index) {
+            continue;
+        }
         let standing = standing(found, index, placed, left);
         let own =
             standing.iter().find(|(p, _, _)| p.says_the_same(placed)).map_or(1.0, |(_, probability, _)| *probability);

@@ -28,6 +28,28 @@ pub(super) fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate>
     parameters
 }
 
+/// Of an effect whose numbers differ from run to run: the mean of each over the runs, with an interval that holds those of all runs.
+pub(super) fn over_runs(fit: &Fit, of_each: &[usize]) -> BTreeMap<String, Estimate> {
+    let all: Vec<BTreeMap<String, Estimate>> = of_each.iter().map(|i| parameters(fit, *i)).collect();
+    let over = |key: &String| {
+        let each = || all.iter().map(|own| own[key]);
+        let value = each().map(|own| own.value).sum::<f64>() / all.len() as f64;
+        let low = each().fold(f64::INFINITY, |low, own| low.min(own.ci95[0]));
+        let high = each().fold(f64::NEG_INFINITY, |high, own| high.max(own.ci95[1]));
+        Estimate { value, ci95: [low, high] }
+    };
+    all.first().into_iter().flat_map(BTreeMap::keys).map(|key| (key.clone(), over(key))).collect()
+}
+
+/// The first number of an effect that differs from run to run, in each.
+pub(super) fn size_in_each(fit: &Fit, of_each: &[usize]) -> BTreeMap<String, Estimate> {
+    let size = |i: &usize| {
+        let (model, key) = (&fit.model, &fit.model.effects[*i].spec().parameters.first()?.key);
+        Some((model.only_in[*i].as_deref()?.to_owned(), parameters(fit, *i)[key.as_str()]))
+    };
+    of_each.iter().filter_map(size).collect()
+}
+
 /// Adds a further branch to an effect already named: its parameters get the next free number as suffix.
 pub(super) fn add_branch(effect: &mut NamedEffect, parameters: BTreeMap<String, Estimate>) {
     for (key, number) in parameters {

@@ -88,7 +88,7 @@ pub fn port(placed: &Placed) -> String {
 /// All parameters of an effect of a fit.
 fn values(fit: &Fit, effect: usize) -> Vec<f64> {
     let calibration = fit.x.len() - fit.model.effect_parameters();
-    fit.model.effects_at(&fit.x[calibration..])[effect].values.clone()
+    fit.model.values_of(effect, &fit.x[calibration..])
 }
 
 /// A law with fitted values: its expression, then its states.
