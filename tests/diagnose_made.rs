@@ -360,9 +360,14 @@ fn relaxation_over_decades_is_told_from_a_single_one() {
 
 /// Plays the runs of a folder again on another scene, with the noise that `sd` says.
 fn play_again(folder: &Path, scene: &Scene, sd: &[(&str, f64)]) {
+    play_each_again(folder, std::iter::repeat(scene.clone()), sd);
+}
+
+/// The same, the runs in the order of their names on one scene after another.
+fn play_each_again(folder: &Path, mut scenes: impl Iterator<Item = Scene>, sd: &[(&str, f64)]) {
     let mut random = ChaCha8Rng::seed_from_u64(11);
     change(folder, |recorded| {
-        let mut simulation = Simulation::new(scene.clone()).expect("builds");
+        let mut simulation = Simulation::new(scenes.next().expect("one for each run")).expect("builds");
         let line = recorded.piecewise_si("plunger_mm").expect("an input");
         simulation.set_input("plunger_mm", InputSource::Recorded(line));
         let played = record(&mut simulation, &Schedule::at(recorded.time_s().to_vec())).expect("runs");
@@ -398,6 +403,33 @@ fn a_candidate_law_of_the_scene_is_named_and_fitted() {
     assert!(!named.hypothetical && (named.parameters["a"].value - 0.05).abs() < 0.01, "{:?}", named.parameters);
     let text = outcome.scene_text().expect("a fit").unwrap_or_else(|e| panic!("{e}"));
     assert!(text.contains("[[law]]") && !text.contains("candidate"), "{text}");
+}
+
+/// A wall that is softer in every run: each has its number, the held-out one too, and the scene has their mean.
+#[test]
+fn a_wall_that_softens_from_run_to_run_has_a_number_in_each() {
+    let folder = short_specimen(None);
+    let soft = |scale: f64| {
+        let law = Override::parse(&format!("law.soft={{port=\"muscle.wall\", scales=\"{scale:?}\"}}")).expect("a law");
+        Scene::load("muscle_bench", &[law]).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let hidden = [1.0, 0.95, 0.92, 0.9];
+    play_each_again(folder.path(), hidden.into_iter().map(soft), &[("elongation_mm", 0.02), ("pressure_kpa", 5.0)]);
+    let case = Case::load(&[folder.path()], None, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let outcome = diagnose(case, Options { seed: 1 }, &|line| println!("  {line}")).unwrap_or_else(|e| panic!("{e}"));
+    let d = &outcome.diagnosis;
+    println!("{}", d.summary);
+    assert_eq!((d.verdict, d.modelled), (Verdict::UnknownPhysics, Some(true)));
+    let [wall] = &d.effects[..] else { panic!("{:?}", d.effects) };
+    assert!(wall.differs_by_run && wall.port == "muscle.wall" && wall.acts == "scales", "{wall:?}");
+    let numbers: Vec<f64> = wall.size_by_run.values().map(|own| 1.0 + own.value).collect();
+    for (number, hidden) in numbers.iter().zip(hidden) {
+        // What all runs share is the calibration's.
+        assert!((number / numbers[0] - hidden).abs() < 0.01, "{numbers:?}");
+    }
+    assert!(d.fit.gap_closed > 0.99 && d.summary.contains("differs from run to run: muscle.wall"), "{}", d.summary);
+    let text = outcome.scene_text().expect("a fit").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(text.matches("[[law]]").count(), 1, "{text}");
 }
 
 /// A sensor whose reading bends: proposed by the scene it is named with its size, and made up where nothing in the rig explains what the

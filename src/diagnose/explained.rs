@@ -13,7 +13,7 @@ use super::unknown::pair::{self, Pair};
 use super::unknown::tried::Tried;
 use super::unknown::{misplaced, stand_ins};
 use super::validation::{confirm, harm, prove};
-use super::verdict::{Confirmed, Excess, Residuals, misfit};
+use super::verdict::{Confirmed, Excess, Residuals, leaves_a_part, misfit};
 
 /// Result of the search and of the checks on held-out runs.
 pub(super) struct Explained {
@@ -62,7 +62,8 @@ pub(super) fn explain(
     let explained = without_misplaced(case, explained, seed, say)?;
     let mut explained = at_better_places(case, explained, seed)?;
     let noise = explained.noise.clone();
-    if let Some((found, noise)) = untied(case, &noise, &explained.found, say) {
+    let explains_a_part = explained.confirmed == Confirmed::InPart || leaves_a_part(&explained.found, explained.excess);
+    if explains_a_part && let Some((found, noise)) = untied(case, &noise, &explained.found, say) {
         return differing(case, found, noise, ([warnings, base.warnings].concat(), seed), say);
     }
     explained.warnings = [warnings, base.warnings, case.notes()].concat();

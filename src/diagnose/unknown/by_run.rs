@@ -13,7 +13,7 @@ use super::forms::{CLEARLY, Criterion, leaves_something};
 use crate::diagnose::case::{Case, Noise, RunSet, Step};
 use crate::diagnose::fit::{Fit, Model, Normal, Problem, Rows, Sides, Variant};
 use crate::diagnose::grammar::{constants, variant};
-use crate::diagnose::search::{Found, cross_validates, reweight};
+use crate::diagnose::search::{Found, cross_validates, leaves_much, reweight};
 use crate::parallel;
 
 /// Maximum number of things that differ, and of those refitted for each.
@@ -34,6 +34,10 @@ pub(in crate::diagnose) fn by_run(
     say: &dyn Fn(String),
 ) -> Option<(Found, Vec<Noise>)> {
     let open = asked(case, noise, found)?;
+    // What one effect leaves of itself is for other effects and laws.
+    if !leaves_much(&open, &found.baseline, &found.best) {
+        return None;
+    }
     let search = Search { open: &open, candidates: candidates(case, variants), left_share: LEFT_SHARE, say };
     let from_effect = Some(&found.best).filter(|best| !best.model.effects.is_empty());
     let all = [Some(&found.baseline), from_effect].into_iter().flatten().filter_map(|from| search.complete(from));
@@ -42,8 +46,8 @@ pub(in crate::diagnose) fn by_run(
     taken(case, noise, (found, own), say)
 }
 
-/// The effects of an answer that leaves something with numbers of their own in each run, if that explains everything; with renewed noise and
-/// steps.
+/// The effects of an answer that explains a part only with numbers of their own in each run, if that explains everything; with renewed noise
+/// and steps.
 pub(in crate::diagnose) fn untied(
     case: &mut Case,
     noise: &[Noise],
@@ -189,7 +193,8 @@ fn promised(
     let (in_each, step) = step_with(&added.jacobian)?;
     let (for_all, _) = step_with(&for_all_runs(&model, fit, &added.jacobian))?;
     let excess = fit.cost - open.noise_cost();
-    if (excess - in_each).max(0.0) > left_share * (excess - for_all).max(0.0) {
+    let is_one_for_all = in_each - for_all < CLEARLY;
+    if is_one_for_all || (excess - in_each).max(0.0) > left_share * (excess - for_all).max(0.0) {
         return None;
     }
     for ((x, step), p) in x.iter_mut().zip(step.iter()).zip(&parameters) {
@@ -319,5 +324,110 @@ fn decide_held_out(case: &Case, noise: &[Noise], fit: &mut Fit) {
             let Some(step) = normal.bounded_step(parameters, &fit.x[k..=k], 0.0) else { return };
             fit.x[k] = (fit.x[k] + step[0] * parameters[0].scale).clamp(parameters[0].min, parameters[0].max);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::{CaseRun, made};
+    use crate::diagnose::fit::simulate;
+    use crate::diagnose::search::candidates::variants as listed;
+
+    const SD_MM: f64 = 0.01;
+
+    /// Four runs of a bench, the last of them held out, on which something has another number in each.
+    fn rig(own: &Variant, numbers: [f64; 4]) -> Case {
+        let mut case = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let run = case.runs.iter().find(|run| run.is_held_out).cloned().expect("one is held out");
+        let stroke: Vec<f64> = run.drive.inputs[0].clone();
+        let runs = numbers.iter().enumerate().map(|(i, number)| {
+            let mut run = CaseRun { file: format!("{i}.csv"), is_held_out: i == 3, open_part: None, ..run.clone() };
+            run.drive.inputs[0] = stroke.iter().map(|x| x * (1.0 - 0.15 * i as f64)).collect();
+            let model = Model::baseline().plus(&own.placed, &[*number]);
+            let mut x: Vec<f64> = case.parameters.iter().map(|p| p.start).collect();
+            x.push(*number);
+            run.measured = simulate(&case, &run, &model, &x).expect("it can be simulated");
+            run
+        });
+        case.runs = runs.collect();
+        case
+    }
+
+    fn found(case: &Case, noise: &[Noise], effect: Option<&Variant>) -> Found {
+        let open = Problem { case, runs: case.subset(RunSet::Open), noise };
+        let baseline = open.fit(&Model::baseline(), &open.start(&Model::baseline(), None)).expect("a fit");
+        let best = effect.map_or_else(
+            || baseline.clone(),
+            |own| {
+                let model = Model::baseline().plus(&own.placed, &own.values);
+                open.fit(&model, &open.start(&model, None)).expect("a fit")
+            },
+        );
+        let (rivals, forms) = (vec![Vec::new(); best.model.effects.len()], vec![Vec::new(); best.model.effects.len()]);
+        let rivals_against = best.cost;
+        Found { baseline, best, rivals, rivals_against, screened: Vec::new(), forms, withheld: None, described: None }
+    }
+
+    fn sizes(case: &Case, found: &Found) -> Vec<f64> {
+        let in_run = |run: &CaseRun| {
+            found.best.model.effects_in(Some(&run.file), &found.best.x[case.parameters.len()..])[0].values[0]
+        };
+        case.runs.iter().map(in_run).collect()
+    }
+
+    fn wall(case: &Case) -> Variant {
+        let of_wall =
+            |own: &Variant| own.placed.spec().unlisted().is_some_and(|w| w.law.address.to_string() == "muscle.wall");
+        candidates(case, &[]).into_iter().find(of_wall).expect("a constant of the wall")
+    }
+
+    #[test]
+    fn a_wall_that_softens_has_a_number_in_each_run_and_the_mean_elsewhere() {
+        let plain = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let own = wall(&plain);
+        let mut case = rig(&own, [0.0, -0.06, -0.03, -0.1]);
+        let noise = [Noise::white(SD_MM)];
+        let first = found(&case, &noise, None);
+        let (answer, _) = by_run(&mut case, &noise, (&first, &[]), &|_| {}).expect("it explains everything");
+        let numbers = sizes(&case, &answer);
+        // What all runs share is the calibration's: ratios are those of the rig.
+        let ratio = |i: usize| (1.0 + numbers[i]) / (1.0 + numbers[0]);
+        assert_eq!(answer.best.model.effects.len(), 4);
+        for (i, hidden) in [1.0, 0.94, 0.97, 0.9].into_iter().enumerate() {
+            assert!((ratio(i) - hidden).abs() < 3e-3, "{i}: {numbers:?}");
+        }
+        let elsewhere = answer.best.model.effects_in(None, &answer.best.x[case.parameters.len()..]);
+        assert!(elsewhere.len() == 1 && (elsewhere[0].values[0] - numbers.iter().sum::<f64>() / 4.0).abs() < 1e-12);
+        assert_eq!(answer.best.model.title(), format!("{}, different in each run", own.placed.title()));
+    }
+
+    #[test]
+    fn a_logger_started_by_hand_is_late_by_another_time_in_each_run() {
+        let plain = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let late = listed(&plain);
+        let is_delay = |v: &&Variant| v.placed.spec().parameters[0].key == "delay_s";
+        let own = late.iter().find(is_delay).cloned().expect("of the catalogue");
+        let mut case = rig(&own, [0.02, 0.1, 0.05, 0.08]);
+        let noise = [Noise::white(SD_MM)];
+        let first = found(&case, &noise, Some(&own));
+        let (answer, _) = untied(&mut case, &noise, &first, &|_| {}).expect("it explains everything");
+        let numbers = sizes(&case, &answer);
+        for (number, hidden) in numbers.iter().zip([0.02, 0.1, 0.05, 0.08]) {
+            assert!((number - hidden).abs() < 2e-3, "{numbers:?}");
+        }
+    }
+
+    /// What is the same in all runs is no number of each.
+    #[test]
+    fn what_all_runs_share_is_not_tried_in_each() {
+        let plain = made::recorded("muscle_bench", &[], &["plunger_mm"], &["elongation_mm"]);
+        let own = wall(&plain);
+        let case = rig(&own, [-0.05; 4]);
+        let noise = [Noise::white(SD_MM)];
+        let first = found(&case, &noise, None);
+        let open = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let search = Search { open: &open, candidates: vec![own], left_share: LEFT_SHARE, say: &|_| {} };
+        assert!(search.one_more(&first.baseline).is_some_and(|fits| fits.is_empty()));
     }
 }
