@@ -62,7 +62,10 @@ pub(in crate::diagnose) fn untied(
 /// The open runs, if there are several and the answer leaves something of them.
 fn asked<'a>(case: &'a Case, noise: &'a [Noise], found: &Found) -> Option<Problem<'a>> {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
-    let is_asked = !case.is_without(Step::OpenSet) && open.runs.len() > 1 && leaves_something(&open, &found.best);
+    // Of several folders, runs may have one name.
+    let names: BTreeSet<&str> = open.runs.iter().map(|run| run.file.as_str()).collect();
+    let are_several = names.len() > 1 && names.len() == open.runs.len();
+    let is_asked = are_several && !case.is_without(Step::OpenSet) && leaves_something(&open, &found.best);
     is_asked.then_some(open)
 }
 
@@ -79,7 +82,7 @@ fn taken(
     if !is_better || !cross_validates(&open, &found.baseline, &own.best) {
         return None;
     }
-    let found = own.as_answer(found);
+    let found = own.into_answer(found);
     let former = case.runs.clone();
     let renewed = renewed(case, noise, &found);
     if renewed.is_none() {
@@ -106,7 +109,7 @@ struct Complete {
 
 impl Complete {
     /// The answer: effects of the catalogue in its place are rivals, constants of the rig other forms.
-    fn as_answer(self, found: &Found) -> Found {
+    fn into_answer(self, found: &Found) -> Found {
         let Self { best, others } = self;
         let count = best.model.effects.len();
         let (mut rivals, mut forms) = (vec![Vec::new(); count], vec![Vec::new(); count]);
@@ -304,7 +307,7 @@ fn renewed(case: &mut Case, noise: &[Noise], found: &Found) -> Option<(Found, Ve
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut fits = fits.into_iter();
     let own = Complete { best: fits.next()?, others: fits.collect() };
-    let mut found = Found { baseline: renewed.baseline, ..own.as_answer(found) };
+    let mut found = Found { baseline: renewed.baseline, ..own.into_answer(found) };
     decide_held_out(case, &renewed.noise, &mut found.best);
     Some((found, renewed.noise))
 }
@@ -312,7 +315,9 @@ fn renewed(case: &mut Case, noise: &[Noise], found: &Found) -> Option<(Found, Ve
 /// What belongs to a held-out run is decided by that run, as the zeros of its channels are; the rest of the model is known.
 fn decide_held_out(case: &Case, noise: &[Noise], fit: &mut Fit) {
     let n = case.parameters.len();
-    for run in case.subset(RunSet::HeldOut) {
+    let is_open = |file: &str| case.runs.iter().any(|run| !run.is_held_out && run.file == file);
+    // The end of a run that was cut has the number of its beginning.
+    for run in case.subset(RunSet::HeldOut).into_iter().filter(|run| !is_open(&run.file)) {
         let problem = Problem { case, runs: vec![run], noise };
         let file = problem.runs[0].file.as_str();
         let is_own = |(_, (effect, _)): &(usize, (usize, usize))| fit.model.only_in[*effect].as_deref() == Some(file);
