@@ -64,7 +64,9 @@ fn asked<'a>(case: &'a Case, noise: &'a [Noise], found: &Found) -> Option<Proble
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     // Of several folders, runs may have one name.
     let names: BTreeSet<&str> = open.runs.iter().map(|run| run.file.as_str()).collect();
-    let are_several = names.len() > 1 && names.len() == open.runs.len();
+    // Of runs that nothing drives each has elements of its own already.
+    let is_driven = !case.scene.file.input.is_empty();
+    let are_several = is_driven && names.len() > 1 && names.len() == open.runs.len();
     let is_asked = are_several && !case.is_without(Step::OpenSet) && leaves_something(&open, &found.best);
     is_asked.then_some(open)
 }
