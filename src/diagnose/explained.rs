@@ -44,47 +44,12 @@ pub(super) fn explain(
     say("baseline".to_owned());
     let base = baseline::baseline(case)?;
     let variants = candidates::variants(case);
-    let begun = Begun::with_one(&reweight::open_runs(case, &base.noise), base.fit.clone(), &variants, say);
+    let begun = Begun::with_one(&reweight::open_runs(case, &base.noise), base.fit, &variants, say);
     let search = Search { variants: &variants, seed, say };
-    let explained = match one_law(case, &base.noise, (&begun.found(), &variants), say) {
-        OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
-        OneLaw::Listed(fit, tried) => {
-            let begun = search.from(case, &base.noise, (base.fit, fit));
-            search.several(case, begun, base.noise, *tried)?
-        }
-        OneLaw::Part(tried) => match by_run(case, &base.noise, (&begun.found(), &variants), say) {
-            Some((found, noise)) => {
-                return differing(case, found, noise, ([warnings, base.warnings].concat(), seed), say);
-            }
-            None => search.several(case, begun, base.noise, *tried)?,
-        },
-    };
-    let explained = without_misplaced(case, explained, seed, say)?;
-    let mut explained = at_better_places(case, explained, seed)?;
-    let noise = explained.noise.clone();
-    let explains_a_part = explained.confirmed == Confirmed::InPart || leaves_a_part(&explained.found, explained.excess);
-    if explains_a_part && let Some((found, noise)) = untied(case, &noise, &explained.found, say) {
-        return differing(case, found, noise, ([warnings, base.warnings].concat(), seed), say);
-    }
+    let mut explained = search.searched(case, begun, base.noise)?;
     explained.warnings = [warnings, base.warnings, case.notes()].concat();
     withhold_harm(case, &mut explained, seed, say)?;
     describe_discrepancy(case, &mut explained, &variants, seed, say);
-    hold_against_full_scene(case, &mut explained, seed, say);
-    Ok(explained)
-}
-
-/// The answer where numbers differ from run to run.
-fn differing(
-    case: &Case,
-    found: Found,
-    noise: Vec<Noise>,
-    (warnings, seed): (Vec<String>, u64),
-    say: &dyn Fn(String),
-) -> Result<Explained, DiagnoseError> {
-    say("held-out runs".to_owned());
-    let mut explained = proven(case, found, noise, seed)?;
-    explained.warnings = [warnings, case.notes()].concat();
-    withhold_harm(case, &mut explained, seed, say)?;
     hold_against_full_scene(case, &mut explained, seed, say);
     Ok(explained)
 }
@@ -97,6 +62,28 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// One law, numbers that differ from run to run, several effects or several laws; where runs differ in what was found, with numbers for
+    /// each.
+    fn searched(&self, case: &mut Case, begun: Begun, noise: Vec<Noise>) -> Result<Explained, DiagnoseError> {
+        let (seed, say) = (self.seed, self.say);
+        let explained = match one_law(case, &noise, (&begun.found(), self.variants), say) {
+            OneLaw::All(found, noise) => proven(case, *found, noise, seed)?,
+            OneLaw::Listed(fit, tried) => {
+                let begun = self.from(case, &noise, (begun.found().baseline, fit));
+                self.several(case, begun, noise, *tried)?
+            }
+            OneLaw::Part(tried) => match by_run(case, &noise, (&begun.found(), self.variants), say) {
+                Some((found, noise)) => return proven(case, found, noise, seed),
+                None => self.several(case, begun, noise, *tried)?,
+            },
+        };
+        let explained = without_misplaced(case, explained, seed, say)?;
+        let explained = at_better_places(case, explained, seed)?;
+        let is_whole = explained.confirmed == Confirmed::Yes && !leaves_a_part(&explained.found, explained.excess);
+        let in_each = if is_whole { None } else { untied(case, &explained.noise, &explained.found, say) };
+        in_each.map_or(Ok(explained), |(found, noise)| proven(case, found, noise, seed))
+    }
+
     /// Begins with effects of the catalogue that laws have led to, beside the calibration.
     fn from(&self, case: &Case, noise: &[Noise], fits: (Fit, Fit)) -> Begun {
         Begun::again(&reweight::open_runs(case, noise), fits, self.variants, Vec::new(), self.say)

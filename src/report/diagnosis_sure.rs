@@ -38,10 +38,13 @@ fn by_run(page: &mut HtmlPage, effects: &[NamedEffect]) {
         return;
     }
     page.subheading("Run by run");
-    page.paragraph("The size of each effect as every run by itself would have it: one rig should give one value.");
+    page.paragraph(
+        "The size of each effect as every run by itself would have it: one rig should give one value. Where \"mean\" stands for \"all\", it differs \
+         from run to run, and each run has its own.",
+    );
     let rows: Vec<Vec<String>> = with_runs.iter().flat_map(|e| sizes_of(e)).collect();
     page.table(&["effect", "run", "parameter", "value", "95 % interval"], &rows);
-    with_runs.iter().filter_map(|e| missed(e)).for_each(|words| {
+    with_runs.iter().filter(|e| !e.differs_by_run).filter_map(|e| missed(e)).for_each(|words| {
         page.paragraph(&words);
     });
 }
@@ -52,7 +55,8 @@ fn sizes_of(e: &NamedEffect) -> Vec<Vec<String>> {
     let row = |run: &str, size: &Estimate| {
         [vec![e.name.clone(), run.to_owned(), key.to_owned()], estimate(key, e.channel.as_deref(), size)].concat()
     };
-    let shared = e.parameters.get(key).map(|size| row("all", size));
+    let of = if e.differs_by_run { "mean" } else { "all" };
+    let shared = e.parameters.get(key).map(|size| row(of, size));
     shared.into_iter().chain(e.size_by_run.iter().map(|(file, size)| row(file, size))).collect()
 }
 
@@ -87,7 +91,13 @@ fn held_out(page: &mut HtmlPage, outcome: &Outcome) {
         groups: fit.channels.iter().map(|(column, p)| (column.clone(), ratios(p)[..models].to_vec())).collect(),
         is_logarithmic: true,
     };
-    page.bars(&panel, "These runs had no part in choosing or fitting. 1: noise only.");
+    let part = match outcome.diagnosis.effects.iter().any(|e| e.differs_by_run) {
+        true => {
+            "These runs had no part in choosing; of what was fitted they decided their own numbers of what differs from run to run. 1: noise only."
+        }
+        false => "These runs had no part in choosing or fitting. 1: noise only.",
+    };
+    page.bars(&panel, part);
     if !outcome.diagnosis.effects.is_empty() {
         page.paragraph(&format!(
             "On them {:.1} % of the gap between the calibrated scene and the noise is closed, 95 % interval {:.1} to {:.1} %.",

@@ -21,28 +21,22 @@ fn title(e: &NamedEffect) -> String {
     placed(&e.name, &e.element, e.channel.as_deref())
 }
 
-/// The numbers of an effect that differs from run to run.
-fn in_each_run(e: &NamedEffect) -> Option<String> {
-    let acts = if e.acts == "scales" && e.hypothetical { 1.0 } else { 0.0 };
-    let each: Vec<String> =
-        e.size_by_run.iter().map(|(run, own)| format!("{:.4} in {run}", acts + own.value)).collect();
-    e.differs_by_run.then(|| each.join(", "))
-}
-
 /// What differs from run to run, in a sentence; nothing if nothing does.
 fn differing(d: &Diagnosis) -> String {
     let one = |e: &NamedEffect| {
-        let what = if e.hypothetical { e.port.clone() } else { title(e) };
-        let key =
-            e.parameters.keys().next().filter(|_| !e.hypothetical).map_or(String::new(), |key| format!(" ({key})"));
-        in_each_run(e).map(|each| format!("{what}{key}: {each}"))
+        let is_factor = e.hypothetical && e.acts == "scales";
+        let what = if e.hypothetical { e.port.clone() } else { format!("{} of {}", e.size_key(), title(e)) };
+        let number = |size: f64| if is_factor { format!("{:.4}", 1.0 + size) } else { format!("{size:.3e}") };
+        let each: Vec<String> =
+            e.size_by_run.iter().map(|(run, own)| format!("{} in {run}", number(own.value))).collect();
+        format!("{what}: {}", each.join(", "))
     };
-    let all: Vec<String> = d.effects.iter().filter_map(one).collect();
+    let all: Vec<String> = d.effects.iter().filter(|e| e.differs_by_run).map(one).collect();
     if all.is_empty() {
         return String::new();
     }
     format!(
-        " It differs from run to run: {}. A new recording has a number of its own; scene.toml has the mean, and a held-out run has decided its own.",
+        " It differs from run to run: {}. A new recording has a number of its own: scene.toml has the mean, and a held-out run has decided its own.",
         all.join("; ")
     )
 }

@@ -74,11 +74,12 @@ impl Model {
         if self.effects.is_empty() {
             return "calibration alone".to_owned();
         }
-        let one = |i: usize| match self.of_each_run(i).first() {
-            None => Some(self.effects[i].title()),
-            Some(first) => (*first == i).then(|| format!("{}, different in each run", self.effects[i].title())),
+        let one = |i: usize| match self.only_in[i] {
+            None => self.effects[i].title(),
+            Some(_) => format!("{}, different in each run", self.effects[i].title()),
         };
-        (0..self.effects.len()).filter_map(one).collect::<Vec<_>>().join(" + ")
+        let named = (0..self.effects.len()).filter(|i| self.stands_for_itself(*i));
+        named.map(one).collect::<Vec<_>>().join(" + ")
     }
 
     /// One effect more, its parameters starting at `values`.
@@ -101,6 +102,11 @@ impl Model {
             }
             model
         })
+    }
+
+    /// Whether an effect is of all runs, or the first of those that are one but for their run.
+    pub(in crate::diagnose) fn stands_for_itself(&self, effect: usize) -> bool {
+        self.of_each_run(effect).first().is_none_or(|first| *first == effect)
     }
 
     /// The effects that are one with this one but for their run, if it belongs to a run; in the order of the runs.
@@ -162,33 +168,24 @@ impl Model {
         let all = self.effects_at(x);
         let as_it_is_there = |i: usize| {
             let of_each = self.of_each_run(i);
-            match of_each.first() {
-                None => Some(all[i].clone()),
-                Some(first) if *first != i => None,
-                Some(_) => Some(self.in_a_run(file, &of_each, &all)),
+            match of_each.iter().find(|own| self.only_in[**own].as_deref() == file) {
+                Some(own) => all[*own].clone(),
+                None => mean(i, &of_each, &all),
             }
         };
-        (0..all.len()).filter_map(as_it_is_there).collect()
-    }
-
-    fn in_a_run(&self, file: Option<&str>, of_each: &[usize], all: &[Effect<f64>]) -> Effect<f64> {
-        let own = of_each.iter().find(|i| self.only_in[**i].as_deref() == file);
-        own.map_or_else(|| mean(of_each, all), |own| all[*own].clone())
+        (0..all.len()).filter(|i| self.stands_for_itself(*i)).map(as_it_is_there).collect()
     }
 
     /// All numbers of one effect; of one that differs from run to run, their means.
     pub(in crate::diagnose) fn values_of(&self, effect: usize, x: &[f64]) -> Vec<f64> {
-        let all = self.effects_at(x);
-        match &self.of_each_run(effect)[..] {
-            [] => all[effect].values.clone(),
-            of_each => mean(of_each, &all).values,
-        }
+        mean(effect, &self.of_each_run(effect), &self.effects_at(x)).values
     }
 }
 
-fn mean(of_each: &[usize], all: &[Effect<f64>]) -> Effect<f64> {
-    let mut mean = all[of_each[0]].clone();
-    for (n, value) in mean.values.iter_mut().enumerate() {
+/// An effect with the means of the numbers that each run has, if they differ.
+fn mean(effect: usize, of_each: &[usize], all: &[Effect<f64>]) -> Effect<f64> {
+    let mut mean = all[effect].clone();
+    for (n, value) in mean.values.iter_mut().enumerate().filter(|_| !of_each.is_empty()) {
         *value = of_each.iter().map(|i| all[*i].values[n]).sum::<f64>() / of_each.len() as f64;
     }
     mean

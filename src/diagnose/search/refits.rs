@@ -169,8 +169,12 @@ const PREDICTED: f64 = 0.5;
 /// If the other runs determine an effect poorly, it extrapolates too far. Then it must predict halves of runs, with all
 /// others known, and much better.
 pub(in crate::diagnose) fn cross_validates(problem: &Problem, before: &Fit, after: &Fit) -> bool {
-    cross_validates_runs(problem, before, after)
-        || gain_left_out(problem.halves_left_out(), before, after) > PREDICTED * (before.cost - after.cost)
+    cross_validates_runs(problem, before, after) || cross_validates_halves(problem, before, after)
+}
+
+/// Whether a model predicts left-out halves of runs much better than the simpler one.
+pub(in crate::diagnose) fn cross_validates_halves(problem: &Problem, before: &Fit, after: &Fit) -> bool {
+    gain_left_out(problem.halves_left_out(), before, after) > PREDICTED * (before.cost - after.cost)
 }
 
 /// Whether a model predicts whole left-out runs better than another. A single run is cut in two.

@@ -3,6 +3,7 @@
 //! May import `verdict`, `search`, `latent`, `grammar`, `fit`, `case` and `diagnosis`.
 
 pub(super) mod by_run;
+mod by_run_search;
 mod elsewhere;
 mod forms;
 pub(super) mod freehand;

@@ -22,8 +22,8 @@ pub struct RunSizes {
 }
 
 /// Size of every effect by run: one least-squares step from the common fit, calibration held. Intervals grow with the
-/// run's residual. What differs from run to run anyway is left out, and logarithmic creep: its size is the stiffness at the first instant, which a run at rest
-/// hardly shows.
+/// run's residual. Left out are what differs from run to run anyway, and logarithmic creep: its size is the stiffness at
+/// the first instant, which a run at rest hardly shows.
 pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let first = case.parameters.len();
     let mut sizes: Vec<RunSizes> = Vec::new();

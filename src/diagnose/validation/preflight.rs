@@ -33,8 +33,10 @@ pub(in crate::diagnose) fn preflight(case: &Case, problem: &Problem) -> Result<P
         found.unusable.push(format!("only {samples} samples: record at least some ten seconds at 50 Hz"));
     }
     inputs(case, &mut found);
-    found.warnings.extend(goes_farther_held_out(case));
     channels(case, &mut found);
+    if found.unusable.is_empty() {
+        found.warnings.extend(goes_farther_held_out(case));
+    }
     // A scene that nothing drives stands still: its spread says nothing of units.
     if found.unusable.is_empty() && !case.scene.file.input.is_empty() {
         scales(case, problem, &mut found)?;

@@ -80,8 +80,7 @@ pub fn verdict(found: &Found, effects: &[NamedEffect], excess: Excess, is_open_s
 pub fn named(found: &Found, final_fit: &Fit, left: f64) -> Vec<NamedEffect> {
     let mut effects = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
-        let of_each = found.best.model.of_each_run(index);
-        if of_each.first().is_some_and(|first| *first != index) {
+        if !found.best.model.stands_for_itself(index) {
             continue;
         }
         let standing = standing(found, index, placed, left);
@@ -166,8 +165,7 @@ pub struct Open<'a> {
 pub fn open(found: &Found, left: f64) -> Open<'_> {
     let mut rivals = Vec::new();
     for (index, placed) in found.best.model.effects.iter().enumerate() {
-        let of_each = found.best.model.of_each_run(index);
-        if of_each.first().is_some_and(|first| *first != index) {
+        if !found.best.model.stands_for_itself(index) {
             continue;
         }
         let standing = standing(found, index, placed, left);
