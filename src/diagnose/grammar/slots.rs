@@ -93,6 +93,23 @@ impl Slot {
         self.shapes
     }
 
+    /// Its shapes, each once.
+    pub fn distinct_shapes(&self) -> Vec<&'static Shape> {
+        self.distinct(self.shapes)
+    }
+
+    /// Shapes that differ from those before them where the variable has been: where it is positive throughout, its magnitude is the variable.
+    pub fn distinct(&self, shapes: &'static [Shape]) -> Vec<&'static Shape> {
+        let mut found: Vec<(&Shape, Vec<f64>)> = Vec::new();
+        for shape in shapes {
+            let signal = self.signal_of_all(shape, self.scale);
+            if found.iter().all(|(other, known)| other.start != shape.start || *known != signal) {
+                found.push((shape, signal));
+            }
+        }
+        found.into_iter().map(|(shape, _)| shape).collect()
+    }
+
     /// The same slot with the wider shapes, for when simple ones leave a misfit.
     pub fn bent(&self) -> Self {
         Self { shapes: self.more_shapes(), ..self.clone() }

@@ -15,7 +15,7 @@ mod stepwise;
 mod way;
 
 pub(super) use creep::is_broad;
-pub(super) use refits::{beside, cross_validates, cross_validates_halves, cross_validates_runs};
+pub(super) use refits::{below, beside, cross_validates, cross_validates_halves, cross_validates_runs};
 pub(super) use screening::{Screened, least_gain};
 pub(super) use stepwise::{Begun, Found, converged};
 pub(super) use way::{Bound, MOST_EFFECTS, leaves_much};

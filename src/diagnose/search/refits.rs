@@ -59,8 +59,16 @@ fn absorbed_ones(screened: &[Screened], which: Absorbed) -> Vec<Screened> {
 /// Joint refits with each candidate added, best first; of several starts of one effect, the better. All are fitted
 /// roughly; those near the best are converged.
 pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
-    let rough: Vec<Option<Fit>> = parallel::map(candidates, |s| add(problem, screening, s));
-    let rough = best_of_each(rough.into_iter().flatten().collect());
+    finished(problem, screening, rough(problem, screening, candidates))
+}
+
+/// Rough refits with each candidate added, the better of several starts of one effect, cheapest first.
+fn rough(problem: &Problem, screening: &Screening, candidates: &[Screened]) -> Vec<Fit> {
+    best_of_each(parallel::map(candidates, |s| add(problem, screening, s)).into_iter().flatten().collect())
+}
+
+/// Converges those near the best.
+fn finished(problem: &Problem, screening: &Screening, rough: Vec<Fit>) -> Vec<Fit> {
     let Some(best) = rough.first().map(|f| f.cost) else { return rough };
     let near = best + NEAR * (screening.from.cost - best).max(0.0) + 10.0;
     let close = rough.iter().take_while(|f| f.cost <= near).count().min(FINISHED);
@@ -72,13 +80,21 @@ pub(super) fn refit(problem: &Problem, screening: &Screening, candidates: &[Scre
 
 /// The best effects beside a fit, refitted jointly; cheapest first.
 pub(in crate::diagnose) fn beside(problem: &Problem, fit: &Fit, variants: &[Variant]) -> Vec<Fit> {
+    below(problem, fit, variants, f64::INFINITY)
+}
+
+/// Those whose rough fits leave no more than `most`.
+pub(in crate::diagnose) fn below(problem: &Problem, fit: &Fit, variants: &[Variant], most: f64) -> Vec<Fit> {
     let Some(screening) = screen(problem, fit, variants) else { return Vec::new() };
-    refit(problem, &screening, &pick(&screening.screened, least_gain(problem.samples()), Absorbed::Any))
+    let picked = pick(&screening.screened, least_gain(problem.samples()), Absorbed::Any);
+    let mut rough = rough(problem, &screening, &picked);
+    rough.retain(|fit| fit.cost <= most);
+    finished(problem, &screening, rough)
 }
 
 /// Refits the ones near the best from the scene's calibration as well, if the best gains by that; mostly it does not.
 pub(super) fn afresh(problem: &Problem, refits: Vec<Fit>) -> Vec<Fit> {
-    let again = |f: &Fit| problem.fit_afresh(&f.model, &f.x, f.cost);
+    let again = |f: &Fit| problem.fit_afresh(f);
     let Some(best) = refits.first().and_then(again) else { return refits };
     let others: Vec<Option<Fit>> = parallel::map(&refits[1..refits.len().min(FINISHED)], again);
     let mut fits = refits;

@@ -62,9 +62,9 @@ pub(in crate::diagnose) fn renew(case: &mut Case, former: &[Noise], found: &Foun
     case.leave_out_slack(&settings)?;
     let problem = open_runs(case, &noise);
     let start = problem.fit(&found.best.model, &found.best.x)?;
-    let start = problem.fit_afresh(&start.model, &start.x, start.cost).unwrap_or(start);
+    let start = problem.fit_afresh(&start).unwrap_or(start);
     let baseline = problem.fit(&found.baseline.model, &found.baseline.x)?;
-    let baseline = problem.fit_afresh(&baseline.model, &baseline.x, baseline.cost).unwrap_or(baseline);
+    let baseline = problem.fit_afresh(&baseline).unwrap_or(baseline);
     Some(Renewed { noise, weights_hold, start, baseline })
 }
 

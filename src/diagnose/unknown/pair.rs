@@ -126,7 +126,8 @@ fn listed_instead(open: &Problem, baseline: &Fit, two: &Fit, variants: &[Variant
     if two.model.effects.len() != 2 {
         return None;
     }
-    let other = |i: usize| in_place_of(open, two, i, variants).filter(|listed| !leaves_much(open, baseline, listed));
+    let listed = |i: usize| in_place_of(open, baseline, (two, i), variants);
+    let other = |i: usize| listed(i).filter(|listed| !leaves_much(open, baseline, listed));
     let laws = (0..2).filter(|&i| two.model.effects[i].entry.hypothetical);
     laws.filter_map(other).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }

@@ -93,7 +93,8 @@ fn alike<'a>(slot: &Slot, sizes: &[f64]) -> Vec<[Term<'a>; 2]> {
         curve.iter_mut().zip(over(shape, slot.scale)).for_each(|(sum, y)| *sum += size * y);
     }
     let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
-    let each = SHAPES.iter().flat_map(|shape| scales(shape).iter().map(move |s| (shape, s * slot.scale)));
+    let each =
+        slot.distinct(&SHAPES).into_iter().flat_map(|shape| scales(shape).iter().map(move |s| (shape, s * slot.scale)));
     let all: Vec<(&Shape, f64, Vec<f64>)> = each.map(|(shape, scale)| (shape, scale, over(shape, scale))).collect();
     let mut found: Vec<(f64, [Term; 2])> = Vec::new();
     for (i, (first, first_scale, a)) in all.iter().enumerate() {
