@@ -16,7 +16,7 @@ done
 coverage=()
 case $crate in
 smam | csv | csv_core | toml | toml_parser | toml_datetime | serde_path_to_error | mcap | lz4_flex | ruzstd | urdf_rs | \
-    serde_xml_rs | xml | quick_xml | tobj | parquet | snap)
+    serde_xml_rs | xml | quick_xml | tobj | parquet | snap | calamine)
     coverage=(-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
         -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
         -Cllvm-args=-sanitizer-coverage-trace-compares)

@@ -15,7 +15,7 @@ shift 2
 
 case $target in
 scene_*) length=8192 dictionary=scene ;;
-bag | parquet) length=4096 dictionary=$target ;;
+bag | parquet | workbook) length=4096 dictionary=$target ;;
 *) length=2048 dictionary=$target ;;
 esac
 options=(-runs="$runs" -max_len="$length" -rss_limit_mb=1024 -timeout=5 -artifact_prefix="artifacts/$target/"

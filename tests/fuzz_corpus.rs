@@ -26,7 +26,7 @@ const MOST_BYTES: u64 = 1 << 30;
 fn made(target: &str) -> usize {
     match target {
         "scene_built" => 200,
-        "urdf" | "parquet" => 2000,
+        "urdf" | "parquet" | "workbook" => 2000,
         _ => 5000,
     }
 }
@@ -34,6 +34,16 @@ fn made(target: &str) -> usize {
 #[test]
 fn csv() {
     hold("csv");
+}
+
+#[test]
+fn workbook() {
+    hold("workbook");
+}
+
+#[test]
+fn law() {
+    hold("law");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::io::{Cursor, Seek, Write};
 use std::path::Path;
 
 use smam::columns::decode;
+use smam::laws::{Law, LawTable, Program, Surroundings};
 use smam::mechanism::{ContactSpec, Mechanism, MechanismSpec};
 use smam::recording::{OpenScene, RecordingSet, Role, Wanted, guess, read_bag_from, read_csv_from, to_toml};
 use smam::scene::Scene;
@@ -15,9 +16,11 @@ use smam::system::{Rom, Simulation, SystemError};
 pub type Target = fn(&[u8]);
 
 /// The readers, by the name of the target and of its folder in `corpus/`.
-pub const TARGETS: [(&str, Target); 7] = [
+pub const TARGETS: [(&str, Target); 9] = [
     ("csv", csv),
+    ("workbook", workbook),
     ("recordings_toml", recordings_toml),
+    ("law", law),
     ("scene_toml", scene_toml),
     ("scene_built", scene_built),
     ("urdf", urdf),
@@ -37,30 +40,117 @@ pub fn csv(bytes: &[u8]) {
         }
         Err(e) => check_words(&e.to_string(), "fuzz.csv"),
     }
-    looked_at(bytes);
+    looked_at(bytes, "fuzz.csv");
+}
+
+/// A workbook whose first sheet, texts and styles are the input, one after the other with a zero byte between them. The archive around them
+/// is whole: a changed byte of a real file would fail its checksum, and nothing behind that would be reached.
+pub fn workbook(bytes: &[u8]) {
+    looked_at(&archived(bytes), "fuzz.xlsx");
+}
+
+/// What every workbook has besides.
+const BOOK: [(&str, &str); 4] = [
+    (
+        "[Content_Types].xml",
+        "<Types xmlns='http://schemas.openxmlformats.org/package/2006/content-types'><Default Extension='rels' \
+         ContentType='application/vnd.openxmlformats-package.relationships+xml'/><Default Extension='xml' \
+         ContentType='application/xml'/></Types>",
+    ),
+    (
+        "_rels/.rels",
+        "<Relationships xmlns='http://schemas.openxmlformats.org/package/2006/relationships'><Relationship Id='r1' \
+         Type='http://schemas.openxmlformats.org/officeDocument/2006/relationships/officeDocument' \
+         Target='xl/workbook.xml'/></Relationships>",
+    ),
+    (
+        "xl/workbook.xml",
+        "<workbook xmlns='http://schemas.openxmlformats.org/spreadsheetml/2006/main' \
+         xmlns:r='http://schemas.openxmlformats.org/officeDocument/2006/relationships'><sheets><sheet name='run' sheetId='1' \
+         r:id='r1'/></sheets></workbook>",
+    ),
+    (
+        "xl/_rels/workbook.xml.rels",
+        "<Relationships xmlns='http://schemas.openxmlformats.org/package/2006/relationships'><Relationship Id='r1' \
+         Type='http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet' \
+         Target='worksheets/sheet1.xml'/><Relationship Id='r2' \
+         Type='http://schemas.openxmlformats.org/officeDocument/2006/relationships/sharedStrings' \
+         Target='sharedStrings.xml'/><Relationship Id='r3' \
+         Type='http://schemas.openxmlformats.org/officeDocument/2006/relationships/styles' \
+         Target='styles.xml'/></Relationships>",
+    ),
+];
+
+fn archived(bytes: &[u8]) -> Vec<u8> {
+    let mut parts = bytes.splitn(3, |byte| *byte == 0);
+    let own = ["xl/worksheets/sheet1.xml", "xl/sharedStrings.xml", "xl/styles.xml"].map(|name| (name, parts.next()));
+    let own = own.into_iter().filter_map(|(name, part)| Some((name, part?)));
+    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    for (name, part) in BOOK.map(|(name, text)| (name, text.as_bytes())).into_iter().chain(own) {
+        archive.start_file(name, stored).expect("a new name");
+        archive.write_all(part).expect("written to memory");
+    }
+    archive.finish().expect("written to memory").into_inner()
 }
 
 /// The same file, described by what it looks like and read so: what is written of it is always a description.
-fn looked_at(bytes: &[u8]) {
+fn looked_at(bytes: &[u8], name: &str) {
     let wanted = [("plunger_mm", Role::Input), ("force_n", Role::Output)]
         .map(|(column, role)| Wanted { column: column.to_owned(), role });
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("fuzz.csv");
+    let path = folder.path().join(name);
     std::fs::write(&path, bytes).expect("written");
     let found = match guess(&path, &wanted) {
         Ok(found) => found,
-        Err(e) => return check_words(&e.to_string(), "fuzz.csv"),
+        Err(e) => return check_words(&e.to_string(), name),
     };
-    let text =
-        to_toml(&[found], &[], OpenScene { name: "muscle_bench", channels: &wanted }, &|_| "fuzz.csv".to_owned());
+    let text = to_toml(&[found], &[], OpenScene { name: "muscle_bench", channels: &wanted }, &|_| name.to_owned());
     match RecordingSet::parse(&text, &folder.path().join("recordings.toml")) {
         Err(e) => check_words(&e.to_string(), "recordings.toml"),
         Ok(set) => {
             if let Err(e) = set.load_parts(&set.runs[0]) {
-                check_words(&e.to_string(), "fuzz.csv");
+                check_words(&e.to_string(), name);
             }
         }
     }
+}
+
+/// A law: in its short form if the input is one line, else as a table. What is accepted is written and read again, and evaluated where its
+/// variables are zero, usual, huge and no numbers.
+pub fn law(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let Some(table) = law_table(&text) else { return };
+    let around = Surroundings { conditions: vec![("sheath_angle_rad".to_owned(), 1.5)], ..Surroundings::default() };
+    match table.law(&around) {
+        Err(e) => assert!(!e.message.is_empty() && !e.remedy.is_empty(), "{e:?}"),
+        Ok(law) => {
+            let written: toml::Table = table.to_toml().parse().expect("what is written of a law is TOML");
+            let again = written["law"].as_array().and_then(|laws| laws.first()).cloned().expect("a table");
+            let again: LawTable = again.try_into().expect("what is written of a law is one");
+            assert_eq!(again.law(&around).as_ref().map(Law::text), Ok(law.text()));
+            let programs = &law.programs;
+            let of_states =
+                [&programs.rates, &programs.rate_slopes, &programs.starts, &programs.follows, &programs.widths];
+            for value in [0.0, 1e-3, -41.0, 1e300, f64::NAN] {
+                of_states.into_iter().chain([&programs.value]).for_each(|program| evaluate(program, value));
+            }
+        }
+    }
+}
+
+fn law_table(text: &str) -> Option<LawTable> {
+    if text.contains('\n') {
+        return toml::from_str(text).ok();
+    }
+    let read = LawTable::parse(text, "fuzz");
+    read.inspect_err(|(message, remedy)| assert!(!message.is_empty() && !remedy.is_empty(), "{message}")).ok()
+}
+
+/// All that a program computes.
+fn evaluate(program: &Program, value: f64) {
+    let mut registers = vec![0.0; program.registers()];
+    program.run(program.symbols().iter().map(|_| value), &mut registers);
 }
 
 /// The description of a folder of recordings.

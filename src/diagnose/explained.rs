@@ -106,6 +106,8 @@ impl Search<'_> {
             OneLaw::Listed(fit, tried) => (self.from(case, &noise, (two.baseline, fit)), *tried),
             OneLaw::Part(tried) => (begun, *tried),
         };
+        // A third effect takes seconds to try, two things of which one has no name minutes.
+        let begun = begun.up_to(&reweight::open_runs(case, &noise), self.variants, 3, self.say);
         let (begun, tried) = match pair::pair(case, &noise, (&begun.found(), self.variants), tried, self.say) {
             Pair::All(found, noise) => return proven(case, *found, noise, self.seed),
             Pair::Listed(two, tried) => (self.from(case, &noise, (begun.found().baseline, two)), *tried),

@@ -50,17 +50,33 @@ pub struct Variant {
 /// Maximum number of relaxation times of one muscle, or of terms of one hypothesis.
 const MOST_BRANCHES: usize = 3;
 
-/// A set of effects beside the calibration, and the parameters that are not fitted.
+/// The numbers of an effect of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers {
+    /// All its parameters; those that are fitted are replaced.
+    pub values: Vec<f64>,
+    /// Which of them are fitted.
+    pub fitted: Vec<usize>,
+    /// The run that alone has the effect, by its file. Effects of one place, one for every run, are one effect whose numbers differ from
+    /// run to run.
+    pub only_in: Option<Arc<str>>,
+}
+
+impl Numbers {
+    /// Those of an effect of all runs.
+    fn of(placed: &Placed, values: &[f64]) -> Self {
+        let parameters = &placed.spec().parameters;
+        let fitted = (0..parameters.len()).filter(|&i| parameters[i].is_fitted).collect();
+        Self { values: values.to_vec(), fitted, only_in: None }
+    }
+}
+
+/// A set of effects beside the calibration.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Model {
     pub effects: Vec<Placed>,
-    /// All parameters of each effect; those that are fitted are replaced.
-    pub values: Vec<Vec<f64>>,
-    /// Of each effect: which of its parameters are fitted.
-    pub fitted: Vec<Vec<usize>>,
-    /// Of each effect: the run that alone has it, by its file. Effects of one place, one for every run, are one effect whose numbers differ
-    /// from run to run.
-    pub only_in: Vec<Option<Arc<str>>>,
+    /// Those of each effect.
+    pub numbers: Vec<Numbers>,
 }
 
 impl Model {
@@ -74,7 +90,7 @@ impl Model {
         if self.effects.is_empty() {
             return "calibration alone".to_owned();
         }
-        let one = |i: usize| match self.only_in[i] {
+        let one = |i: usize| match self.numbers[i].only_in {
             None => self.effects[i].title(),
             Some(_) => format!("{}, different in each run", self.effects[i].title()),
         };
@@ -84,24 +100,25 @@ impl Model {
 
     /// One effect more, its parameters starting at `values`.
     pub fn plus(&self, placed: &Placed, values: &[f64]) -> Self {
+        self.and(placed.clone(), Numbers::of(placed, values))
+    }
+
+    /// One effect more, of which only the size is fitted.
+    pub(in crate::diagnose) fn plus_size(&self, placed: &Placed, values: &[f64]) -> Self {
+        self.and(placed.clone(), Numbers { fitted: vec![0], ..Numbers::of(placed, values) })
+    }
+
+    fn and(&self, placed: Placed, numbers: Numbers) -> Self {
         let mut model = self.clone();
-        let spec = placed.spec();
-        model.effects.push(placed.clone());
-        model.values.push(values.to_vec());
-        model.fitted.push((0..spec.parameters.len()).filter(|&i| spec.parameters[i].is_fitted).collect());
-        model.only_in.push(None);
+        model.effects.push(placed);
+        model.numbers.push(numbers);
         model
     }
 
     /// One effect more, with numbers of its own in each of these runs.
     pub(in crate::diagnose) fn plus_in_each(&self, placed: &Placed, values: &[f64], files: &[Arc<str>]) -> Self {
-        files.iter().fold(self.clone(), |model, file| {
-            let mut model = model.plus(placed, values);
-            if let Some(last) = model.only_in.last_mut() {
-                *last = Some(Arc::clone(file));
-            }
-            model
-        })
+        let numbers = |file| Numbers { only_in: Some(Arc::clone(file)), ..Numbers::of(placed, values) };
+        files.iter().fold(self.clone(), |model, file| model.and(placed.clone(), numbers(file)))
     }
 
     /// Whether an effect is of all runs, or the first of those that are one but for their run.
@@ -111,10 +128,11 @@ impl Model {
 
     /// The effects that are one with this one but for their run, if it belongs to a run; in the order of the runs.
     pub(in crate::diagnose) fn of_each_run(&self, effect: usize) -> Vec<usize> {
-        if self.only_in[effect].is_none() {
+        let is_of_one = |i: usize| self.numbers[i].only_in.is_some();
+        if !is_of_one(effect) {
             return Vec::new();
         }
-        let is_one = |i: &usize| self.only_in[*i].is_some() && self.effects[*i] == self.effects[effect];
+        let is_one = |i: &usize| is_of_one(*i) && self.effects[*i] == self.effects[effect];
         (0..self.effects.len()).filter(is_one).collect()
     }
 
@@ -128,35 +146,29 @@ impl Model {
     pub fn without(&self, index: usize) -> Self {
         let mut model = self.clone();
         model.effects.remove(index);
-        model.values.remove(index);
-        model.fitted.remove(index);
-        model.only_in.remove(index);
+        model.numbers.remove(index);
         model
     }
 
     /// The same with one effect moved to the end.
     pub(crate) fn with_last(&self, index: usize) -> Self {
-        let mut model = self.without(index);
-        model.effects.push(self.effects[index].clone());
-        model.values.push(self.values[index].clone());
-        model.fitted.push(self.fitted[index].clone());
-        model.only_in.push(self.only_in[index].clone());
-        model
+        self.without(index).and(self.effects[index].clone(), self.numbers[index].clone())
     }
 
     /// Number of fitted parameters of the effects.
     pub(crate) fn effect_parameters(&self) -> usize {
-        self.fitted.iter().map(Vec::len).sum()
+        self.numbers.iter().map(|own| own.fitted.len()).sum()
     }
 
     /// Where each fitted number of the effects stands: effect and index.
     pub fn places(&self) -> Vec<(usize, usize)> {
-        self.fitted.iter().enumerate().flat_map(|(e, list)| list.iter().map(move |&i| (e, i))).collect()
+        self.numbers.iter().enumerate().flat_map(|(e, own)| own.fitted.iter().map(move |&i| (e, i))).collect()
     }
 
     /// The effects with the fitted parameters at `x`, which follows the calibration in the vector of a fit.
     pub(crate) fn effects_at(&self, x: &[f64]) -> Vec<Effect<f64>> {
-        let mut effects: Vec<Effect<f64>> = self.effects.iter().zip(&self.values).map(|(p, v)| p.with(v)).collect();
+        let all = self.effects.iter().zip(&self.numbers);
+        let mut effects: Vec<Effect<f64>> = all.map(|(placed, own)| placed.with(&own.values)).collect();
         for ((effect, index), value) in self.places().into_iter().zip(x) {
             effects[effect].values[index] = *value;
         }
@@ -168,7 +180,7 @@ impl Model {
         let all = self.effects_at(x);
         let as_it_is_there = |i: usize| {
             let of_each = self.of_each_run(i);
-            match of_each.iter().find(|own| self.only_in[**own].as_deref() == file) {
+            match of_each.iter().find(|own| self.numbers[**own].only_in.as_deref() == file) {
                 Some(own) => all[*own].clone(),
                 None => mean(i, &of_each, &all),
             }

@@ -116,7 +116,7 @@ impl Problem<'_> {
             Some(near) => near[..n].to_vec(),
             None => self.case.parameters.iter().map(|p| p.start).collect(),
         };
-        x.extend(model.places().into_iter().map(|(effect, index)| model.values[effect][index]));
+        x.extend(model.places().into_iter().map(|(effect, index)| model.numbers[effect].values[index]));
         x
     }
 
@@ -301,7 +301,7 @@ mod tests {
         let [(first, two), (second, one)] = ["viscoelasticity", "coil_preload"].map(placed);
         let model = Model::baseline().plus(&first, &two).plus(&second, &one);
         let n = 1 + model.effect_parameters();
-        let own = model.fitted[0].len();
+        let own = model.numbers[0].fitted.len();
         let x: Vec<f64> = (0..n).map(|i| i as f64).collect();
         let covariance = DMatrix::from_fn(n, n, |i, j| (10 * i.min(j) + i.max(j)) as f64);
         let fit = Fit { model, x, cost: 1.0, covariance, on_bound: Vec::new() };

@@ -65,7 +65,7 @@ fn is_better(problem: &Problem, was: &Fit, broad: &Fit) -> bool {
 
 /// Whether an effect is logarithmic creep.
 pub(in crate::diagnose) fn is_broad(model: &Model, effect: usize) -> bool {
-    relaxes(&model.effects[effect]) && model.values[effect][2] > 0.0
+    relaxes(&model.effects[effect]) && model.numbers[effect].values[2] > 0.0
 }
 
 fn relaxes(placed: &Placed) -> bool {

@@ -125,7 +125,7 @@ fn add(problem: &Problem, screening: &Screening, candidate: &Screened) -> Option
     let (from, values) = (&screening.from, start_values(candidate));
     let model = from.model.plus(&candidate.variant.placed, &values);
     let mut start = from.x.clone();
-    start.extend(model.fitted.last()?.iter().map(|&i| values[i]));
+    start.extend(model.numbers.last()?.fitted.iter().map(|&i| values[i]));
     if candidate.is_absorbed {
         // Where the calibration stands the effect is not wanted: it begins where the scene has it.
         let calibrated = problem.case.parameters.iter().map(|p| p.start);

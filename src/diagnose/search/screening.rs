@@ -183,13 +183,9 @@ fn in_run(problem: &Problem, fit: &Fit, run: &CaseRun, trials: &[Trial]) -> Vec<
 
 impl<'a> Trial<'a> {
     fn of(problem: &Problem, fit: &Fit, variant: &'a Variant, size: Option<f64>) -> Self {
-        let mut model = fit.model.clone();
         let mut values = variant.values.clone();
         values[0] = 0.0;
-        model.effects.push(variant.placed.clone());
-        model.values.push(values);
-        model.fitted.push(vec![0]);
-        model.only_in.push(None);
+        let model = fit.model.plus_size(&variant.placed, &values);
         let parameters = problem.parameters(&model);
         let number = parameters[fit.x.len()];
         let small = probe(&number, 0.0, fit.x.len(), Sides::One);

@@ -37,13 +37,15 @@ pub(in crate::diagnose) struct Bound<'a> {
 
 impl Bound<'_> {
     /// Whether the law leaves less than listed effects: next to nothing where they leave much, little with fewer parts, or anything with far fewer.
-    /// One that leaves as little as a single effect proves nothing: a free shape always fits better.
+    /// One that leaves as little as a single effect proves nothing: a free shape always fits better. Two laws, or one beside an effect, outdo
+    /// three effects at least: names are to be tried before they count as missing.
     pub fn outdoes(&self, problem: &Problem, baseline: &Fit, listed: &Fit) -> bool {
         self.law.is_some_and(|law| {
             let [parts, own] = [listed, law].map(|fit| fit.model.effects.len());
             let is_lower = law.cost < listed.cost - least_gain(problem.samples());
-            let is_little = || parts.max(own) > 1 && !leaves_much(problem, baseline, law);
-            is_lower && (parts > own + 1 || self.is_enough && leaves_much(problem, baseline, listed) || is_little())
+            let is_little = || parts > own && !leaves_much(problem, baseline, law);
+            let is_enough = || self.is_enough && leaves_much(problem, baseline, listed) && (own == 1 || parts > own);
+            is_lower && (parts > own + 1 || is_little() || is_enough())
         })
     }
 }
@@ -284,8 +286,14 @@ mod tests {
         // A law that leaves much: only three effects, and only if they leave more.
         assert!(outdoes(0.4, false, fit(3, 0.5)) && !outdoes(0.4, false, fit(3, 0.3)));
         assert!(!outdoes(0.4, false, fit(2, 0.5)) && !outdoes(0.4, false, fit(1, 0.9)));
-        // One that leaves little: two effects. One that leaves next to nothing: also one that leaves much, or none at all.
+        // One that leaves little: two effects; two such, three effects. One that leaves next to nothing: also one that leaves much, or none at all.
         assert!(outdoes(0.04, false, fit(2, 0.5)) && !outdoes(0.04, false, fit(1, 0.5)));
+        let two = fit(2, 0.04);
+        let by_two = |parts: usize| {
+            [false, true]
+                .map(|is_enough| Bound { law: Some(&two), is_enough }.outdoes(&problem, &fit(0, 1.0), &fit(parts, 0.5)))
+        };
+        assert!(by_two(3) == [true; 2] && by_two(2) == [false; 2]);
         assert!(
             outdoes(0.01, true, fit(1, 0.5)) && outdoes(0.01, true, fit(0, 1.0)) && !outdoes(0.01, true, fit(1, 0.04))
         );

@@ -125,7 +125,8 @@ fn decide_held_out(case: &Case, noise: &[Noise], fit: &mut Fit) {
     for run in case.subset(RunSet::HeldOut).into_iter().filter(|run| !is_open(&run.file)) {
         let problem = Problem { case, runs: vec![run], noise };
         let file = problem.runs[0].file.as_str();
-        let is_own = |(_, (effect, _)): &(usize, (usize, usize))| fit.model.only_in[*effect].as_deref() == Some(file);
+        let is_own =
+            |(_, (effect, _)): &(usize, (usize, usize))| fit.model.numbers[*effect].only_in.as_deref() == Some(file);
         let own: Vec<usize> = fit.model.places().into_iter().enumerate().filter(is_own).map(|(k, _)| n + k).collect();
         for &k in own.iter().cycle().take(STEPS * own.len()) {
             let parameters = &problem.parameters(&fit.model)[k..=k];

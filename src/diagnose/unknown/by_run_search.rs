@@ -175,7 +175,7 @@ fn starts(open: &Problem, fit: &Fit, candidates: &[Variant]) -> Option<Vec<Start
             candidates: vec![Variant { placed: fit.model.effects[i].clone(), values }],
         }
     };
-    let of_all = (0..fit.model.effects.len()).filter(|i| fit.model.only_in[*i].is_none());
+    let of_all = (0..fit.model.effects.len()).filter(|i| fit.model.numbers[*i].only_in.is_none());
     let mut starts: Vec<Start> = of_all.map(untied).collect();
     let is_new = |v: &&Variant| !fit.model.effects.contains(&v.placed);
     let candidates = candidates.iter().filter(is_new).cloned().collect();

@@ -37,7 +37,7 @@ pub(in crate::diagnose) fn pair(
 ) -> Pair {
     let open = Problem { case, runs: case.subset(RunSet::Open), noise };
     let first = tried.known.first().cloned();
-    // Where two effects leave little, a third or their idealised laws are what is missing, and a law could imitate both.
+    // Where effects leave little, a further one or their idealised laws are what is missing, and a law could imitate them.
     let is_asked = !case.is_without(Step::OpenSet) && leaves_much(&open, &found.baseline, &found.best);
     let is_asked = is_asked && !tried.is_enough(&open, &found.baseline);
     let Some(law) = first.filter(|_| is_asked && leaves_something(&open, &found.best)) else {

@@ -154,7 +154,7 @@ impl Shown<'_> {
     pub(super) fn with(&self, own: &Variant, sizes: usize) -> Candidate {
         let model = self.from.model.plus(&own.placed, &own.values);
         let mut x = self.from.x.clone();
-        x.extend(model.fitted.last().into_iter().flatten().map(|&i| own.values[i]));
+        x.extend(model.numbers.last().into_iter().flat_map(|own| &own.fitted).map(|&i| own.values[i]));
         let first = self.from.x.len();
         Candidate { model, x, sizes: first..first + sizes }
     }

@@ -27,7 +27,7 @@ pub struct RunSizes {
 pub fn sizes_by_run(case: &Case, fit: &Fit, noise: &[Noise]) -> Vec<RunSizes> {
     let first = case.parameters.len();
     let mut sizes: Vec<RunSizes> = Vec::new();
-    let is_of_all = |effect: usize| fit.model.only_in[effect].is_none();
+    let is_of_all = |effect: usize| fit.model.numbers[effect].only_in.is_none();
     let sizes_of = |&(_, (effect, index)): &(usize, (usize, usize))| {
         index == 0 && !is_broad(&fit.model, effect) && is_of_all(effect)
     };

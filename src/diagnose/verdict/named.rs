@@ -266,7 +266,7 @@ mod tests {
             model.plus(&placed, &entry.typical())
         });
         let n = model.effect_parameters();
-        let x = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
+        let x = model.places().iter().map(|&(e, i)| model.numbers[e].values[i]).collect();
         Fit { model, x, cost, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() }
     }
 

@@ -19,7 +19,7 @@ pub(super) fn parameters(fit: &Fit, effect: usize) -> BTreeMap<String, Estimate>
                 Estimate { value, ci95: [(value - half).max(p.range.min), (value + half).min(p.range.max)] }
             }
             None => {
-                let value = fit.model.values[effect][i];
+                let value = fit.model.numbers[effect].values[i];
                 Estimate { value, ci95: [value, value] }
             }
         };
@@ -45,7 +45,7 @@ pub(super) fn over_runs(fit: &Fit, of_each: &[usize]) -> BTreeMap<String, Estima
 pub(super) fn size_in_each(fit: &Fit, of_each: &[usize]) -> BTreeMap<String, Estimate> {
     let size = |i: &usize| {
         let (model, key) = (&fit.model, &fit.model.effects[*i].spec().parameters.first()?.key);
-        Some((model.only_in[*i].as_deref()?.to_owned(), parameters(fit, *i)[key.as_str()]))
+        Some((model.numbers[*i].only_in.as_deref()?.to_owned(), parameters(fit, *i)[key.as_str()]))
     };
     of_each.iter().filter_map(size).collect()
 }
@@ -87,7 +87,7 @@ mod tests {
         let model = Model::baseline().plus(&placed, &entry.typical());
         let spec = &entry.entry().parameters[0];
         let n = model.effect_parameters();
-        let x: Vec<f64> = model.places().iter().map(|&(e, i)| model.values[e][i]).collect();
+        let x: Vec<f64> = model.places().iter().map(|&(e, i)| model.numbers[e].values[i]).collect();
         let mut loose = Fit { model, x, cost: 1.0, covariance: DMatrix::zeros(n, n), on_bound: Vec::new() };
         loose.covariance[(0, 0)] = loose.x[0].powi(2);
         let Estimate { value, ci95: [low, high] } = parameters(&loose, 0)[&spec.key];
