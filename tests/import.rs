@@ -358,6 +358,16 @@ fn a_stray_cell_far_away_is_refused() {
     assert!(message.contains("delete the stray cells"), "{message}");
 }
 
+/// A damaged reference names a column in the hundred thousands: found by fuzzing, it took ten seconds to fill the row up to there.
+#[test]
+fn a_cell_where_no_sheet_has_one_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("damaged.xlsx");
+    fs::write(&file, workbook("<row r=\"2\"><c r=\"ABCDE2\"><v>1</v></c></row>")).expect("written");
+    let message = read_recording(&file).expect_err("refused").to_string();
+    assert!(message.contains("row 2, column 494265") && message.contains("remedy: save it again"), "{message}");
+}
+
 #[test]
 fn messy_13_repeated_stamps() {
     // A clock of 20 ms: two rows a stamp.

@@ -70,6 +70,9 @@ pub(super) fn names(bytes: &[u8]) -> Result<Vec<String>, Problem> {
 
 /// Cells of the rectangle around all that a sheet holds, at most: the reader makes room for each.
 const MOST_CELLS: u64 = 20_000_000;
+/// Rows and columns that a sheet can have (ECMA-376: the last cell is XFD1048576). A damaged reference may be far beyond.
+const MOST_ROWS: u64 = 1 << 20;
+const MOST_COLUMNS: u64 = 1 << 14;
 
 /// Refuses a sheet in which a stray cell far away would ask for more memory than there is.
 fn refuse_huge(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<(), Problem> {
@@ -78,6 +81,9 @@ fn refuse_huge(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<(), Problem
     while let Some(cell) = cells.next_cell().map_err(|e| unreadable(&e.to_string()))? {
         let (row, column) = cell.get_position();
         (rows, columns) = (rows.max(u64::from(row) + 1), columns.max(u64::from(column) + 1));
+    }
+    if rows > MOST_ROWS || columns > MOST_COLUMNS {
+        return Err(unreadable(&format!("sheet \"{name}\" has a cell in row {rows}, column {columns}, where no sheet has one")));
     }
     if rows * columns <= MOST_CELLS {
         return Ok(());
