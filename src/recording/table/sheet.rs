@@ -83,7 +83,9 @@ fn refuse_huge(book: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Result<(), Problem
         (rows, columns) = (rows.max(u64::from(row) + 1), columns.max(u64::from(column) + 1));
     }
     if rows > MOST_ROWS || columns > MOST_COLUMNS {
-        return Err(unreadable(&format!("sheet \"{name}\" has a cell in row {rows}, column {columns}, where no sheet has one")));
+        return Err(unreadable(&format!(
+            "sheet \"{name}\" has a cell in row {rows}, column {columns}, where no sheet has one"
+        )));
     }
     if rows * columns <= MOST_CELLS {
         return Ok(());
