@@ -348,12 +348,17 @@ fn messy_12_a_workbook() {
     holds("a.xlsx", &workbook(&rows));
 }
 
+/// Why a workbook with these rows is not read.
+fn refusal(rows: &str) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("refused.xlsx");
+    fs::write(&file, workbook(rows)).expect("written");
+    read_recording(&file).expect_err("refused").to_string()
+}
+
 #[test]
 fn a_stray_cell_far_away_is_refused() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("far.xlsx");
-    fs::write(&file, workbook("<row r=\"1048576\"><c r=\"XFD1048576\"><v>1</v></c></row>")).expect("written");
-    let message = read_recording(&file).expect_err("refused").to_string();
+    let message = refusal("<row r=\"1048576\"><c r=\"XFD1048576\"><v>1</v></c></row>");
     assert!(message.contains("1048576 rows and 16384 columns"), "{message}");
     assert!(message.contains("delete the stray cells"), "{message}");
 }
@@ -361,10 +366,7 @@ fn a_stray_cell_far_away_is_refused() {
 /// A damaged reference names a column in the hundred thousands: found by fuzzing, it took ten seconds to fill the row up to there.
 #[test]
 fn a_cell_where_no_sheet_has_one_is_refused() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("damaged.xlsx");
-    fs::write(&file, workbook("<row r=\"2\"><c r=\"ABCDE2\"><v>1</v></c></row>")).expect("written");
-    let message = read_recording(&file).expect_err("refused").to_string();
+    let message = refusal("<row r=\"2\"><c r=\"ABCDE2\"><v>1</v></c></row>");
     assert!(message.contains("row 2, column 494265") && message.contains("remedy: save it again"), "{message}");
 }
 

@@ -48,8 +48,8 @@ impl Problem<'_> {
         let sides = if self.case.goes_slack() { Sides::Both } else { Sides::One };
         let rows = self.rows(model, &x, 0..x.len(), sides)?;
         let mut descent = Descent { end, ..Descent::new(self, model, parameters, x, rows) };
-        let gain = descent.run();
-        if end == End::Told && gain < descent.least() {
+        let has_ended = descent.run() < descent.least() && !descent.is_promising();
+        if has_ended && end == End::Told {
             return Some(descent);
         }
         for _ in 0..REFRESHES {
@@ -151,6 +151,13 @@ impl<'a> Descent<'a> {
             End::Converged => LAST_GAIN,
         };
         gain * self.unit()
+    }
+
+    /// Whether another step is promised: one that then gained nothing came of a Jacobian that is wrong.
+    fn is_promising(&self) -> bool {
+        let here = self.normal();
+        let step = here.bounded_step(&self.parameters, &self.x, LEAST_DAMPING);
+        step.is_some_and(|step| here.promised_gain(&step) >= self.least() / 3.0)
     }
 
     /// Whether other parameters are nearer than what would be another fit.

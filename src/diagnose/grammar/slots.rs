@@ -93,11 +93,6 @@ impl Slot {
         self.shapes
     }
 
-    /// Its shapes, each once.
-    pub fn distinct_shapes(&self) -> Vec<&'static Shape> {
-        self.distinct(self.shapes)
-    }
-
     /// Shapes that differ from those before them where the variable has been: where it is positive throughout, its magnitude is the variable.
     pub fn distinct(&self, shapes: &'static [Shape]) -> Vec<&'static Shape> {
         let mut found: Vec<(&Shape, Vec<f64>)> = Vec::new();
@@ -336,7 +331,7 @@ fn greatest(series: &[Vec<f64>]) -> f64 {
 mod tests {
     use super::*;
     use crate::diagnose::case::{Noise, RunSet, made};
-    use crate::diagnose::fit::{Model, Problem};
+    use crate::diagnose::fit::{Model, Problem, made::Bench};
 
     /// Rows that are only counted tell an order, and no pace.
     #[test]
@@ -353,5 +348,20 @@ mod tests {
         case.has_clock = false;
         assert_eq!(of_rate(&case).1, 0);
         assert!(of_rate(&case).0 > 0);
+    }
+
+    /// Time is never negative: its magnitude is time itself. A speed goes both ways.
+    #[test]
+    fn shapes_that_are_the_same_where_a_variable_has_been_are_one() {
+        let bench = Bench::with(&[]);
+        let all = slots(&bench.case, &bench.baseline(), Reach::Plain);
+        let texts = |variable: &str| -> Vec<&str> {
+            let slot = all.iter().find(|slot| slot.variable == variable).expect("a slot");
+            slot.distinct(&SHAPES).iter().map(|shape| shape.text).collect()
+        };
+        assert_eq!(texts("speed_m_s").len(), SHAPES.len());
+        let of_time = texts("time_s");
+        assert!(of_time.contains(&"x") && of_time.contains(&"x^2"), "{of_time:?}");
+        assert!(!of_time.contains(&"abs(x)") && !of_time.contains(&"x*abs(x)"), "{of_time:?}");
     }
 }

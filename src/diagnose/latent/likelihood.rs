@@ -9,30 +9,10 @@ const FIRST: f64 = 100.0;
 /// A parameter with less than this share of its own information is held, because others do the same.
 const FAINT: f64 = 1e-10;
 
-/// One run with signals at some ports alone.
-struct Acted<'a> {
-    measured: &'a [Measured],
-    /// Columns before the run's own parameters.
-    shared: usize,
-    /// States, and signals behind them.
-    states: usize,
-    signals: usize,
-    /// Response of states and signals to the beginning of each signal.
-    begun: DMatrix<f64>,
-    /// Over each stretch: what states and signals become, the same transposed, and what is seen of them.
-    moves: Vec<[DMatrix<f64>; 2]>,
-    seen: Vec<DMatrix<f64>>,
-}
-
-/// Runs with signals at some ports, whose likelihood is asked for at several paces.
-pub struct Walks<'a> {
-    runs: Vec<Acted<'a>>,
-}
-
-impl<'a> Walks<'a> {
-    pub fn at(ports: &[usize], runs: &'a [Condensed]) -> Self {
-        Self { runs: runs.iter().map(|run| Acted::of(run, ports)).collect() }
-    }
+/// Signals at some ports, and the variance that each gains per second.
+pub struct Walk<'a> {
+    pub ports: &'a [usize],
+    pub variance_s: f64,
 }
 
 /// Result of the filter for all runs.
@@ -55,10 +35,8 @@ struct Innovations {
 }
 
 impl Likelihood {
-    /// Each signal gains this variance per second.
-    pub fn of(walks: &Walks, variance_s: f64) -> Self {
-        let innovations = |run: &Acted| filtered(run, variance_s).without_own(run.shared);
-        let runs: Vec<Innovations> = walks.runs.iter().map(innovations).collect();
+    pub fn of(runs: &[Condensed], walk: &Walk) -> Self {
+        let runs: Vec<Innovations> = runs.iter().map(|run| filtered(run, walk).without_own(run.shared)).collect();
         let Some(first) = runs.first() else { return Self { cost: 0.0, left_sigma: Vec::new(), left: 0.0 } };
         let all = runs.iter().skip(1).fold(first.products.clone(), |sum, run| sum + &run.products);
         // Residual less Jacobian times parameters.
@@ -108,66 +86,43 @@ struct Filter {
     /// Means, for the residual and each column of the Jacobian.
     mean: DMatrix<f64>,
     covariance: DMatrix<f64>,
-    /// Room for those to come.
-    next: DMatrix<f64>,
-    moved: [DMatrix<f64>; 2],
     found: Innovations,
 }
 
-impl<'a> Acted<'a> {
-    fn of(run: &'a Condensed, ports: &[usize]) -> Self {
-        let (n, signals) = (run.start.nrows(), ports.len());
-        let pick = |from: &DMatrix<f64>| {
-            let mut some = from.columns(0, n).into_owned().resize_horizontally(n + signals, 0.0);
-            ports.iter().enumerate().for_each(|(i, &port)| some.set_column(n + i, &from.column(n + port)));
-            some
-        };
-        let mut begun = DMatrix::zeros(n + signals, signals);
-        ports.iter().enumerate().for_each(|(i, &port)| {
-            begun.view_mut((0, i), (n, 1)).copy_from(&run.start.column(port));
-            begun[(n + i, i)] = 1.0;
-        });
-        let moves = |end: &DMatrix<f64>| {
-            let mut moves = DMatrix::identity(n + signals, n + signals);
-            moves.view_mut((0, 0), (n, n + signals)).copy_from(&pick(end));
-            let transposed = moves.transpose();
-            [moves, transposed]
-        };
-        Self {
-            measured: &run.measured,
-            shared: run.shared,
-            states: n,
-            signals,
-            begun,
-            moves: run.maps.iter().map(|map| moves(&map.end)).collect(),
-            seen: run.maps.iter().map(|map| pick(&map.seen).transpose()).collect(),
-        }
-    }
-}
-
 /// Runs the filter over one run.
-fn filtered(run: &Acted, variance_s: f64) -> Innovations {
+fn filtered(run: &Condensed, walk: &Walk) -> Innovations {
+    let own = walk.ports;
     let columns = run.measured.first().map_or(run.shared, |m| m.rows.ncols());
     let nothing = Innovations { products: DMatrix::zeros(columns, columns), spread: 0.0, count: 0.0 };
-    let all = run.states + run.signals;
-    let covariance = &run.begun * run.begun.transpose() * FIRST;
-    let mean = DMatrix::zeros(all, columns);
-    let (next, moved) = (mean.clone(), [covariance.clone(), covariance.clone()]);
-    let mut filter = Filter { mean, covariance, next, moved, found: nothing };
-    for ((moves, seen), measured) in run.moves.iter().zip(&run.seen).zip(run.measured) {
-        (run.states..all).for_each(|i| filter.covariance[(i, i)] += variance_s * measured.lasts_s);
-        filter.look(seen, measured);
-        filter.go_on(moves);
+    let (n, signals) = (run.start.nrows(), own.len());
+    let pick = |from: &DMatrix<f64>| {
+        let mut some = from.columns(0, n).into_owned().resize_horizontally(n + signals, 0.0);
+        own.iter().enumerate().for_each(|(i, &port)| some.set_column(n + i, &from.column(n + port)));
+        some
+    };
+    let mut begun = DMatrix::zeros(n + signals, signals);
+    own.iter().enumerate().for_each(|(i, &port)| {
+        begun.view_mut((0, i), (n, 1)).copy_from(&run.start.column(port));
+        begun[(n + i, i)] = 1.0;
+    });
+    let covariance = &begun * begun.transpose() * FIRST;
+    let mut filter = Filter { mean: DMatrix::zeros(n + signals, columns), covariance, found: nothing };
+    let mut moves = DMatrix::identity(n + signals, n + signals);
+    for (map, measured) in run.maps.iter().zip(&run.measured) {
+        (n..n + signals).for_each(|i| filter.covariance[(i, i)] += walk.variance_s * measured.lasts_s);
+        filter.look(&pick(&map.seen), measured);
+        moves.view_mut((0, 0), (n, n + signals)).copy_from(&pick(&map.end));
+        filter.go_on(&moves);
     }
     filter.found
 }
 
 impl Filter {
-    /// Measurement update with one stretch, channel by channel; a column of `seen` each.
+    /// Measurement update with one stretch, channel by channel.
     fn look(&mut self, seen: &DMatrix<f64>, measured: &Measured) {
         for c in (0..measured.counts.len()).filter(|&c| measured.counts[c] > 0.0) {
-            let shown = seen.column(c);
-            let gain = &self.covariance * shown;
+            let shown = seen.row(c).transpose();
+            let gain = &self.covariance * &shown;
             let variance = 1.0 + shown.dot(&gain);
             let innovation = measured.rows.row(c).transpose() - self.mean.tr_mul(&shown);
             self.found.products.ger(1.0 / variance, &innovation, &innovation, 1.0);
@@ -179,17 +134,10 @@ impl Filter {
     }
 
     /// Time update to the end of a stretch.
-    fn go_on(&mut self, [moves, transposed]: &[DMatrix<f64>; 2]) {
-        moves.mul_to(&self.mean, &mut self.next);
-        std::mem::swap(&mut self.mean, &mut self.next);
-        let [half, moved] = &mut self.moved;
-        moves.mul_to(&self.covariance, half);
-        half.mul_to(transposed, moved);
-        for j in 0..moved.ncols() {
-            for i in 0..moved.nrows() {
-                self.covariance[(i, j)] = (moved[(i, j)] + moved[(j, i)]) * 0.5;
-            }
-        }
+    fn go_on(&mut self, moves: &DMatrix<f64>) {
+        self.mean = moves * &self.mean;
+        let moved = moves * &self.covariance * moves.transpose();
+        self.covariance = (&moved + moved.transpose()) * 0.5;
     }
 }
 
@@ -225,7 +173,8 @@ mod tests {
     }
 
     /// Covariance of what is measured and its rows, from what the signals' beginnings and gains come to one by one.
-    fn written_out(run: &Condensed, (own, variance_s): (&[usize], f64)) -> (DMatrix<f64>, DMatrix<f64>) {
+    fn written_out(run: &Condensed, walk: &Walk) -> (DMatrix<f64>, DMatrix<f64>) {
+        let own = walk.ports;
         let n = run.start.nrows();
         let there: Vec<(usize, usize)> = (0..STRETCHES)
             .flat_map(|k| (0..CHANNELS).map(move |c| (k, c)))
@@ -236,7 +185,7 @@ mod tests {
             for gained in 0..=STRETCHES {
                 let variance = match gained {
                     0 => FIRST,
-                    k => variance_s * run.measured[k - 1].lasts_s,
+                    k => walk.variance_s * run.measured[k - 1].lasts_s,
                 };
                 let mut state = if gained == 0 { run.start.column(port).into_owned() } else { DVector::zeros(n) };
                 let mut shown = Vec::new();
@@ -256,7 +205,7 @@ mod tests {
     }
 
     /// Minus twice the logarithm, with the number that both runs share and each run's own zero at their best.
-    fn dense(runs: &[Condensed], walk: (&[usize], f64)) -> f64 {
+    fn dense(runs: &[Condensed], walk: &Walk) -> f64 {
         let parts: Vec<_> = runs.iter().map(|run| written_out(run, walk)).collect();
         let mut spread = 0.0;
         let mut whitened: Vec<DMatrix<f64>> = Vec::new();
@@ -283,8 +232,8 @@ mod tests {
     fn the_filter_gives_the_likelihood_of_all_samples_together() {
         let runs = [run(0.3), run(5.1)];
         for (ports, variance_s) in [(&[][..], 0.0), (&[0][..], 0.7), (&[1][..], 1e-3), (&[0, 1][..], 4.0)] {
-            let filtered = Likelihood::of(&Walks::at(ports, &runs), variance_s).cost;
-            let dense = dense(&runs, (ports, variance_s));
+            let walk = Walk { ports, variance_s };
+            let [filtered, dense] = [Likelihood::of(&runs, &walk).cost, dense(&runs, &walk)];
             assert!((filtered - dense).abs() < 1e-6 * dense.abs(), "{ports:?}: {filtered} {dense}");
         }
     }

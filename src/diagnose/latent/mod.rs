@@ -18,7 +18,7 @@ use crate::diagnose::fit::{Fit, Problem, Rows};
 use crate::diagnose::grammar::{Place, places};
 use crate::laws::Address;
 use crate::parallel;
-use likelihood::{Likelihood, Walks};
+use likelihood::{Likelihood, Walk};
 use stretches::condensed;
 
 /// Maximum number of stretches of the longest run, and of all runs together. A signal is constant within a stretch.
@@ -74,10 +74,9 @@ pub fn latents(problem: &Problem, fit: &Fit, known: &Rows) -> Vec<Latent> {
     let longest_s = lasts_s().fold(0.0, f64::max);
     let stretch_s = f64::max(longest_s / STRETCHES, lasts_s().sum::<f64>() / ALL_STRETCHES);
     let Some(runs) = condensed(problem, &settings, known, &single, stretch_s) else { return Vec::new() };
-    let none = Likelihood::of(&Walks::at(&[], &runs), 0.0);
+    let none = Likelihood::of(&runs, &Walk { ports: &[], variance_s: 0.0 });
     let one = |(address, ports): &(String, Vec<usize>)| {
-        let walks = Walks::at(ports, &runs);
-        let at = |pace: f64| Likelihood::of(&walks, pace * pace / longest_s);
+        let at = |pace: f64| Likelihood::of(&runs, &Walk { ports, variance_s: pace * pace / longest_s });
         let best = likeliest(&at);
         let element = Address::parse(address).map_or_else(|_| SENSOR.to_owned(), |a| a.element());
         Latent {

@@ -111,7 +111,7 @@ impl Shown<'_> {
         let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
         let wanted: Vec<Wanted> = best
             .iter()
-            .flat_map(|&slot| slot.distinct_shapes().into_iter().map(move |shape| (slot, shape)))
+            .flat_map(|&slot| slot.distinct(slot.shapes()).into_iter().map(move |shape| (slot, shape)))
             .flat_map(|(slot, shape)| scales(shape).iter().map(move |s| Wanted { slot, shape, scale: s * slot.scale }))
             .collect();
         let signatures = self.signatures(all, &wanted);
