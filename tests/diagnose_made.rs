@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use smam::conceal::{Decoy, Drawn, Hiding, Rig, draw, record_asked, write_case};
+use smam::conceal::{Decoy, Drawn, Further, Hiding, Rig, draw, record_asked, write_case};
 use smam::diagnose::{Case, Diagnosis, Options, Step, Verdict, diagnose};
 use smam::effects::{Effect, EffectTable};
 use smam::recording::{Channel, Recording, read_csv};
@@ -327,7 +327,8 @@ fn an_open_answer_asks_for_the_sensor_that_would_decide() {
     assert!(next.needs_sensor() && with_sensor > 2.0 * next.separation_sigma, "{next:?}");
     assert!(next.why.contains("with force_n recorded as well") && next.file.is_some(), "{next:?}");
     let inputs = drawn.runs[0].1.clone();
-    let more = record_asked(&drawn.truth, &inputs, Some("force_n")).unwrap_or_else(|e| panic!("{e}"));
+    let more =
+        record_asked(&drawn.truth, &inputs, Some("force_n"), Further::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(more.find("force_n").is_some());
 }
 

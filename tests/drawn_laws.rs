@@ -1,8 +1,8 @@
 //! Laws that nobody chose, in the concealing plant and as text in a scene: two programs that share no equation agree.
 
 use smam::conceal::{
-    Calibration, ChannelNoise, Decoy, DrawnLaw, Form, Hiding, Place, Reads, Remembers, Rig, Secret, Truth, draw,
-    record_asked,
+    Calibration, ChannelNoise, Decoy, DrawnLaw, Form, Further, Hiding, Place, Reads, Remembers, Rig, Secret, Truth,
+    draw, record_asked,
 };
 use smam::identify::{RecordedRun, replay};
 use smam::recording::{Channel, Recording, Run};
@@ -29,7 +29,7 @@ fn programme(rig: Rig) -> Recording {
 }
 
 fn played(rig: Rig, secrets: Vec<Secret>) -> Recording {
-    record_asked(&quiet(rig, secrets), &programme(rig), None).expect("the plant runs")
+    record_asked(&quiet(rig, secrets), &programme(rig), None, Further::default()).expect("the plant runs")
 }
 
 fn simulated(rig: Rig, law: Option<String>, recorded: &Recording) -> Recording {

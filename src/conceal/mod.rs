@@ -32,7 +32,7 @@ pub use case::{Decoy, Drawn, Hiding, Truth, draw, sensor_noise};
 pub use ceiling::{Ceiling, ceiling};
 pub use drawn::{DrawnLaw, Place, Reads, Remembers};
 pub use form::Form;
-pub use more::{record_asked, record_drawn};
+pub use more::{Further, record_asked, record_drawn};
 pub use noise::ChannelNoise;
 pub use seal::seal;
 pub use secrets::Secret;

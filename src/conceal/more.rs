@@ -9,14 +9,29 @@ use super::programme::{Drive, SAMPLE_S, Wave, programme};
 use super::stock::Rig;
 use crate::recording::{PiecewiseLinear, Recording};
 
+/// Which of the runs that are added to a case: the first by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Further {
+    /// How many were added before.
+    pub before: u64,
+    /// How long those took, s.
+    pub after_s: f64,
+}
+
 /// Records a programme that somebody asks for: the plungers' positions in the rig's own columns; with a sensor that the
 /// other runs do not have, if one is asked for and the rig can be given it ([`sensor_noise`](super::sensor_noise)).
 ///
 /// # Errors
 /// Columns that the rig does not have, a plant that the solver cannot follow.
-pub fn record_asked(truth: &Truth, inputs: &Recording, sensor: Option<&str>) -> Result<Recording, ConcealError> {
+pub fn record_asked(
+    truth: &Truth,
+    inputs: &Recording,
+    sensor: Option<&str>,
+    run: Further,
+) -> Result<Recording, ConcealError> {
     let drives = asked_drives(truth.rig, inputs)?;
-    record(truth, &drives, begins_s(truth), sensor, &mut ChaCha8Rng::seed_from_u64(!truth.seed))
+    let mut random = ChaCha8Rng::seed_from_u64((!truth.seed).wrapping_add(run.before));
+    record(truth, &drives, begins_s(truth) + run.after_s, sensor, &mut random)
 }
 
 /// What the plungers of a rig are asked to do.
@@ -39,12 +54,17 @@ pub(super) fn asked_drives(rig: Rig, inputs: &Recording) -> Result<Vec<Drive>, C
 ///
 /// # Errors
 /// A plant that the solver cannot follow.
-pub fn record_drawn(truth: &Truth, duration_s: f64, sensor: Option<&str>) -> Result<Recording, ConcealError> {
-    let mut random = ChaCha8Rng::seed_from_u64(truth.seed ^ 0x5eed);
+pub fn record_drawn(
+    truth: &Truth,
+    duration_s: f64,
+    sensor: Option<&str>,
+    run: Further,
+) -> Result<Recording, ConcealError> {
+    let mut random = ChaCha8Rng::seed_from_u64((truth.seed ^ 0x5eed).wrapping_add(run.before));
     let waves = [Wave::Sine, Wave::Steps, Wave::Chirp, Wave::Triangle, Wave::Wander];
     let wave = waves[random.random_range(0..waves.len())];
     let drives = programme(truth.rig, wave, duration_s, &mut random);
-    record(truth, &drives, begins_s(truth), sensor, &mut random)
+    record(truth, &drives, begins_s(truth) + run.after_s, sensor, &mut random)
 }
 
 /// When the runs of the case have ended, s.

@@ -8,7 +8,7 @@ use super::programme::{Drive, SAMPLE_S, Wave, programme};
 use super::seal::{seal, sealed_text};
 use super::solve::solve;
 use super::stock::{Calibration, Rig, STRING_LOAD_N};
-use super::{Hiding, draw};
+use super::{Further, Hiding, draw};
 use crate::recording::{Channel, Recording};
 
 /// A plunger that goes to a position over three seconds and stays for seven.
@@ -90,7 +90,7 @@ fn a_run_asked_for_is_played_after_the_others() {
         decoys: Vec::new(),
         ..drawn.truth.clone()
     };
-    let played = super::record_asked(&quiet, &asked, None).expect("a run");
+    let played = super::record_asked(&quiet, &asked, None, Further::default()).expect("a run");
     assert_eq!(played.time_s().len(), 300);
     assert!((played.channel("plunger_mm").expect("there").values[200] - 1.0).abs() < 1e-9);
     let plant = Plant::new(Rig::MuscleBench, quiet.calibration);
@@ -98,7 +98,7 @@ fn a_run_asked_for_is_played_after_the_others() {
     let expected = solve(&plant, &drive).expect("the same");
     let shown = &played.channel("elongation_mm").expect("there").values;
     assert!(shown.iter().zip(&expected[0]).all(|(a, b)| (a - b).abs() < 1e-4));
-    let random = super::record_drawn(&drawn.truth, 20.0, None).expect("a run");
+    let random = super::record_drawn(&drawn.truth, 20.0, None, Further::default()).expect("a run");
     assert!((random.time_s().last().copied().unwrap_or(0.0) - 20.0).abs() < 0.2);
 }
 
@@ -109,8 +109,8 @@ fn a_sensor_is_added_to_one_run_and_changes_nothing_else() {
     let t: Vec<f64> = (0..800).map(|k| f64::from(k) * SAMPLE_S).collect();
     let asked_mm: Vec<f64> = t.iter().map(|t| 0.5 * t.min(2.0)).collect();
     let asked = Recording::new(t, vec![Channel::new("plunger_mm", asked_mm)]).expect("a recording");
-    let plain = super::record_asked(&drawn.truth, &asked, None).expect("a run");
-    let with = super::record_asked(&drawn.truth, &asked, Some("force_n")).expect("a run");
+    let plain = super::record_asked(&drawn.truth, &asked, None, Further::default()).expect("a run");
+    let with = super::record_asked(&drawn.truth, &asked, Some("force_n"), Further::default()).expect("a run");
     assert!(plain.find("force_n").is_none());
     let shown = &with.channel("force_n").expect("asked for").values;
     let rest = &shown[shown.len() / 2..];

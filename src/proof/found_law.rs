@@ -36,7 +36,7 @@ pub struct FoundLaw {
 /// # Errors
 /// Files that are not there or hold something else, scenes that cannot be run.
 pub fn found_law(truth: &Truth, answer: &Path, larger: &Path) -> Result<Option<FoundLaw>, ProofError> {
-    let Some((secret, law)) = truth.secrets.iter().find_map(|s| Some((s, s.law?))) else { return Ok(None) };
+    let Some((secret, law)) = drawn_law(truth) else { return Ok(None) };
     let path = answer.join("diagnosis.json");
     let diagnosis: Diagnosis =
         serde_json::from_str(&read(&path)?).map_err(|e| ProofError::Format { file: path, message: e.to_string() })?;
@@ -65,6 +65,21 @@ pub fn found_law(truth: &Truth, answer: &Path, larger: &Path) -> Result<Option<F
         curve_error_beyond: error(1.5),
         gap_larger,
     }))
+}
+
+/// The first drawn law that a case hides.
+fn drawn_law(truth: &Truth) -> Option<(&Secret, DrawnLaw)> {
+    truth.secrets.iter().find_map(|secret| Some((secret, secret.law?)))
+}
+
+/// Probability from which an answer is certain of a place.
+const CERTAIN: f64 = 0.9;
+
+/// Whether an answer is certain of the place of the law that a case hides.
+pub(super) fn is_certain_of_the_law(truth: &Truth, diagnosis: &Diagnosis) -> bool {
+    let Some((secret, law)) = drawn_law(truth) else { return false };
+    let sought = Sought::of(law, truth.rig, secret.muscle);
+    diagnosis.effects.iter().any(|e| e.probability >= CERTAIN && sought.port_rank(e) == Some(1))
 }
 
 /// A law that an answer should hold.

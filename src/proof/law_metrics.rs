@@ -26,7 +26,25 @@ pub(super) fn law_metrics(rows: &[Row]) -> Vec<Metric> {
     figures.extend(forms(&one));
     figures.extend(gaps(&visible));
     figures.extend(harms(&all));
+    figures.extend(decided(&all));
     figures
+}
+
+/// Places that were open, and what further runs made of them; none where none was tried.
+fn decided(all: &[&Row]) -> Vec<Metric> {
+    let tried: Vec<&Row> = all.iter().copied().filter(|r| r.decided.is_some()).collect();
+    if tried.is_empty() {
+        return Vec::new();
+    }
+    let by = |runs: usize, which: usize| move |r: &Row| r.decided.as_ref().is_some_and(|d| d.is_decided(runs)[which]);
+    let goal = Goal::AtLeast;
+    let two = ("law_decided", "place open, decided by runs as proposed, up to two");
+    let two_drawn = ("law_decided_drawn", "the same by drawn runs");
+    vec![
+        share(two, &tried, by(2, 0), goal(0.9)),
+        share(("law_decided_first", "the same by the first alone"), &tried, by(1, 0), goal(0.0)),
+        share(two_drawn, &tried, by(2, 1), goal(0.0)),
+    ]
 }
 
 /// Whether the answer says where the law acts, and on what it depends.

@@ -1,6 +1,7 @@
 //! The figures of a proof.
 
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{Binomial, DiscreteCDF};
 
 use super::law_metrics::law_metrics;
 use super::row::Row;
@@ -74,6 +75,7 @@ impl Goal {
 /// #   gap_closed: None,
 /// #   law: None,
 /// #   settled: None,
+/// #   decided: None,
 ///     // ...
 /// };
 /// let rows: Vec<Row> = (0..200).map(quiet).collect();
@@ -189,6 +191,13 @@ pub fn wilson(hits: usize, count: usize) -> [f64; 2] {
     [((middle - half) / over).max(0.0), ((middle + half) / over).min(1.0)]
 }
 
+/// Probability, both sides, of a split as uneven as this or more, were either side as likely in every pair.
+pub(super) fn sign_test(a: usize, b: usize) -> f64 {
+    let least = a.min(b) as u64;
+    let below = Binomial::new(0.5, (a + b) as u64).map_or(1.0, |fair| fair.cdf(least));
+    (2.0 * below).min(1.0)
+}
+
 /// A mean with the normal interval of its error.
 fn mean(names: (&str, &str), values: &[f64], goal: Goal, percent: bool) -> Metric {
     let n = values.len() as f64;
@@ -275,7 +284,13 @@ fn times(rows: &[Row]) -> Metric {
 
 #[cfg(test)]
 mod tests {
-    use super::wilson;
+    use super::{sign_test, wilson};
+
+    #[test]
+    fn nine_of_ten_pairs_are_no_chance() {
+        assert!((sign_test(9, 1) - 22.0 / 1024.0).abs() < 1e-12);
+        assert_eq!((sign_test(0, 0), sign_test(3, 3)), (1.0, 1.0));
+    }
 
     #[test]
     fn an_interval_of_none_of_three_hundred_ends_near_one_percent() {

@@ -5,6 +5,7 @@
 
 mod campaign;
 mod curves;
+mod decide;
 mod found_law;
 mod holdout;
 mod law_ceiling;
@@ -18,6 +19,7 @@ use std::path::PathBuf;
 
 pub use campaign::{Folders, Plan, Planned, answer_case, conceal_case};
 pub use curves::{Share, detection, naming, reliability};
+pub use decide::{Decided, decide};
 pub use found_law::FoundLaw;
 pub use law_ceiling::{LawCeiling, Told, law_ceiling};
 pub use metrics::{Metric, VISIBLE, metrics};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ProofError;
 use super::campaign::Folders;
+use super::decide::Decided;
 use super::found_law::{FoundLaw, found_law};
 use super::holdout::gap_on_holdout;
 use super::settle::Settled;
@@ -56,6 +57,9 @@ pub struct Row {
     /// What the proposed experiment made of an ambiguous answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settled: Option<Settled>,
+    /// What further runs made of an answer that is not certain of the place of a drawn law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided: Option<Decided>,
     /// How long it took, where that is known.
     pub seconds: Option<f64>,
 }
@@ -79,6 +83,12 @@ impl Row {
         }
         let odd = self.effects.iter().find(|e| !(0.0..=1.0).contains(&e.probability))?;
         Some(format!("{}: probability {} of {} is not between 0 and 1", self.name, odd.probability, odd.name))
+    }
+
+    /// Whether an answer says that something is missing and is certain of no place where a law may act.
+    pub fn is_open_of_a_law(&self) -> bool {
+        let is_hidden = |e: &Answered| self.secrets.iter().any(|s| e.is(s));
+        self.law.is_some() && self.is_detected() && self.effects.iter().all(|e| e.probability < 0.9 || is_hidden(e))
     }
 
     /// Probability that the answer gives to a secret.
@@ -147,6 +157,7 @@ pub(super) fn row_of_answer(truth: &Truth, folders: &Folders) -> Result<Row, Pro
         gap_closed: None,
         law: None,
         settled: None,
+        decided: None,
         seconds: folders.seconds(&truth.name),
     })
 }

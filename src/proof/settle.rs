@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ProofError;
 use super::campaign::Folders;
 use super::row::{Row, read, row_of_answer};
-use crate::conceal::{ConcealError, Hiding, Truth, record_asked, record_drawn, sensor_noise};
+use crate::conceal::{ConcealError, Further, Hiding, Truth, record_asked, record_drawn, sensor_noise};
 use crate::diagnose::{Case, Options, Verdict, diagnose, write_answer};
 use crate::files::write_whole;
 use crate::recording::{Recording, read_csv};
@@ -57,9 +57,6 @@ pub struct After {
     pub is_right: bool,
 }
 
-/// Name of the added run's file.
-const ADDED: &str = "added.csv";
-
 /// Adds the proposed run, and a drawn one, to a case that was answered ambiguously; none where nothing was proposed.
 ///
 /// # Errors
@@ -76,10 +73,13 @@ pub fn settle(truth: &Truth, folders: &Folders, out: &Path) -> Result<Option<Set
     let both = |sensor: Option<&Sensor>, folder: &str| -> Result<[After; 2], ProofError> {
         let column = sensor.map(|s| s.column);
         let after = |which: &str, run: &dyn Fn() -> Result<Recording, ConcealError>| {
-            after(truth, folders, &out.join(format!("{which}{folder}")), sensor, run)
+            let own = Folders::below(&out.join(format!("{which}{folder}")));
+            answer_with(truth, [folders, &own], ("added.csv", sensor), run)?;
+            let row = row_of_answer(truth, &own)?;
+            Ok::<After, ProofError>(After { verdict: row.verdict, is_right: is_right(&row) })
         };
-        let proposed = after("proposed", &|| record_asked(truth, &asked, column))?;
-        Ok([proposed, after("random", &|| record_drawn(truth, duration_s, column))?])
+        let proposed = after("proposed", &|| record_asked(truth, &asked, column, Further::default()))?;
+        Ok([proposed, after("random", &|| record_drawn(truth, duration_s, column, Further::default()))?])
     };
     let next = &diagnosis.next_experiment;
     let [proposed, random] = both(None, "")?;
@@ -95,63 +95,67 @@ pub fn settle(truth: &Truth, folders: &Folders, out: &Path) -> Result<Option<Set
     Ok(Some(Settled { name: truth.name.clone(), promised_sigma, proposed, random, with_sensor }))
 }
 
-/// A sensor that one run has and the others do not.
-struct Sensor<'a> {
-    column: &'a str,
+/// A sensor that added runs have and the others do not.
+pub(super) struct Sensor<'a> {
+    pub column: &'a str,
     /// Its noise, if the case states that of its sensors.
     stated_sd: Option<f64>,
 }
 
 impl<'a> Sensor<'a> {
     /// `None` where the rig cannot be given it.
-    fn of(truth: &Truth, column: &'a str) -> Option<Self> {
+    pub fn of(truth: &Truth, column: &'a str) -> Option<Self> {
         let noise = sensor_noise(truth, column)?;
         Some(Self { column, stated_sd: truth.is_noise_stated.then_some(noise.sd) })
     }
 }
 
-/// Diagnoses a case again with one run more; what is there already is kept.
-fn after(
+/// Diagnoses a case again with one run more, from one pair of folders into another; what is there already is kept. The run
+/// has a sensor that the others lack, if one is given.
+pub(super) fn answer_with(
     truth: &Truth,
-    folders: &Folders,
-    out: &Path,
-    sensor: Option<&Sensor>,
+    [from, to]: [&Folders; 2],
+    (file, sensor): (&str, Option<&Sensor>),
     added: &dyn Fn() -> Result<Recording, ConcealError>,
-) -> Result<After, ProofError> {
-    let own = Folders::below(out);
-    if !own.answers.join(&truth.name).join("diagnosis.json").is_file() {
-        let case = own.cases.join(&truth.name);
-        add_run(&folders.cases.join(&truth.name), &case, &added()?, sensor)?;
-        let outcome = diagnose(Case::load(&[case.as_path()], None, &[])?, Options { seed: 1 }, &|_| {})?;
-        write_answer(&outcome, &own.answers.join(&truth.name))?;
+) -> Result<(), ProofError> {
+    let case = to.cases.join(&truth.name);
+    let answer = to.answers.join(&truth.name);
+    if answer.join("diagnosis.json").is_file() {
+        return Ok(());
     }
-    let row = row_of_answer(truth, &own)?;
-    Ok(After { verdict: row.verdict, is_right: is_right(&row) })
+    add_run(&from.cases.join(&truth.name), &case, (file, &added()?), sensor)?;
+    let outcome = diagnose(Case::load(&[case.as_path()], None, &[])?, Options { seed: 1 }, &|_| {})?;
+    Ok(write_answer(&outcome, &answer)?)
 }
 
 /// Copies the recordings of a case and puts one more run before the others: the last one stays the sealed one.
-fn add_run(from: &Path, to: &Path, added: &Recording, sensor: Option<&Sensor>) -> Result<(), ProofError> {
+fn add_run(
+    from: &Path,
+    to: &Path,
+    (file, added): (&str, &Recording),
+    sensor: Option<&Sensor>,
+) -> Result<(), ProofError> {
     let failed = |file: PathBuf| move |source| ProofError::Write { file, source };
     fs::create_dir_all(to).map_err(failed(to.to_path_buf()))?;
     let entries = fs::read_dir(from).map_err(|source| ProofError::Read { file: from.to_path_buf(), source })?;
     for entry in entries.flatten().filter(|e| e.path().extension().is_some_and(|x| x == "csv")) {
         fs::copy(entry.path(), to.join(entry.file_name())).map_err(failed(entry.path()))?;
     }
-    added.write_csv(&to.join(ADDED))?;
+    added.write_csv(&to.join(file))?;
     let text = read(&from.join("recordings.toml"))?;
     let path = to.join("recordings.toml");
-    write_whole(&path, &described(&text, sensor)).map_err(failed(path.clone()))
+    write_whole(&path, &described(&text, file, sensor)).map_err(failed(path.clone()))
 }
 
 /// The description of a case with the added run before its own, which lack the sensor.
-fn described(text: &str, sensor: Option<&Sensor>) -> String {
+fn described(text: &str, file: &str, sensor: Option<&Sensor>) -> String {
     let (mut channel, mut runs) = (String::new(), text.to_owned());
     if let Some(Sensor { column, stated_sd }) = sensor {
         let noise = stated_sd.map_or(String::new(), |sd| format!("noise_sd = {sd:.4}\n"));
         channel = format!("[[channel]]\ncolumn = \"{column}\"\nrole = \"output\"\n{noise}\n");
         runs = text.replace("[[run]]\n", &format!("[[run]]\nnot_recorded = [\"{column}\"]\n"));
     }
-    runs.replacen("[[run]]", &format!("{channel}[[run]]\nfile = \"{ADDED}\"\n\n[[run]]"), 1)
+    runs.replacen("[[run]]", &format!("{channel}[[run]]\nfile = \"{file}\"\n\n[[run]]"), 1)
 }
 
 fn is_right(row: &Row) -> bool {
@@ -162,7 +166,7 @@ fn is_right(row: &Row) -> bool {
         && row.effects.iter().filter(|e| e.probability > 0.5).all(|e| row.secrets.iter().any(|s| e.is(s)))
 }
 
-fn parse<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, ProofError> {
+pub(super) fn parse<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, ProofError> {
     serde_json::from_str(&read(path)?)
         .map_err(|e| ProofError::Format { file: path.to_path_buf(), message: e.to_string() })
 }
@@ -179,11 +183,11 @@ mod tests {
                     [[run]]\nfile = \"steps.csv\"\n";
         let parsed = |text: &str| RecordingSet::parse(text, Path::new("recordings.toml")).expect("a description");
         let sensor = Sensor { column: "force_n", stated_sd: Some(0.02) };
-        let with = parsed(&described(text, Some(&sensor)));
+        let with = parsed(&described(text, "added.csv", Some(&sensor)));
         let files: Vec<&str> = with.runs.iter().map(|r| r.file.as_str()).collect();
-        assert_eq!(files, [ADDED, "sine.csv", "steps.csv"]);
+        assert_eq!(files, ["added.csv", "sine.csv", "steps.csv"]);
         assert_eq!(with.runs.iter().map(|r| r.not_recorded.len()).collect::<Vec<_>>(), [0, 1, 1]);
         assert_eq!(with.channels.last().map(|c| (c.column.as_str(), c.noise_sd)), Some(("force_n", Some(0.02))));
-        assert_eq!(parsed(&described(text, None)).channels.len(), 2);
+        assert_eq!(parsed(&described(text, "added.csv", None)).channels.len(), 2);
     }
 }

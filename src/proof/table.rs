@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use super::curves::{detection, naming, reliability};
-use super::metrics::{Metric, VISIBLE, wilson};
+use super::decide::{Decided, Step};
+use super::metrics::{Metric, VISIBLE, sign_test, wilson};
 use super::row::Row;
 use crate::conceal::{Hiding, Secret};
 use crate::diagnose::Verdict;
@@ -34,6 +35,7 @@ pub fn page(rows: &[Row], metrics: &[Metric]) -> String {
     by_misfit(&mut text, rows);
     by_effect(&mut text, rows);
     drawn_laws(&mut text, rows);
+    further_runs(&mut text, rows);
     reliability_table(&mut text, rows);
     wrong(&mut text, rows);
     text
@@ -141,7 +143,7 @@ fn drawn_laws(text: &mut String, rows: &[Row]) {
         let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.3}"));
         let _ = writeln!(
             text,
-            "| {} {} | {:.2} | `{}` | {:?}: {} | {} | {} | {} | {} | {} | {:.0} |",
+            "| {} {} | {:.2} | `{}` | {:?}: {} | {} | {} | {} | {} | {} | {} |",
             r.name,
             r.rig.scene(),
             r.excess,
@@ -156,6 +158,42 @@ fn drawn_laws(text: &mut String, rows: &[Row]) {
             r.seconds.map_or("-".to_owned(), |s| format!("{s:.0}"))
         );
     }
+}
+
+/// What runs that answers proposed made of places that were open, beside drawn ones.
+fn further_runs(text: &mut String, rows: &[Row]) {
+    let tried: Vec<(&Row, &Decided)> = rows.iter().filter_map(|r| Some((r, r.decided.as_ref()?))).collect();
+    if tried.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n### Further runs where the place of a law was open\n\n\
+         | case | promised, sigma | sensor | proposed | drawn |\n|---|---|---|---|---|\n",
+    );
+    let words = |steps: &[Step]| -> String {
+        let one = |s: &Step| {
+            let mark = if s.is_right { "right" } else { "not" };
+            format!("{:.0} s: {mark} (`{}` {:.2})", s.added_s, s.port, s.probability)
+        };
+        steps.iter().map(one).collect::<Vec<_>>().join(", ")
+    };
+    for (r, d) in &tried {
+        let sensor = d.proposed.first().and_then(|s| s.sensor.as_deref()).unwrap_or("-");
+        let (proposed, drawn) = (words(&d.proposed), words(&d.drawn));
+        let _ = writeln!(text, "| {} | {:.1} | {sensor} | {proposed} | {drawn} |", r.name, d.promised_sigma);
+    }
+    let minutes = |which: usize| tried.iter().map(|(_, d)| d.rig_s()[which]).sum::<f64>() / 60.0;
+    let only =
+        |which: usize| tried.iter().filter(|(_, d)| d.is_decided(2)[which] && !d.is_decided(2)[1 - which]).count();
+    let (ours, theirs) = (only(0), only(1));
+    let _ = writeln!(
+        text,
+        "\nMinutes on the rig until decided or given up: {:.0} as proposed, {:.0} drawn. Decided by the proposed runs alone: {ours}, \
+         by the drawn ones alone: {theirs} (sign test, p = {:.3}).",
+        minutes(0),
+        minutes(1),
+        sign_test(ours, theirs)
+    );
 }
 
 fn secret_words(s: &Secret) -> String {

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use smam::conceal::Hiding;
 use smam::diagnose::{Step, Verdict};
-use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, open, row, settle};
+use smam::proof::{Folders, Plan, Planned, ProofError, Row, answer_case, conceal_case, decide, open, row, settle};
 
 use super::ceiling::{write_ceiling, write_law_ceiling, write_settling};
 use super::score::{read_rows, read_seals, write_rows, write_score, write_seals};
@@ -33,6 +33,9 @@ pub struct ProofArguments {
     /// Hide laws that nobody chose: port, variable, form and size are drawn, on the three rigs in turn; none that hide nothing
     #[arg(long)]
     laws: bool,
+    /// With --laws: where an answer is not certain of the place, add runs as it proposes, up to two, and as many drawn ones
+    #[arg(long, requires = "laws")]
+    experiments: bool,
     /// Of everything that is drawn
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -76,8 +79,13 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
     let journal = out.join("rows.jsonl");
     let former = former_rows(&journal, &planned)?;
     let seals = conceal_all(&planned, &former, &folders)?;
-    let run =
-        Run { planned: &planned, seals: &seals, folders: &folders, without: arguments.without.map(StepName::step) };
+    let run = Run {
+        planned: &planned,
+        seals: &seals,
+        folders: &folders,
+        without: arguments.without.map(StepName::step),
+        experiments: arguments.experiments,
+    };
     let rows = run.answer_all(former, &out, &journal)?;
     write_score(&rows, &out)?;
     if arguments.ceiling > 0 && arguments.laws {
@@ -130,11 +138,15 @@ struct Run<'a> {
     seals: &'a [(String, String)],
     folders: &'a Folders,
     without: Option<Step>,
+    /// Whether runs are added where the place of a drawn law is open.
+    experiments: bool,
 }
 
 impl Run<'_> {
     /// The rows of all cases, in the order of the plan; each is on disk before the next case is begun.
     fn answer_all(&self, mut rows: Vec<Row>, out: &Path, journal: &Path) -> Result<Vec<Row>, CliError> {
+        // A row whose runs are to be added now is written again, from the answer that is there.
+        rows.retain(|r| !(self.experiments && r.decided.is_none() && r.is_open_of_a_law()));
         let done: HashSet<String> = rows.iter().map(|r| r.name.clone()).collect();
         let seals = self.seals.iter().filter(|(name, _)| !done.contains(name));
         let missing: Vec<&(String, String)> = seals.collect();
@@ -168,6 +180,10 @@ impl Run<'_> {
         if row.verdict == Verdict::Ambiguous && self.is_tried(row.hiding) {
             eprintln!("the proposed experiment, and a random one, for {name}");
             row.settled = settle(&truth, self.folders, &out.join("experiments"))?;
+        }
+        if self.experiments && row.is_open_of_a_law() {
+            eprintln!("runs that {name} proposes, and drawn ones");
+            row.decided = decide(&truth, self.folders, &out.join("experiments"))?;
         }
         Ok(row)
     }

@@ -139,12 +139,12 @@ pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
     Some(Variant { placed, values })
 }
 
-fn number(value: f64, unit: Option<&str>) -> ParameterTable {
+pub(super) fn number(value: f64, unit: Option<&str>) -> ParameterTable {
     ParameterTable { value, unit: unit.map(str::to_owned), ..ParameterTable::default() }
 }
 
 /// Unit of the scale of a slot's variable, where its name does not say it: that of what a channel shows is the channel's.
-fn unit_of_scale(slot: &Slot) -> Option<&str> {
+pub(super) fn unit_of_scale(slot: &Slot) -> Option<&str> {
     let plain = if slot.port == Port::Sensor { slot.action.unit.as_str() } else { "1" };
     ending(&slot.variable).is_empty().then_some(plain)
 }
@@ -180,7 +180,7 @@ pub(super) fn ending(variable: &str) -> &str {
 }
 
 /// A shape with `x` spelled out.
-fn spelled(shape: &str, x: &str) -> String {
+pub(super) fn spelled(shape: &str, x: &str) -> String {
     let letters: Vec<char> = shape.chars().collect();
     let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
     let each = letters.iter().enumerate().map(|(i, c)| match c {

@@ -58,8 +58,13 @@ pub const MORE_SHAPES: [Shape; 6] = [
     shape("sin(x)", f64::sin, true, true),
     with_number("exp(-(x - p)^2)", |x| (-(x - PLACE).powi(2)).exp(), true, PLACE),
 ];
-/// Those that are monotonic from a run's beginning: ageing, warming, softening. Something that comes and goes with the
-/// clock is an event of one run, not a law.
-pub const MORE_SHAPES_OF_TIME: [Shape; 2] = [MORE_SHAPES[0], MORE_SHAPES[1]];
+/// A straight line, and lines from a knot on: at one scale, at zero, and at minus one scale.
+pub const LINE: Shape = SHAPES[0];
+pub const RAMPS: [Shape; 3] = [
+    SHAPES[6],
+    shape("max(x, 0)", |x| x.max(0.0), false, false),
+    shape("max(x + 1, 0)", |x| (x + 1.0).max(0.0), true, false),
+];
+
 /// What `p` may be.
 pub const P_RANGE: Range = Range { min: 0.1, max: 4.0 };

@@ -4,7 +4,7 @@ use super::acting::{Action, action, injected};
 use super::addresses::addresses;
 use super::reading::{Reading, readings};
 use super::shaped::ending;
-use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_TIME, SHAPES, Shape};
+use super::shapes::{CONSTANT, MORE_SHAPES, SHAPES, Shape};
 use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
 use crate::laws::{
@@ -53,7 +53,7 @@ pub struct Slot {
     /// Scale of the variable: half of its greatest magnitude.
     pub scale: f64,
     /// Argument of the shape in each open run, and what the shape is multiplied by there.
-    series: Vec<Vec<f64>>,
+    pub(super) series: Vec<Vec<f64>>,
     factors: Option<Vec<Vec<f64>>>,
     pub action: Action,
     /// A constant law at the port.
@@ -107,7 +107,7 @@ impl Slot {
 
     /// The same slot with the wider shapes, for when simple ones leave a misfit.
     pub fn bent(&self) -> Self {
-        Self { shapes: self.more_shapes(), ..self.clone() }
+        Self { shapes: &MORE_SHAPES, ..self.clone() }
     }
 
     /// The law's signal in an open run for a shape at this scale, without its size.
@@ -122,11 +122,6 @@ impl Slot {
     /// The same in all open runs, one after another.
     pub fn signal_of_all(&self, shape: &Shape, scale: f64) -> Vec<f64> {
         (0..self.series.len()).flat_map(|run| self.signal(run, shape, scale)).collect()
-    }
-
-    fn more_shapes(&self) -> &'static [Shape] {
-        let is_time = self.variable == Quantity::Time.spec().name();
-        if is_time { &MORE_SHAPES_OF_TIME } else { &MORE_SHAPES }
     }
 
     /// Basis shapes of its curve.
@@ -199,7 +194,7 @@ pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
         Reach::Wide => {
             let mut own = over_variables(case, from);
             let more = own.iter().flat_map(|slot| beyond(case, slot, &own)).collect::<Vec<_>>();
-            own.iter_mut().for_each(|slot| slot.shapes = slot.more_shapes());
+            own.iter_mut().for_each(|slot| slot.shapes = &MORE_SHAPES);
             [own, more].concat()
         }
         Reach::Channels => on_channels(case, from),

@@ -5,11 +5,12 @@
 //! up to chance and with the calibration free. Slots have the effect's variable, no variable, or, for laws, one that
 //! correlates with it in these runs.
 
+use super::hypothesis::is_curve;
 use super::shown::{Located, Shown};
 use super::sums::shapes_of_sum;
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Placed, Problem};
-use crate::diagnose::grammar::{Reach, Reading, SCALE, Shape, Slot, is_sum, slots, steady, variant};
+use crate::diagnose::grammar::{MORE_SHAPES, Reach, Reading, SCALE, Shape, Slot, is_sum, slots, steady, variant};
 use crate::diagnose::verdict;
 
 /// A slot may miss this share of what the effect does, or this many ties of chi²: a curve is not yet a law.
@@ -27,8 +28,11 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let all = alike(problem, fit);
     let own = all.iter().find(|slot| is_place_of(fit, slot));
     let more = own.and_then(|slot| shape(problem, fit, slot));
-    if let Some(own) = own {
-        shown.keep(&all, own, more);
+    let in_pieces = own.filter(|_| is_curve(fit));
+    match (own, in_pieces) {
+        (_, Some(own)) => shown.keep_pieces(&all, own),
+        (Some(own), None) => shown.keep(&all, own, more),
+        (None, None) => {}
     }
     let located = shown.locate(&all, &all, more);
     let may_leave = f64::max(LEFT_SHARE * shown.whole(), LEFT_TIES * tie);
@@ -39,10 +43,7 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let mut places = some_of_each(located.iter().filter(does_the_same).map(|l| &l.slot));
     let summed = own.and_then(|own| Some((own, shapes_of_sum(problem, fit, own)?)));
     let mut sums = summed.map_or_else(Vec::new, |(own, shapes)| {
-        let is_like_it = |slot: &&&Slot| {
-            (&slot.variable, &slot.reading) == (&own.variable, &own.reading) && slot.address != own.address
-        };
-        let at: Vec<&Slot> = places.iter().filter(is_like_it).copied().collect();
+        let at: Vec<&Slot> = places.iter().copied().filter(|slot| is_over_the_same(slot, own)).collect();
         shown.sums_elsewhere(&all, &at, &shapes)
     });
     let bent: Vec<Slot> = places.iter().filter(|slot| !slot.is_constant()).map(|slot| slot.bent()).collect();
@@ -50,8 +51,17 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     // What looks alike may well have the same shape there.
     let mut fits = shown.refits_with(&all, &places, SHAPES, more.map_or("", |(shape, _)| shape.text));
     fits.append(&mut sums);
+    if let Some(own) = in_pieces {
+        let at: Vec<&Slot> = all.iter().filter(|slot| is_over_the_same(slot, own)).collect();
+        fits.extend(shown.pieces_elsewhere(&all, &at, shown.whole() - may_leave));
+    }
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     fits
+}
+
+/// Whether a slot is over the variable of another, somewhere else.
+fn is_over_the_same(slot: &Slot, own: &Slot) -> bool {
+    (&slot.variable, &slot.reading) == (&own.variable, &own.reading) && slot.address != own.address
 }
 
 /// The first slots, a few per address; first ones of all addresses come before second ones.
@@ -89,7 +99,9 @@ pub(super) fn shape(problem: &Problem, fit: &Fit, slot: &Slot) -> Option<(&'stat
         let own = variant(problem.case, slot, shape, 1.0);
         own.and_then(|v| v.placed.spec().unlisted()).is_some_and(|own| own.law.expression == law.expression)
     };
-    let shape = slot.shapes().iter().find(is_its)?;
+    // Of those with an exponent the function has the one that it starts with.
+    let more = MORE_SHAPES.iter().filter(|shape| shape.start.is_none());
+    let shape = slot.shapes().iter().chain(more).find(is_its)?;
     let values = &fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values;
     let parameters = &fit.model.effects[last].spec().parameters;
     let scale = parameters.iter().position(|p| p.key.starts_with(SCALE))?;

@@ -7,6 +7,7 @@
 
 use super::elsewhere::shape;
 use super::forms::{CLEARLY, Criterion, finished, leaves_something, with_elsewhere};
+use super::hypothesis::is_curve;
 use super::shown::{Located, Shown};
 use super::unlisted::{is_law_of, several_ports};
 use crate::diagnose::fit::{Fit, Problem};
@@ -33,7 +34,7 @@ pub(super) fn completed(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit
     let mut moved = with_elsewhere(problem, simple.clone(), before);
     moved.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     match moved.first() {
-        Some(best) if leaves_something(problem, best) => grown(problem, best, before),
+        Some(best) if leaves_something(problem, best) || is_curve(best) => grown(problem, best, before),
         _ => moved,
     }
 }
@@ -76,7 +77,9 @@ pub(super) fn in_its_place(problem: &Problem, fit: &Fit, before: f64) -> Vec<Fit
     let both: Vec<&Slot> = plain.iter().copied().chain(&bent).collect();
     let own = more.map_or("", |(shape, _)| shape.text);
     let mut fits = shown.refits_with(&all, &both, SHAPES, own);
-    fits.extend(shown.sums(&best, &shown.curves(&all, &best), fit));
+    if fits.first().is_none_or(|first| leaves_something(problem, first)) {
+        fits.extend(shown.in_pieces(&all, &best, fit));
+    }
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     finished(problem, fits, FINISHED, before)
 }

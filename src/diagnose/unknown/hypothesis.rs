@@ -7,7 +7,7 @@ use super::tried::{Known, Lawful, Tried};
 use super::unlisted::{Proposals, propose_against};
 use crate::diagnose::case::{Case, Noise, Optional, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
-use crate::diagnose::grammar::{Reach, is_sum};
+use crate::diagnose::grammar::{Reach, is_in_pieces, is_sum};
 use crate::diagnose::search::{Found, MOST_EFFECTS, least_gain, leaves_much, reweight};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 use crate::parallel;
@@ -18,9 +18,15 @@ const MOST_LAWS: usize = 2;
 const EXPLAINED: f64 = 0.02;
 const EXPLAINED_OF_NOISE: f64 = 0.3;
 
-/// Whether a law leaves something, but too little to look for another one beside it.
+/// Whether a law leaves something, but too little to look for another one beside it. A curve of pieces may well have taken in what a law
+/// with memory or of two variables does.
 pub(super) fn may_grow(open: &Problem, baseline: &Fit, simple: &Fit) -> bool {
-    leaves_something(open, simple) && is_explained(open, baseline, simple)
+    (leaves_something(open, simple) || is_curve(simple)) && is_explained(open, baseline, simple)
+}
+
+/// Whether the last law of a fit is a curve of pieces.
+pub(super) fn is_curve(fit: &Fit) -> bool {
+    fit.model.effects.last().is_some_and(|law| is_in_pieces(law.spec()))
 }
 
 /// Improves the answer by laws: one alone, two, or one beside effects of the catalogue. `tried`: earlier results for
@@ -145,7 +151,8 @@ impl Search<'_> {
             let begun = begun.map(|begun| begun.again(open));
             let Some(mut proposals) = begun.or_else(|| self.propose(&here, Reach::Plain)) else { break };
             let Some(first) = proposals.fits.first() else { break };
-            if lawful.is_none() && leaves_something(open, first) && !self.is_wide(first) && self.may_be_wider(first) {
+            let may_be_more = is_curve(first) || leaves_something(open, first) && !self.is_wide(first);
+            if lawful.is_none() && may_be_more && self.may_be_wider(first) {
                 proposals.fits = self.wider(&here, proposals.fits, known.wide.take());
             }
             let Some(first) = proposals.fits.first() else { break };

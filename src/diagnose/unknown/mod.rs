@@ -14,6 +14,7 @@ mod listed;
 pub(super) mod misplaced;
 pub(super) mod one_law;
 pub(super) mod pair;
+mod pieces;
 mod shape_refits;
 mod shown;
 mod simpler;

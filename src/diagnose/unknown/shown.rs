@@ -7,7 +7,7 @@ use super::linear_range::{basis, linear_rows, where_linear};
 use super::span::explained;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, FitParameter, Problem, Rows, orthogonal};
-use crate::diagnose::grammar::{SECOND_SIZE, Shape, Slot, is_sum};
+use crate::diagnose::grammar::{Shape, Slot, is_size};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
 use crate::parallel;
@@ -48,12 +48,11 @@ impl PartialEq for Wanted<'_> {
 /// An additional shape with its scale, beside those of a slot's basis.
 pub(super) type More = Option<(&'static Shape, f64)>;
 
-/// Numbers, among the fitted ones, of the sizes of an effect; a sum of shapes has one for each.
+/// Numbers, among the fitted ones, of the sizes of an effect; a sum of shapes has one for each, and so has a curve of pieces.
 fn sizes_of(fit: &Fit, effect: usize, calibration: usize) -> Vec<usize> {
     let spec = fit.model.effects[effect].spec();
-    let is_size = |i: usize| i == 0 || is_sum(spec) && spec.parameters[i].key == SECOND_SIZE;
     let places = fit.model.places().into_iter().enumerate();
-    places.filter(|(_, (own, i))| *own == effect && is_size(*i)).map(|(k, _)| calibration + k).collect()
+    places.filter(|(_, (own, i))| *own == effect && is_size(spec, *i)).map(|(k, _)| calibration + k).collect()
 }
 
 /// Signatures that make up the curve of a slot.

@@ -1,19 +1,14 @@
-//! Laws of two shapes: tried where a curve over one slot's variable explains nearly everything, and no single shape does.
+//! Laws of two shapes: what a curve over one slot's variable is recognised as where no single shape follows it.
 
 use nalgebra::DVector;
 
-use super::forms::{CLEARLY, Criterion};
 use super::shape_refits::{Candidate, GOING_ON, SCALES};
 use super::shown::{Shown, Wanted};
 use super::span::sizes;
-use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::grammar::{SHAPES, Shape, Slot, Term, scales_of_sum, sum};
-use crate::diagnose::search::leaves_much;
 use crate::parallel;
 
-/// Curves that are fitted to the end.
-const CURVES: usize = 2;
 /// Sums that are refitted, and that go on: they are alike, and shapes with an exponent are to be converged beside them.
 const SUMS: usize = 6;
 const BEST: usize = 2;
@@ -21,24 +16,13 @@ const BEST: usize = 2;
 const POINTS: usize = 400;
 
 impl Shown<'_> {
-    /// Rough fits with sums of two shapes at the slot whose curve explains nearly everything, if there is one. `curves`: rough
-    /// fits with a curve at each slot, cheapest first; `simple`: the best law of one shape.
-    pub(super) fn sums(&self, slots: &[&Slot], curves: &[Fit], simple: &Fit) -> Vec<Fit> {
-        let promising = curves.iter().filter(|curve| curve.cost < simple.cost).take(CURVES);
-        let explains = |rough: &Fit| {
-            let curve = self.problem.fit(&rough.model, &rough.x)?;
-            let slot = slots.iter().copied().find(|slot| is_law_of(&curve, slot))?;
-            let criterion = Criterion::of(self.problem, [simple, &curve]);
-            let is_better = criterion.at(&curve) < criterion.at(simple) - CLEARLY;
-            (is_better && !leaves_much(self.problem, &self.from, &curve)).then_some((slot, curve))
-        };
-        let Some((slot, curve)) = promising.into_iter().find_map(explains) else { return Vec::new() };
-        let known = self.from.x.len();
-        let terms = alike(slot, &curve.x[known..]);
+    /// Rough fits with the sums of two shapes that come nearest to a curve at a slot, from a calibration; `curve` is thinned.
+    pub(super) fn sums_like(&self, slot: &Slot, curve: &[f64], calibration: &[f64]) -> Vec<Fit> {
+        let terms = alike(slot, curve);
         let refit = |terms: &[Term; 2]| {
             let own = sum(self.problem.case, slot, terms)?;
             let Candidate { model, mut x, .. } = self.with(&own, terms.len());
-            x[..known].copy_from_slice(&curve.x[..known]);
+            x[..calibration.len()].copy_from_slice(calibration);
             self.coarse.fit(&model, &x)
         };
         let mut fits: Vec<Fit> = parallel::map(&terms, refit).into_iter().flatten().collect();
@@ -85,13 +69,8 @@ pub(super) fn shapes_of_sum(problem: &Problem, fit: &Fit, slot: &Slot) -> Option
 }
 
 /// The sums of two shapes that come nearest to a curve where the slot's variable has been; each pair of shapes once.
-/// `sizes` are those of the slot's basis shapes.
-fn alike<'a>(slot: &Slot, sizes: &[f64]) -> Vec<[Term<'a>; 2]> {
+fn alike<'a>(slot: &Slot, curve: &[f64]) -> Vec<[Term<'a>; 2]> {
     let over = |shape: &Shape, scale: f64| -> Vec<f64> { visited(slot, shape, scale) };
-    let mut curve = vec![0.0; over(&SHAPES[0], slot.scale).len()];
-    for (shape, size) in slot.basis().zip(sizes) {
-        curve.iter_mut().zip(over(shape, slot.scale)).for_each(|(sum, y)| *sum += size * y);
-    }
     let scales = |shape: &Shape| if shape.has_scale { &SCALES[..] } else { &SCALES[..1] };
     let each =
         slot.distinct(&SHAPES).into_iter().flat_map(|shape| scales(shape).iter().map(move |s| (shape, s * slot.scale)));
@@ -99,7 +78,7 @@ fn alike<'a>(slot: &Slot, sizes: &[f64]) -> Vec<[Term<'a>; 2]> {
     let mut found: Vec<(f64, [Term; 2])> = Vec::new();
     for (i, (first, first_scale, a)) in all.iter().enumerate() {
         for (second, second_scale, b) in &all[i + 1..] {
-            if let Some((left, [own, other])) = nearest(&curve, a, b) {
+            if let Some((left, [own, other])) = nearest(curve, a, b) {
                 let terms = [(*first, *first_scale, own), (*second, *second_scale, other)];
                 found.push((left, terms.map(|(shape, scale, size)| Term { shape, scale, size })));
             }
@@ -117,8 +96,12 @@ fn alike<'a>(slot: &Slot, sizes: &[f64]) -> Vec<[Term<'a>; 2]> {
 }
 
 /// Values of a shape along the open runs, evenly thinned.
-fn visited(slot: &Slot, shape: &Shape, scale: f64) -> Vec<f64> {
-    let all = slot.signal_of_all(shape, scale);
+pub(super) fn visited(slot: &Slot, shape: &Shape, scale: f64) -> Vec<f64> {
+    thinned(slot.signal_of_all(shape, scale))
+}
+
+/// Some of many values, evenly.
+pub(super) fn thinned(all: Vec<f64>) -> Vec<f64> {
     let stride = all.len().div_ceil(POINTS).max(1);
     all.into_iter().step_by(stride).collect()
 }
@@ -145,25 +128,6 @@ mod tests {
     use super::*;
     use crate::diagnose::fit::made::Bench;
     use crate::diagnose::grammar::{Reach, slots};
-    use crate::diagnose::unknown::propose;
-
-    /// A pull that comes and goes once in the recording is no shape of the grammar, but nearly a sum of two.
-    #[test]
-    fn what_no_shape_follows_two_do() {
-        let bench = Bench::hiding("muscle.pull adds 0.1 * sin(time_s/5.0)");
-        let (problem, baseline) = (bench.open(), bench.baseline());
-        let said = std::cell::RefCell::new(Vec::new());
-        let proposals = propose(&problem, &baseline, Reach::Plain, &|line| said.borrow_mut().push(line));
-        let fits = proposals.expect("laws").fits;
-        let equations: Vec<&str> = fits[0].model.effects.iter().map(|e| e.spec().equation.as_str()).collect();
-        assert!(
-            matches!(equations[..], [own] if own.starts_with("muscle.pull adds a * ") && own.contains(" + b * ")),
-            "{equations:?} {said:?}"
-        );
-        let simple = fits.iter().filter(|f| !f.model.effects[0].spec().equation.contains(" + b * ")).map(|f| f.cost);
-        let simple = simple.fold(f64::INFINITY, f64::min);
-        assert!(fits[0].cost < 0.1 * simple, "{} {simple}", fits[0].cost);
-    }
 
     /// A curve that is a sum is found, with its sizes.
     #[test]
@@ -172,16 +136,10 @@ mod tests {
         let all = slots(&bench.case, &bench.baseline(), Reach::Plain);
         let slot =
             all.iter().find(|slot| slot.address == "muscle.pull" && slot.variable == "elongation_m").expect("a slot");
-        let shapes: Vec<&str> = slot.basis().map(|shape| shape.text).collect();
-        let sizes: Vec<f64> = shapes
-            .iter()
-            .map(|s| match *s {
-                "x^2" => 2.0,
-                "tanh(x)" => -0.5,
-                _ => 0.0,
-            })
-            .collect();
-        let best = alike(slot, &sizes);
+        let at = |text: &str| SHAPES.iter().find(|shape| shape.text == text).expect("a shape");
+        let [square, bent] = ["x^2", "tanh(x)"].map(|text| visited(slot, at(text), slot.scale));
+        let curve: Vec<f64> = square.iter().zip(&bent).map(|(square, bent)| 2.0 * square - 0.5 * bent).collect();
+        let best = alike(slot, &curve);
         let own: Vec<(&str, f64)> = best[0].iter().map(|term| (term.shape.text, term.size)).collect();
         assert!(
             matches!(own[..], [("x^2", a), ("tanh(x)", b)] if (a - 2.0).abs() < 1e-6 && (b + 0.5).abs() < 1e-6),

@@ -109,8 +109,8 @@ pub(super) fn propose_against(
     fits.extend(shown.refits(&all, &more, SHAPES_OF_SLOT));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some(simple) = fits.first().filter(|fit| reach == Reach::Plain && leaves_something(problem, fit)) {
-        say(format!("wider shapes, beside {}", simple.model.title()));
-        let other = wider_shapes(&shown, &all, &best, (&curves, simple), say);
+        say(format!("a curve of pieces, beside {}", simple.model.title()));
+        let other = shown.in_pieces(&all, &asked_for_curves(&best, &some, &likely), simple);
         fits.extend(other);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
@@ -129,24 +129,12 @@ fn to_the_end(problem: &Problem, fits: Vec<Fit>, before: f64, (reach, say): (Rea
     if reach == Reach::Plain { located_again(problem, fits, before, say) } else { fits }
 }
 
-/// Refits with sums of two shapes at the slot whose curve explains what no simple shape does, and with further shapes there, or else at the
-/// slot of the best simple law.
-fn wider_shapes(
-    shown: &Shown,
-    all: &[Slot],
-    best: &[&Slot],
-    (curves, simple): (&[Fit], &Fit),
-    say: &dyn Fn(String),
-) -> Vec<Fit> {
-    let mut fits = shown.sums(best, curves, simple);
-    let first = fits.first().unwrap_or(simple);
-    if first.cost < simple.cost {
-        say(format!("{} as a sum of two shapes: chi2 {:.0} -> {:.0}", first.model.title(), simple.cost, first.cost));
-    }
-    if let Some(own) = best.iter().find(|slot| is_law_of(first, slot) && !slot.is_constant()) {
-        fits.extend(shown.refits(all, &[&own.bent()], SHAPES_OF_SLOT));
-    }
-    fits
+/// The slots at the most likely place, and the best ones elsewhere.
+fn asked_for_curves<'a>(best: &[&'a Slot], some: &'a [Slot], likely: &[Latent]) -> Vec<&'a Slot> {
+    let there = some.iter().filter(|slot| likely.first().is_some_and(|first| first.address == slot.address));
+    let mut asked: Vec<&Slot> = there.collect();
+    asked.extend(best.iter().filter(|slot| !asked.contains(slot)).copied().collect::<Vec<_>>());
+    asked
 }
 
 /// Refits with further shapes at the slot of the best law, if that leaves something and the slot has had the simple ones alone.

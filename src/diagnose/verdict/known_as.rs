@@ -75,14 +75,23 @@ pub fn known_as(law: &Law, values: &[f64], value: &dyn Fn(f64) -> f64) -> Option
         });
     }
     let scale = law.parameters.iter().zip(values).find(|(p, _)| p.name.starts_with("scale"))?.1;
-    over(law, [value(0.02 * scale), value(2.0 * scale)])
+    over(law, &[value(0.02 * scale), value(2.0 * scale)])
 }
 
-/// The same of a law without memory whose values are known where its variable was least and greatest in magnitude.
-pub fn over(law: &Law, [near, far]: [f64; 2]) -> Option<&'static str> {
+/// A law whose ends differ by less than this share of its range goes back on the way: it neither grows nor falls.
+const TURNS: f64 = 0.5;
+
+/// The same of a law without memory with its values where its variable has been, from the least in magnitude to the greatest.
+pub fn over(law: &Law, values: &[f64]) -> Option<&'static str> {
     let [variable] = law.variables()[..] else { return None };
     let (port, variable) = (law.address.port.spec().name(), variable.name());
-    let trend = if far >= near { Grows } else { Falls };
+    let (near, far) = (*values.first()?, *values.last()?);
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+    let trend = match (far - near).abs() < TURNS * (high - low) {
+        true => Either,
+        false if far >= near => Grows,
+        false => Falls,
+    };
     let fits =
         |row: &&(&str, &str, Trend, &str)| row.0 == port && row.1 == variable && [Either, trend].contains(&row.2);
     NAMES.iter().find(fits).map(|row| row.3)
@@ -111,8 +120,10 @@ mod tests {
     fn where_the_runs_have_been_decides_on_the_name() {
         let law = law("name = 'f'\nport = 'muscle.area'\nscales = '1 + a * elongation_m/scale_m'\n\
              parameter.a = { value = 0.1 }\nparameter.scale_m = { value = 0.01 }");
-        assert!(over(&law, [0.92, 1.0]).is_some_and(|name| name.contains("widens")));
-        assert!(over(&law, [1.07, 1.0]).is_some_and(|name| name.contains("narrows")));
+        assert!(over(&law, &[0.92, 1.0]).is_some_and(|name| name.contains("widens")));
+        assert!(over(&law, &[1.07, 1.0]).is_some_and(|name| name.contains("narrows")));
+        // What comes back does neither.
+        assert_eq!(over(&law, &[0.92, 1.1, 0.95, 0.8, 1.0]), None);
     }
 
     #[test]

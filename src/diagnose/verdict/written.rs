@@ -198,11 +198,10 @@ fn line(case: &Case, fit: &Fit, at: usize) -> Option<(String, Vec<f64>, Vec<f64>
 /// Names an effect, or a form, by its curve where the runs have been.
 pub fn name_over(placed: &Placed, (x, y): (&[f64], &[f64]), known_as: &mut Option<String>) {
     let Some(own) = written(placed) else { return };
-    let by_size = |a: &(&f64, &f64), b: &(&f64, &f64)| a.0.abs().total_cmp(&b.0.abs());
-    let pairs = || x.iter().zip(y);
-    if let (Some((_, &near)), Some((_, &far))) = (pairs().min_by(by_size), pairs().max_by(by_size)) {
-        *known_as = known_as::over(&own.law, [near, far]).map(str::to_owned);
-    }
+    let mut pairs: Vec<(f64, f64)> = x.iter().map(|x| x.abs()).zip(y.iter().copied()).collect();
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let values: Vec<f64> = pairs.into_iter().map(|(_, y)| y).collect();
+    *known_as = known_as::over(&own.law, &values).map(str::to_owned);
 }
 
 /// The same of the alternatives to an effect.

@@ -1,0 +1,205 @@
+//! Laws of straight pieces, and what they are recognised as: for what no shape of the grammar follows from where a search begins.
+//!
+//! A curve of straight pieces is fitted first, at the slots where it promises most. Shapes are then held against the curve itself, which
+//! costs no simulation: at many scales, so that a fit begins near the right one. The curve stays an answer where none of them does as well.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::forms::{CLEARLY, Criterion, leaves_something};
+use super::shape_refits::{Candidate, GOING_ON};
+use super::shown::{Shown, Wanted};
+use super::span::{explained, sizes};
+use super::sums::{thinned, visited};
+use super::unlisted::is_law_of;
+use crate::diagnose::fit::Fit;
+use crate::diagnose::grammar::{MORE_SHAPES, Reading, SHAPES, Shape, Slot, drawn, in_pieces, pieces, variant};
+use crate::diagnose::search::leaves_much;
+use crate::laws::Acts;
+use crate::parallel;
+
+/// Curves that are fitted roughly.
+const CURVES: usize = 3;
+/// Shapes that are refitted.
+const SHAPES_TRIED: usize = 4;
+/// Scales at which a shape is held against a curve, from the least to the greatest, relative to the slot's.
+const SCALES: usize = 32;
+const FROM: f64 = 0.03;
+const TO: f64 = 4.0;
+
+impl Shown<'_> {
+    /// Rough fits with a law of pieces at the slot where that explains most, and with the shapes and sums that it is recognised as; none
+    /// where a curve is not clearly better than `simple`, the best law so far.
+    pub(super) fn in_pieces(&self, all: &[Slot], slots: &[&Slot], simple: &Fit) -> Vec<Fit> {
+        let promised = self.begun_in_pieces(all, slots).into_iter();
+        let candidates: Vec<Candidate> = promised.take(CURVES).map(|(_, candidate)| candidate).collect();
+        let rough = self.refitted(&candidates, CURVES);
+        let Some(curve) = rough.first().and_then(|rough| self.coarse.fit(&rough.model, &rough.x)) else {
+            return Vec::new();
+        };
+        let criterion = Criterion::of(self.problem, [simple, &curve]);
+        let own = slots.iter().find(|slot| is_law_of(&curve, slot));
+        let Some(slot) = own.filter(|_| criterion.at(&curve) < criterion.at(simple) - CLEARLY) else {
+            return Vec::new();
+        };
+        let known = self.from.x.len();
+        let values = thinned(drawn(slot, &curve.x[known..]));
+        let mut fits = self.shapes_like(slot, &values, &curve.x[..known]);
+        let is_explained = fits.iter().any(|fit| !leaves_something(self.problem, fit));
+        if !is_explained && !leaves_much(self.problem, &self.from, &curve) {
+            fits.extend(self.sums_like(slot, &values, &curve.x[..known]));
+        }
+        fits.push(curve);
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        fits
+    }
+
+    /// Rough fits with a law of pieces at each of some slots where that promises as much as `least`.
+    pub(super) fn pieces_elsewhere(&self, all: &[Slot], slots: &[&Slot], least: f64) -> Vec<Fit> {
+        let promised = self.begun_in_pieces(all, slots).into_iter().filter(|(gain, _)| *gain >= least);
+        let candidates: Vec<Candidate> = promised.take(GOING_ON).map(|(_, candidate)| candidate).collect();
+        self.refitted(&candidates, GOING_ON)
+    }
+
+    /// Keeps the part of the misfit that a law of pieces at a slot can explain.
+    pub(super) fn keep_pieces(&mut self, all: &[Slot], own: &Slot) {
+        let pieces = pieces(own);
+        let wanted: Vec<Wanted> = pieces.iter().map(|p| Wanted { slot: own, shape: p.shape, scale: p.scale }).collect();
+        let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &wanted).into_iter().collect();
+        let Some(signatures) = signatures else { return };
+        self.left = explained(&signatures, &self.left);
+    }
+
+    /// What a law of pieces at each slot promises, and the law with sizes to start from; the most promising first.
+    fn begun_in_pieces(&self, all: &[Slot], slots: &[&Slot]) -> Vec<(f64, Candidate)> {
+        let plain = slots.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain);
+        let plain: Vec<(&Slot, Vec<_>)> = plain.map(|slot| (slot, pieces(slot))).collect();
+        let wanted = plain
+            .iter()
+            .flat_map(|(slot, pieces)| pieces.iter().map(|p| Wanted { slot, shape: p.shape, scale: p.scale }));
+        let mut signatures = self.signatures(all, &wanted.collect::<Vec<_>>()).into_iter();
+        let mut promised: Vec<(f64, Candidate)> = Vec::new();
+        for (slot, pieces) in &plain {
+            let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(pieces.len()).collect();
+            let Some(own) = own.into_iter().collect::<Option<Vec<_>>>() else { continue };
+            let sizes = sizes(&own, &self.left);
+            let starts: Vec<f64> =
+                sizes.iter().zip(pieces).map(|(size, p)| size * slot.action.typical / p.times).collect();
+            let Some(law) = in_pieces(self.problem.case, slot, &starts) else { continue };
+            promised.push((explained(&own, &self.left).norm_squared(), self.with(&law, starts.len())));
+        }
+        promised.sort_by(|a, b| b.0.total_cmp(&a.0));
+        promised
+    }
+
+    /// Rough fits with the shapes that come nearest to a curve, each at its best scale.
+    fn shapes_like(&self, slot: &Slot, curve: &[f64], calibration: &[f64]) -> Vec<Fit> {
+        let refit = |(shape, scale, size): &(&'static Shape, f64, f64)| {
+            let mut own = variant(self.problem.case, slot, shape, scale / slot.scale)?;
+            let range = own.placed.spec().parameters[0].range;
+            own.values[0] = size.clamp(range.min, range.max);
+            let Candidate { model, mut x, .. } = self.with(&own, 1);
+            x[..calibration.len()].copy_from_slice(calibration);
+            self.coarse.fit(&model, &x)
+        };
+        parallel::map(&alike(slot, curve), refit).into_iter().flatten().collect()
+    }
+}
+
+/// The shapes that come nearest to a curve where the slot's variable has been, each with a scale and a size.
+fn alike(slot: &Slot, curve: &[f64]) -> Vec<(&'static Shape, f64, f64)> {
+    let scales = |shape: &Shape| -> Vec<f64> {
+        if !shape.has_scale && shape.text != "sin(x)" && shape.start.is_none() {
+            return vec![slot.scale];
+        }
+        (0..SCALES).map(|k| slot.scale * FROM * (TO / FROM).powf(k as f64 / (SCALES - 1) as f64)).collect()
+    };
+    let has_level = slot.action.acts == Acts::Scales;
+    let mut found: Vec<(f64, (&Shape, f64, f64))> = Vec::new();
+    for shape in slot.distinct(&SHAPES).into_iter().chain(slot.distinct(&MORE_SHAPES)) {
+        let at = |scale: f64| {
+            let (left, size) = nearest(curve, &visited(slot, shape, scale), has_level)?;
+            Some((left, (shape, scale, size)))
+        };
+        let best = scales(shape).into_iter().filter_map(at).min_by(|a, b| a.0.total_cmp(&b.0));
+        found.extend(best);
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(SHAPES_TRIED).map(|(_, own)| own).collect()
+}
+
+/// What is left of a curve by the nearest multiple of another, and that multiple. What scales has a level, which belongs to the calibration:
+/// the multiple is then that of a law around one.
+fn nearest(curve: &[f64], shape: &[f64], has_level: bool) -> Option<(f64, f64)> {
+    let columns = if has_level { 2 } else { 1 };
+    let rows = DMatrix::from_fn(curve.len(), columns, |i, j| if j == 0 { shape[i] } else { 1.0 });
+    let curve = DVector::from_column_slice(curve);
+    let found = rows.clone().svd(true, true).solve(&curve, 1e-9).ok()?;
+    let left = (&curve - &rows * &found).norm_squared();
+    let level = if has_level { 1.0 + found[1] } else { 1.0 };
+    (level > 0.0 && left.is_finite()).then(|| (left, found[0] / level))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::fit::made::Bench;
+    use crate::diagnose::grammar::{Reach, slots};
+    use crate::diagnose::unknown::propose;
+    use crate::diagnose::verdict::port;
+
+    fn first_of(hiding: &str) -> (Fit, Fit) {
+        let bench = Bench::hiding(hiding);
+        let baseline = bench.baseline();
+        let proposals = propose(&bench.open(), &baseline, Reach::Plain, &|_| {}).expect("laws");
+        (proposals.fits[0].clone(), baseline)
+    }
+
+    fn equation(fit: &Fit) -> &str {
+        fit.model.effects[0].spec().equation.as_str()
+    }
+
+    /// A wave is out of reach of every shape at the scales that a search begins with, and recognised from its curve.
+    #[test]
+    fn what_no_shape_follows_at_first_is_recognised_from_its_curve() {
+        let (first, baseline) = first_of("muscle.pull adds 0.1 * sin(time_s/5.0)");
+        assert_eq!(equation(&first), "muscle.pull adds a * sin((time_s/scale_s))");
+        assert!(first.cost < 1e-3 * baseline.cost, "{} {}", first.cost, baseline.cost);
+    }
+
+    /// Two bumps are no shape of the grammar: the curve itself is the law.
+    #[test]
+    fn what_no_shape_follows_stays_a_curve() {
+        let (first, baseline) =
+            first_of("muscle.pull adds 0.1 * exp(-((time_s - 6.0)/2.0)^2) - 0.15 * exp(-((time_s - 14.0)/2.0)^2)");
+        assert_eq!(
+            (port(&first.model.effects[0]).as_str(), equation(&first).matches("max(").count()),
+            ("muscle.pull", 7)
+        );
+        assert!(first.cost < 0.1 * baseline.cost, "{} {}", first.cost, baseline.cost);
+    }
+
+    #[test]
+    fn the_level_of_what_scales_belongs_to_the_calibration() {
+        let shape: Vec<f64> = (0..50).map(|i| (f64::from(i) / 10.0).sin()).collect();
+        // 1 + y = 1.25 (1 + 0.4 shape)
+        let curve: Vec<f64> = shape.iter().map(|s| 1.25 * (1.0 + 0.4 * s) - 1.0).collect();
+        let (left, size) = nearest(&curve, &shape, true).expect("a multiple");
+        assert!(left < 1e-20 && (size - 0.4).abs() < 1e-12, "{left} {size}");
+        let (left, _) = nearest(&curve, &shape, false).expect("a multiple");
+        assert!(left > 1e-3);
+    }
+
+    /// The scale at which a shape is nearest, between those of a search.
+    #[test]
+    fn a_shape_is_held_against_a_curve_at_many_scales() {
+        let bench = Bench::with(&[]);
+        let all = slots(&bench.case, &bench.baseline(), Reach::Plain);
+        let slot = all.iter().find(|slot| slot.address == "muscle.pull" && slot.variable == "time_s").expect("a slot");
+        let wave = MORE_SHAPES.iter().find(|shape| shape.text == "sin(x)").expect("a shape");
+        let scale = 0.17 * slot.scale;
+        let curve: Vec<f64> = visited(slot, wave, scale).into_iter().map(|y| -0.3 * y).collect();
+        let (shape, own, size) = alike(slot, &curve)[0];
+        assert_eq!(shape.text, "sin(x)");
+        assert!((own / scale - 1.0).abs() < 0.1 && (size + 0.3).abs() < 0.1, "{own} {scale} {size}");
+    }
+}
