@@ -58,6 +58,9 @@ pub const MORE_SHAPES: [Shape; 6] = [
     shape("sin(x)", f64::sin, true, true),
     with_number("exp(-(x - p)^2)", |x| (-(x - PLACE).powi(2)).exp(), true, PLACE),
 ];
+/// Those that are monotonic from a run's beginning: ageing, warming, softening. Of a single run what comes and goes with the clock explains
+/// anything.
+pub const MORE_SHAPES_OF_ONE_RUN: [Shape; 2] = [MORE_SHAPES[0], MORE_SHAPES[1]];
 /// A straight line, and lines from a knot on: at one scale, at zero, and at minus one scale.
 pub const LINE: Shape = SHAPES[0];
 pub const RAMPS: [Shape; 3] = [

@@ -4,7 +4,7 @@ use super::acting::{Action, action, injected};
 use super::addresses::addresses;
 use super::reading::{Reading, readings};
 use super::shaped::ending;
-use super::shapes::{CONSTANT, MORE_SHAPES, SHAPES, Shape};
+use super::shapes::{CONSTANT, MORE_SHAPES, MORE_SHAPES_OF_ONE_RUN, SHAPES, Shape};
 use crate::diagnose::case::{Case, CaseChannel};
 use crate::diagnose::fit::{Fit, Placed};
 use crate::laws::{
@@ -107,7 +107,7 @@ impl Slot {
 
     /// The same slot with the wider shapes, for when simple ones leave a misfit.
     pub fn bent(&self) -> Self {
-        Self { shapes: &MORE_SHAPES, ..self.clone() }
+        Self { shapes: self.more_shapes(), ..self.clone() }
     }
 
     /// The law's signal in an open run for a shape at this scale, without its size.
@@ -122,6 +122,15 @@ impl Slot {
     /// The same in all open runs, one after another.
     pub fn signal_of_all(&self, shape: &Shape, scale: f64) -> Vec<f64> {
         (0..self.series.len()).flat_map(|run| self.signal(run, shape, scale)).collect()
+    }
+
+    /// Whether it is over the clock of a single run: another could not contradict it.
+    pub fn is_clock_of_one_run(&self) -> bool {
+        self.series.len() < 2 && self.variable == Quantity::Time.spec().name()
+    }
+
+    fn more_shapes(&self) -> &'static [Shape] {
+        if self.is_clock_of_one_run() { &MORE_SHAPES_OF_ONE_RUN } else { &MORE_SHAPES }
     }
 
     /// Basis shapes of its curve.
@@ -194,7 +203,7 @@ pub fn slots(case: &Case, from: &Fit, reach: Reach) -> Vec<Slot> {
         Reach::Wide => {
             let mut own = over_variables(case, from);
             let more = own.iter().flat_map(|slot| beyond(case, slot, &own)).collect::<Vec<_>>();
-            own.iter_mut().for_each(|slot| slot.shapes = &MORE_SHAPES);
+            own.iter_mut().for_each(|slot| slot.shapes = slot.more_shapes());
             [own, more].concat()
         }
         Reach::Channels => on_channels(case, from),

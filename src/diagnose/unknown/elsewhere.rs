@@ -5,12 +5,13 @@
 //! up to chance and with the calibration free. Slots have the effect's variable, no variable, or, for laws, one that
 //! correlates with it in these runs.
 
-use super::hypothesis::is_curve;
 use super::shown::{Located, Shown};
 use super::sums::shapes_of_sum;
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Placed, Problem};
-use crate::diagnose::grammar::{MORE_SHAPES, Reach, Reading, SCALE, Shape, Slot, is_sum, slots, steady, variant};
+use crate::diagnose::grammar::{
+    MORE_SHAPES, Reach, Reading, SCALE, Shape, Slot, is_in_pieces, is_sum, slots, steady, variant,
+};
 use crate::diagnose::verdict;
 
 /// A slot may miss this share of what the effect does, or this many ties of chi²: a curve is not yet a law.
@@ -28,7 +29,7 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, tie: f64) -> Vec<Fit> {
     let all = alike(problem, fit);
     let own = all.iter().find(|slot| is_place_of(fit, slot));
     let more = own.and_then(|slot| shape(problem, fit, slot));
-    let in_pieces = own.filter(|_| is_curve(fit));
+    let in_pieces = own.filter(|_| fit.model.effects.last().is_some_and(|law| is_in_pieces(law.spec())));
     match (own, in_pieces) {
         (_, Some(own)) => shown.keep_pieces(&all, own),
         (Some(own), None) => shown.keep(&all, own, more),

@@ -7,7 +7,6 @@
 
 use super::elsewhere::shape;
 use super::forms::{CLEARLY, Criterion, finished, leaves_something, with_elsewhere};
-use super::hypothesis::is_curve;
 use super::shown::{Located, Shown};
 use super::unlisted::{is_law_of, several_ports};
 use crate::diagnose::fit::{Fit, Problem};
@@ -34,7 +33,7 @@ pub(super) fn completed(problem: &Problem, simple: &Fit, before: f64) -> Vec<Fit
     let mut moved = with_elsewhere(problem, simple.clone(), before);
     moved.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     match moved.first() {
-        Some(best) if leaves_something(problem, best) || is_curve(best) => grown(problem, best, before),
+        Some(best) if leaves_something(problem, best) => grown(problem, best, before),
         _ => moved,
     }
 }
@@ -78,7 +77,7 @@ pub(super) fn in_its_place(problem: &Problem, fit: &Fit, before: f64) -> Vec<Fit
     let own = more.map_or("", |(shape, _)| shape.text);
     let mut fits = shown.refits_with(&all, &both, SHAPES, own);
     if fits.first().is_none_or(|first| leaves_something(problem, first)) {
-        fits.extend(shown.in_pieces(&all, &best, fit));
+        fits.extend(shown.recognised(&all, &best, fit).fits);
     }
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     finished(problem, fits, FINISHED, before)

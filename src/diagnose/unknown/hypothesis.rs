@@ -7,7 +7,7 @@ use super::tried::{Known, Lawful, Tried};
 use super::unlisted::{Proposals, propose_against};
 use crate::diagnose::case::{Case, Noise, Optional, RunSet, Step};
 use crate::diagnose::fit::{Fit, Problem};
-use crate::diagnose::grammar::{Reach, is_in_pieces, is_sum};
+use crate::diagnose::grammar::{Reach, is_sum};
 use crate::diagnose::search::{Found, MOST_EFFECTS, least_gain, leaves_much, reweight};
 use crate::diagnose::verdict::{self, Confirmed, Excess};
 use crate::parallel;
@@ -18,15 +18,9 @@ const MOST_LAWS: usize = 2;
 const EXPLAINED: f64 = 0.02;
 const EXPLAINED_OF_NOISE: f64 = 0.3;
 
-/// Whether a law leaves something, but too little to look for another one beside it. A curve of pieces may well have taken in what a law
-/// with memory or of two variables does.
+/// Whether a law leaves something, but too little to look for another one beside it.
 pub(super) fn may_grow(open: &Problem, baseline: &Fit, simple: &Fit) -> bool {
-    (leaves_something(open, simple) || is_curve(simple)) && is_explained(open, baseline, simple)
-}
-
-/// Whether the last law of a fit is a curve of pieces.
-pub(super) fn is_curve(fit: &Fit) -> bool {
-    fit.model.effects.last().is_some_and(|law| is_in_pieces(law.spec()))
+    leaves_something(open, simple) && is_explained(open, baseline, simple)
 }
 
 /// Improves the answer by laws: one alone, two, or one beside effects of the catalogue. `tried`: earlier results for
@@ -55,6 +49,7 @@ pub(in crate::diagnose) fn weigh_laws(
     // In the place of one listed effect a law that bends fits better wherever that effect is idealised; of several it is the simpler answer.
     let is_simpler = |l: &Lawful| is_open || l.best.model.effects.len() < found.best.model.effects.len();
     let search = Search { open: &open, found, is_open, say };
+    let curve = tried.known.plain.as_ref().and_then(|plain| plain.curve.clone()).filter(|_| is_open);
     let instead = tried.instead.filter(is_simpler).and_then(|l| search.go_on(l));
     let is_enough = |lawful: &Option<Lawful>| {
         let is_explained = |l: &&Lawful| is_explained(&open, &found.baseline, &l.best);
@@ -64,7 +59,10 @@ pub(in crate::diagnose) fn weigh_laws(
     let is_beside = is_open && !is_null && !is_all(&alone) && !is_enough(&instead) && !is_enough(&alone);
     let is_beside = is_beside && case.effort.allows(Optional::LawsBeside);
     let beside = if is_beside { search.from(&found.best, Known::default()) } else { None };
-    let lawful: Vec<Lawful> = [instead, alone, beside].into_iter().flatten().collect();
+    // A curve describes what nothing simpler explains.
+    let is_bare = ![&instead, &alone, &beside].into_iter().any(|l| is_all(l) || is_enough(l));
+    let curve = curve.filter(|_| is_bare).and_then(|curve| search.described(&curve));
+    let lawful: Vec<Lawful> = [instead, alone, beside, curve].into_iter().flatten().collect();
     let criterion = Criterion::of(&open, lawful.iter().map(|l| &l.best).chain([&found.best]));
     let best = lawful.into_iter().min_by(|a, b| criterion.at(&a.best).total_cmp(&criterion.at(&b.best)))?;
     let against = if is_open { &found.baseline } else { &found.best };
@@ -136,6 +134,16 @@ impl Search<'_> {
         self.add_laws(best.clone(), Some(Lawful { best, forms }), Known::default())
     }
 
+    /// A curve of pieces in place of the answer, with its alternatives.
+    fn described(&self, curve: &Fit) -> Option<Lawful> {
+        let before = self.found.baseline.cost;
+        let fit = self.open.fit(&curve.model, &curve.x)?;
+        let mut fits = with_elsewhere(self.open, fit, before);
+        fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let (best, forms) = equally_good(self.open, &fits, before)?;
+        Some(Lawful { best, forms })
+    }
+
     /// Adds laws one by one while much of the misfit remains.
     fn add_laws(&self, mut here: Fit, mut lawful: Option<Lawful>, mut known: Known) -> Option<Lawful> {
         let open = self.open;
@@ -151,8 +159,7 @@ impl Search<'_> {
             let begun = begun.map(|begun| begun.again(open));
             let Some(mut proposals) = begun.or_else(|| self.propose(&here, Reach::Plain)) else { break };
             let Some(first) = proposals.fits.first() else { break };
-            let may_be_more = is_curve(first) || leaves_something(open, first) && !self.is_wide(first);
-            if lawful.is_none() && may_be_more && self.may_be_wider(first) {
+            if lawful.is_none() && leaves_something(open, first) && !self.is_wide(first) && self.may_be_wider(first) {
                 proposals.fits = self.wider(&here, proposals.fits, known.wide.take());
             }
             let Some(first) = proposals.fits.first() else { break };

@@ -1,8 +1,8 @@
 //! One law in place of the best single effect, before several effects of the catalogue are tried. Uses the open runs only.
 
-use super::forms::{Criterion, equally_good, is_clearly_better, leaves_something};
+use super::forms::{equally_good, is_clearly_better, leaves_something};
 use super::grown::completed;
-use super::hypothesis::{is_curve, may_grow, renew, without_idle};
+use super::hypothesis::{may_grow, renew, without_idle};
 use super::listed::does_as_well;
 use super::tried::{Known, Lawful, Tried};
 use super::unlisted::propose;
@@ -54,15 +54,8 @@ fn with_more_to_it(open: &Problem, simple: Lawful, baseline: &Fit, say: &dyn Fn(
     if !may_grow(open, baseline, &simple.best) || !open.case.effort.allows(Optional::WiderLaws) {
         return simple;
     }
-    let mut fits = completed(open, &simple.best, baseline.cost);
-    if fits.is_empty() && is_curve(&simple.best) {
-        fits = propose(open, baseline, Reach::Wide, say).map_or_else(Vec::new, |proposals| proposals.fits);
-    }
-    let is_better = |best: &Fit| {
-        let criterion = Criterion::of(open, [&simple.best, best]);
-        !leaves_something(open, best) && criterion.at(best) < criterion.at(&simple.best)
-    };
-    let more = equally_good(open, &fits, baseline.cost).filter(|(best, _)| is_better(best));
+    let fits = completed(open, &simple.best, baseline.cost);
+    let more = equally_good(open, &fits, baseline.cost).filter(|(best, _)| !leaves_something(open, best));
     let Some((best, forms)) = more else { return simple };
     say(format!("instead of {}: chi2 {:.0} -> {:.0}", simple.best.model.title(), simple.best.cost, best.cost));
     Lawful { best, forms }

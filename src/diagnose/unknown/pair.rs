@@ -99,12 +99,12 @@ fn wide(open: &Problem, baseline: &Fit, simple: &Fit, say: &dyn Fn(String)) -> O
             best.cost
         ));
         if !leaves_something(open, best) {
-            return Some(Proposals { fits });
+            return Some(Proposals { fits, curve: None });
         }
     }
     fits.extend(propose(open, baseline, Reach::Wide, say).into_iter().flat_map(|own| own.fits));
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    (!fits.is_empty()).then_some(Proposals { fits })
+    (!fits.is_empty()).then_some(Proposals { fits, curve: None })
 }
 
 /// The best proposal, if it leaves nothing above noise and is clearly better than the answer.

@@ -1,7 +1,8 @@
 //! Laws of straight pieces, and what they are recognised as: for what no shape of the grammar follows from where a search begins.
 //!
 //! A curve of straight pieces is fitted first, at the slots where it promises most. Shapes are then held against the curve itself, which
-//! costs no simulation: at many scales, so that a fit begins near the right one. The curve stays an answer where none of them does as well.
+//! costs no simulation: at many scales, so that a fit begins near the right one. The curve itself is kept as a
+//! description: with its eight sizes it may take in what two simpler things do, so it neither ends a search nor bounds it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,20 +27,27 @@ const SCALES: usize = 32;
 const FROM: f64 = 0.03;
 const TO: f64 = 4.0;
 
+/// A law of pieces, and rough fits with what it is recognised as, cheapest first.
+#[derive(Default)]
+pub(super) struct Recognised {
+    pub curve: Option<Fit>,
+    pub fits: Vec<Fit>,
+}
+
 impl Shown<'_> {
-    /// Rough fits with a law of pieces at the slot where that explains most, and with the shapes and sums that it is recognised as; none
-    /// where a curve is not clearly better than `simple`, the best law so far.
-    pub(super) fn in_pieces(&self, all: &[Slot], slots: &[&Slot], simple: &Fit) -> Vec<Fit> {
+    /// A law of pieces at the slot where that explains most, and the shapes and sums that it is recognised as; nothing where it is not
+    /// clearly better than `simple`, the best law so far.
+    pub(super) fn recognised(&self, all: &[Slot], slots: &[&Slot], simple: &Fit) -> Recognised {
         let promised = self.begun_in_pieces(all, slots).into_iter();
         let candidates: Vec<Candidate> = promised.take(CURVES).map(|(_, candidate)| candidate).collect();
         let rough = self.refitted(&candidates, CURVES);
         let Some(curve) = rough.first().and_then(|rough| self.coarse.fit(&rough.model, &rough.x)) else {
-            return Vec::new();
+            return Recognised::default();
         };
         let criterion = Criterion::of(self.problem, [simple, &curve]);
         let own = slots.iter().find(|slot| is_law_of(&curve, slot));
         let Some(slot) = own.filter(|_| criterion.at(&curve) < criterion.at(simple) - CLEARLY) else {
-            return Vec::new();
+            return Recognised::default();
         };
         let known = self.from.x.len();
         let values = thinned(drawn(slot, &curve.x[known..]));
@@ -48,9 +56,8 @@ impl Shown<'_> {
         if !is_explained && !leaves_much(self.problem, &self.from, &curve) {
             fits.extend(self.sums_like(slot, &values, &curve.x[..known]));
         }
-        fits.push(curve);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        fits
+        Recognised { fits, curve: Some(curve) }
     }
 
     /// Rough fits with a law of pieces at each of some slots where that promises as much as `least`.
@@ -72,6 +79,7 @@ impl Shown<'_> {
     /// What a law of pieces at each slot promises, and the law with sizes to start from; the most promising first.
     fn begun_in_pieces(&self, all: &[Slot], slots: &[&Slot]) -> Vec<(f64, Candidate)> {
         let plain = slots.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain);
+        let plain = plain.filter(|slot| !slot.is_clock_of_one_run());
         let plain: Vec<(&Slot, Vec<_>)> = plain.map(|slot| (slot, pieces(slot))).collect();
         let wanted = plain
             .iter()
@@ -145,13 +153,13 @@ mod tests {
     use crate::diagnose::fit::made::Bench;
     use crate::diagnose::grammar::{Reach, slots};
     use crate::diagnose::unknown::propose;
+    use crate::diagnose::unknown::unlisted::Proposals;
     use crate::diagnose::verdict::port;
 
-    fn first_of(hiding: &str) -> (Fit, Fit) {
+    fn proposed(hiding: &str) -> (Proposals, Fit) {
         let bench = Bench::hiding(hiding);
         let baseline = bench.baseline();
-        let proposals = propose(&bench.open(), &baseline, Reach::Plain, &|_| {}).expect("laws");
-        (proposals.fits[0].clone(), baseline)
+        (propose(&bench.open(), &baseline, Reach::Plain, &|_| {}).expect("laws"), baseline)
     }
 
     fn equation(fit: &Fit) -> &str {
@@ -161,21 +169,35 @@ mod tests {
     /// A wave is out of reach of every shape at the scales that a search begins with, and recognised from its curve.
     #[test]
     fn what_no_shape_follows_at_first_is_recognised_from_its_curve() {
-        let (first, baseline) = first_of("muscle.pull adds 0.1 * sin(time_s/5.0)");
-        assert_eq!(equation(&first), "muscle.pull adds a * sin((time_s/scale_s))");
+        let (proposals, baseline) = proposed("muscle.pull adds 0.1 * sin(elongation_m/3e-3)");
+        let first = &proposals.fits[0];
+        assert_eq!(equation(first), "muscle.pull adds a * sin((elongation_m/scale_m))");
         assert!(first.cost < 1e-3 * baseline.cost, "{} {}", first.cost, baseline.cost);
     }
 
-    /// Two bumps are no shape of the grammar: the curve itself is the law.
+    /// Two bumps are no shape of the grammar: the curve itself describes them. It is none of the proposals, which may end a search.
     #[test]
     fn what_no_shape_follows_stays_a_curve() {
-        let (first, baseline) =
-            first_of("muscle.pull adds 0.1 * exp(-((time_s - 6.0)/2.0)^2) - 0.15 * exp(-((time_s - 14.0)/2.0)^2)");
-        assert_eq!(
-            (port(&first.model.effects[0]).as_str(), equation(&first).matches("max(").count()),
-            ("muscle.pull", 7)
+        let (proposals, baseline) = proposed(
+            "muscle.pull adds 0.1 * exp(-((elongation_m - 5e-3)/2e-3)^2) - 0.15 * exp(-((elongation_m - 14e-3)/3e-3)^2)",
         );
-        assert!(first.cost < 0.1 * baseline.cost, "{} {}", first.cost, baseline.cost);
+        let curve = proposals.curve.expect("a curve");
+        let at = port(&curve.model.effects[0]);
+        assert!(at.starts_with("muscle.") && equation(&curve).matches("max(").count() == 7, "{}", equation(&curve));
+        assert!(curve.cost < 0.1 * baseline.cost, "{} {}", curve.cost, baseline.cost);
+        assert!(proposals.fits.iter().all(|fit| equation(fit) != equation(&curve)));
+    }
+
+    /// Of a single run a curve over the clock explains anything.
+    #[test]
+    fn no_curve_is_over_the_clock_of_one_run() {
+        let bench = Bench::hiding("muscle.pull adds 0.1 * sin(time_s/5.0)");
+        let (problem, baseline) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &baseline, Reach::Plain);
+        let shown = Shown::misfit(&problem, &baseline, problem.rows_of(&baseline).expect("it does not diverge"));
+        let over = |variable: &str| -> Vec<&Slot> { all.iter().filter(|slot| slot.variable == variable).collect() };
+        assert!(!over("time_s").is_empty() && shown.begun_in_pieces(&all, &over("time_s")).is_empty());
+        assert!(!shown.begun_in_pieces(&all, &over("elongation_m")).is_empty());
     }
 
     #[test]

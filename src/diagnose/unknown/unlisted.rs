@@ -38,6 +38,8 @@ const FINISHED: usize = 6;
 pub(in crate::diagnose) struct Proposals {
     /// Refits with one law more, cheapest first; the law is the last effect.
     pub fits: Vec<Fit>,
+    /// A curve of pieces, if one is clearly better than the best simple law: a description, where nothing else comes near.
+    pub curve: Option<Fit>,
 }
 
 impl Proposals {
@@ -46,7 +48,7 @@ impl Proposals {
         let best = &self.fits[..self.fits.len().min(FINISHED)];
         let mut fits: Vec<Fit> = parallel::map(best, |f| problem.fit(&f.model, &f.x)).into_iter().flatten().collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        Self { fits }
+        Self { fits, curve: self.curve.and_then(|f| problem.fit(&f.model, &f.x)) }
     }
 }
 
@@ -93,7 +95,7 @@ pub(super) fn propose_against(
         return None;
     }
     let best = several_ports(&located, &likely);
-    let mut fits = shown.refits(&all, &best, 1);
+    let (mut fits, mut curve) = (shown.refits(&all, &best, 1), None);
     // Curves show where laws of other shapes are worth trying. A shape that explains it all needs no other.
     let is_explained = fits.first().is_some_and(|fit| !leaves_something(problem, fit));
     let curves = if is_explained { Vec::new() } else { shown.curves(&all, &best) };
@@ -110,8 +112,9 @@ pub(super) fn propose_against(
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some(simple) = fits.first().filter(|fit| reach == Reach::Plain && leaves_something(problem, fit)) {
         say(format!("a curve of pieces, beside {}", simple.model.title()));
-        let other = shown.in_pieces(&all, &asked_for_curves(&best, &some, &likely), simple);
-        fits.extend(other);
+        let other = shown.recognised(&all, &asked_for_curves(&best, &some, &likely), simple);
+        curve = other.curve;
+        fits.extend(other.fits);
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
     if reach == Reach::Wide {
@@ -119,7 +122,7 @@ pub(super) fn propose_against(
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
     fits.dedup_by(|a, b| a.model.effects == b.model.effects);
-    Some(Proposals { fits: to_the_end(problem, fits, from.cost, (reach, say)) })
+    Some(Proposals { fits: to_the_end(problem, fits, from.cost, (reach, say)), curve })
 }
 
 /// The best of some rough refits converged, and laws located again along the runs of the first. `before`: chi² without a law.
