@@ -216,7 +216,10 @@ fn said(
     let verdict = judged(case, (found, &effects), confirmed, excess);
     let is_modelled = complete.model.effects.iter().any(|e| e.entry.hypothetical);
     let is_refuted = confirmed == Confirmed::InPart && !is_modelled;
-    if verdict == Verdict::UnknownPhysics && (is_refuted || verdict::leaves_a_part(found, excess)) {
+    // A curve describes what nothing simpler explains, from another port perhaps nearly as well.
+    let is_described = found.best.model.effects.iter().any(|e| grammar::is_in_pieces(e.spec()));
+    let is_doubtful = is_refuted || is_described || verdict::leaves_a_part(found, excess);
+    if verdict == Verdict::UnknownPhysics && is_doubtful {
         verdict::doubt(&mut effects);
     }
     if verdict == Verdict::UnknownPhysics && !is_modelled && !open_is_loud(case, noise, found) {

@@ -8,7 +8,7 @@ use super::ProofError;
 use super::campaign::Folders;
 use super::found_law::is_certain_of_the_law;
 use super::settle::{Sensor, answer_with, parse};
-use crate::conceal::{ConcealError, Further, Truth, record_asked, record_drawn};
+use crate::conceal::{Further, Truth, record_asked, record_drawn};
 use crate::diagnose::Diagnosis;
 use crate::recording::{Recording, read_csv};
 
@@ -58,48 +58,43 @@ impl Decided {
 /// Files that cannot be read or written, a plant that cannot be integrated.
 pub fn decide(truth: &Truth, folders: &Folders, out: &Path) -> Result<Option<Decided>, ProofError> {
     let Some(first) = Proposal::of(truth, folders)? else { return Ok(None) };
-    let proposed = Chain { truth, out, name: "decided" }.runs(folders, &|answers, run| {
-        let Some(proposal) = Proposal::of(truth, answers)? else { return Ok(None) };
-        let sensor = if run.before == 0 { proposal.sensor.clone() } else { first.sensor.clone() };
-        let added = move || record_asked(truth, &proposal.inputs, sensor.as_deref(), run);
-        Ok(Some((Box::new(added), first.sensor.clone())))
-    })?;
-    let added_s = first.duration_s();
-    let drawn = Chain { truth, out, name: "drawn" }.runs(folders, &|_, run| {
-        let sensor = first.sensor.clone();
-        let added = move || record_drawn(truth, added_s, sensor.as_deref(), run);
-        Ok(Some((Box::new(added), first.sensor.clone())))
-    })?;
+    let chain = |name, is_proposed| Chain { truth, out, name, first: &first, is_proposed }.runs(folders);
+    let (proposed, drawn) = (chain("decided", true)?, chain("drawn", false)?);
     Ok(Some(Decided { promised_sigma: first.promised_sigma, proposed, drawn }))
 }
-
-/// A way to make the next run, and the sensor that it has.
-type Next<'a> = (Box<dyn Fn() -> Result<Recording, ConcealError> + 'a>, Option<String>);
 
 /// Runs that are added one after the other.
 struct Chain<'a> {
     truth: &'a Truth,
     out: &'a Path,
     name: &'a str,
+    /// What the case's own answer proposes; its sensor is that of all runs added, and its length that of drawn ones.
+    first: &'a Proposal,
+    /// As each answer proposes, or drawn.
+    is_proposed: bool,
 }
 
-impl<'a> Chain<'a> {
-    /// Adds what `next` makes of the answer before, until an answer is right, nothing is proposed, or enough was tried.
-    fn runs(
-        &self,
-        folders: &Folders,
-        next: &dyn Fn(&Folders, Further) -> Result<Option<Next<'a>>, ProofError>,
-    ) -> Result<Vec<Step>, ProofError> {
+impl Chain<'_> {
+    /// Adds runs until an answer is right, nothing is proposed, or enough was tried.
+    fn runs(&self, folders: &Folders) -> Result<Vec<Step>, ProofError> {
+        let (truth, sensor) = (self.truth, self.first.sensor.as_deref());
         let (mut from, mut steps, mut run) = (folders.clone(), Vec::<Step>::new(), Further::default());
         while steps.len() < PROGRAMMES && !steps.last().is_some_and(|s| s.is_right) {
-            let Some((added, sensor)) = next(&from, run)? else { break };
+            let asked = if self.is_proposed { Proposal::of(truth, &from)? } else { None };
+            if self.is_proposed && asked.is_none() {
+                break;
+            }
+            let added = || match &asked {
+                Some(proposal) => record_asked(truth, &proposal.inputs, sensor, run),
+                None => record_drawn(truth, length_s(&self.first.inputs), sensor, run),
+            };
             let to = Folders::below(&self.out.join(format!("{}_{}", self.name, steps.len() + 1)));
             let file = format!("added_{}.csv", steps.len() + 1);
             // What the first added run has is a channel already.
-            let new = sensor.as_deref().filter(|_| steps.is_empty()).and_then(|c| Sensor::of(self.truth, c));
-            answer_with(self.truth, [&from, &to], (&file, new.as_ref()), &*added)?;
-            let recording = read_csv(&to.cases.join(&self.truth.name).join(&file))?;
-            let step = self.step(&to, length_s(&recording), sensor)?;
+            let new = sensor.filter(|_| steps.is_empty()).and_then(|column| Sensor::of(truth, column));
+            answer_with(truth, [&from, &to], (&file, new.as_ref()), &added)?;
+            let recording = read_csv(&to.cases.join(&truth.name).join(&file))?;
+            let step = self.step(&to, length_s(&recording))?;
             run = Further { before: run.before + 1, after_s: run.after_s + step.added_s };
             steps.push(step);
             from = to;
@@ -107,12 +102,12 @@ impl<'a> Chain<'a> {
         Ok(steps)
     }
 
-    fn step(&self, folders: &Folders, added_s: f64, sensor: Option<String>) -> Result<Step, ProofError> {
+    fn step(&self, folders: &Folders, added_s: f64) -> Result<Step, ProofError> {
         let diagnosis: Diagnosis = parse(&folders.answers.join(&self.truth.name).join("diagnosis.json"))?;
         let first = diagnosis.effects.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
         Ok(Step {
             added_s,
-            sensor,
+            sensor: self.first.sensor.clone(),
             is_right: is_certain_of_the_law(self.truth, &diagnosis),
             port: first.map_or(String::new(), |e| e.port.clone()),
             probability: first.map_or(0.0, |e| e.probability),
@@ -140,10 +135,6 @@ impl Proposal {
         let sensor = next.sensor.filter(|column| Sensor::of(truth, column).is_some());
         let promised_sigma = next.sensor_sigma.filter(|_| sensor.is_some()).unwrap_or(next.separation_sigma);
         Ok(Some(Self { inputs: read_csv(&file)?, promised_sigma, sensor }))
-    }
-
-    fn duration_s(&self) -> f64 {
-        length_s(&self.inputs)
     }
 }
 
