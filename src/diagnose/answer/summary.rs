@@ -169,10 +169,17 @@ fn withheld(effects: &[NamedEffect]) -> String {
     )
 }
 
+/// Letters from which a law is not spelled out in a sentence: a curve of pieces has three hundred.
+const LETTERS: usize = 160;
+
 /// A law with where it acts and its parameters: `muscle.friction times (1 + ...)`.
 fn law(effect: &NamedEffect) -> String {
     let (law, memory) = effect.law_and_memory();
     let own = match effect.acts.as_str() {
+        acts if law.len() > LETTERS => {
+            let does = if acts == "scales" { "times" } else { "plus" };
+            format!("{} {does} a curve over {} (see law)", effect.port, effect.variables.join(" and "))
+        }
         "scales" => format!("{} times ({law}){memory}", effect.port),
         _ => format!("{} plus {law}{memory}", effect.port),
     };
@@ -193,6 +200,21 @@ fn mere_number(effect: &NamedEffect) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_law_that_no_one_reads_in_a_sentence_is_named_a_curve() {
+        let effect = |law: &str| NamedEffect {
+            port: "muscle.wall".to_owned(),
+            acts: "scales".to_owned(),
+            law: law.to_owned(),
+            variables: vec!["elongation_m".to_owned()],
+            ..NamedEffect::default()
+        };
+        assert_eq!(law(&effect("1 + 2 * elongation_m")), "muscle.wall times (1 + 2 * elongation_m)");
+        let pieces =
+            "1 + 9.50 * (elongation_m/0.0135)".to_owned() + &" - 14.0 * max((elongation_m/0.0135) - 0.25, 0)".repeat(7);
+        assert_eq!(law(&effect(&pieces)), "muscle.wall times a curve over elongation_m (see law)");
+    }
 
     /// The sentence does not contradict itself where an answer stands elsewhere than the balances point.
     #[test]

@@ -1,20 +1,15 @@
 //! A law of straight pieces over one variable, for what no shape of the grammar follows.
 
-use std::collections::BTreeMap;
-
-use super::acting::{Action, does, written};
-use super::shaped::{SECOND_SIZE, is_sum, number, spelled, unit_of_scale};
+use super::shaped::{SECOND_SIZE, SIZES, is_sum, sum_of};
 use super::shapes::{LINE, RAMPS, Shape};
 use super::slots::Slot;
 use crate::diagnose::case::Case;
 use crate::diagnose::fit::Variant;
-use crate::effects::{Entry, Fitted, ParameterSpec, Range};
-use crate::laws::LawTable;
+use crate::effects::Entry;
 
-/// Straight pieces between the least and the greatest value of the variable.
-const PIECES: usize = 8;
-/// Sizes of the line from the first knot, and of what is added to its slope at each further one.
-const SIZES: [&str; PIECES] = ["a", "b", "c", "d", "e", "f", "g", "h"];
+/// Straight pieces between the least and the greatest value of the variable: the line from the first knot, and what is added to its slope at
+/// each further one.
+const PIECES: usize = SIZES.len();
 /// Decimals of a knot, in scales of the variable: what is written is what is fitted.
 const DECIMALS: f64 = 1e3;
 
@@ -65,37 +60,22 @@ impl Piece {
 
 /// The law of a slot as a curve of pieces, with the size of each.
 pub fn in_pieces(case: &Case, slot: &Slot, sizes: &[f64]) -> Option<Variant> {
-    let Action { acts, unit, typical, around: known } = &slot.action;
-    let scale = slot.scale_name();
-    let x = slot.reading.text(&slot.variable, &scale);
-    let term = |(piece, size): (&Piece, &str)| format!("{size} * {}", spelled(&piece.text(), &x));
-    let terms: Vec<String> = pieces(slot).iter().zip(SIZES).map(term).collect();
-    let mut parameter: BTreeMap<_, _> =
-        SIZES.iter().map(|size| ((*size).to_owned(), number(*typical, Some(unit)))).collect();
-    parameter.insert(scale, number(slot.scale, unit_of_scale(slot)));
-    let (adds, scales) = does(*acts, terms.join(" + "));
-    let (name, port) = (slot.name(), slot.address.clone());
-    let table = LawTable { name, port, adds, scales, parameter, ..LawTable::default() };
-    let law = table.law(known).ok()?;
-    let of_size = Range { min: -1e3 * typical, max: 1e3 * typical };
-    let place = |name: &str| SIZES.iter().position(|size| *size == name);
-    let fitted = |name: &str| match place(name) {
-        Some(_) => Fitted { typical: *typical, range: of_size, is_fitted: true },
-        None => Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false },
-    };
-    let parameters: Vec<Fitted> = law.parameters.iter().map(|p| fitted(&p.name)).collect();
-    let placed = written(case, &table, &law, &parameters, law.parameter(SIZES[0])?);
-    let begun = |p: &ParameterSpec| match place(&p.key).and_then(|k| sizes.get(k)) {
-        Some(size) => size.clamp(of_size.min, of_size.max),
-        None => p.typical,
-    };
-    let values = placed.spec().parameters.iter().map(begun).collect();
-    Some(Variant { placed, values })
+    let terms: Vec<String> = pieces(slot).iter().map(Piece::text).collect();
+    let mut own = sum_of(case, slot, &terms)?;
+    for (parameter, value) in own.placed.spec().parameters.iter().zip(&mut own.values) {
+        if let Some((_, size)) = SIZES.iter().zip(sizes).find(|(name, _)| parameter.key == **name) {
+            *value = size.clamp(parameter.range.min, parameter.range.max);
+        }
+    }
+    Some(own)
 }
 
-/// Whether the law of an effect is such a curve.
+/// Whether the law of an effect is such a curve; a law of a user's may have as many parameters of these names, and no such ramps.
 pub fn is_in_pieces(own: &Entry) -> bool {
-    own.unlisted().is_some() && SIZES.iter().all(|size| own.parameters.iter().any(|p| p.key == *size))
+    let ramps = own.equation.matches("max(").count();
+    own.unlisted().is_some()
+        && ramps == PIECES - 1
+        && SIZES.iter().all(|size| own.parameters.iter().any(|p| p.key == *size))
 }
 
 /// Whether a parameter of an effect is the size of it, or of one of its terms.

@@ -117,40 +117,45 @@ pub fn scales_of_sum(own: &Entry, values: &[f64]) -> Option<[f64; 2]> {
 
 /// A slot's law as a curve: the sum of its basis shapes, each with its own size, at the slot's scale.
 pub fn curve(case: &Case, slot: &Slot) -> Option<Variant> {
+    let shapes: Vec<String> = slot.basis().map(|shape| shape.text.to_owned()).collect();
+    sum_of(case, slot, &shapes)
+}
+
+/// A slot's law as a sum of so many terms over `x`, each with its own size ([`SIZES`]), at the slot's scale.
+pub(super) fn sum_of(case: &Case, slot: &Slot, terms: &[String]) -> Option<Variant> {
     let Action { acts, unit, typical, around: known } = &slot.action;
-    let (acts, typical) = (*acts, *typical);
-    let scale = slot.scale_name();
+    let (scale, typical) = (slot.scale_name(), *typical);
     let x = slot.reading.text(&slot.variable, &scale);
-    let terms: Vec<String> = slot.basis().zip(SIZES).map(|(s, a)| format!("{a} * {}", spelled(s.text, &x))).collect();
+    let sizes = &SIZES[..terms.len()];
+    let texts: Vec<String> = terms.iter().zip(sizes).map(|(term, a)| format!("{a} * {}", spelled(term, &x))).collect();
     let mut parameter: BTreeMap<String, ParameterTable> =
-        SIZES.iter().take(terms.len()).map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
+        sizes.iter().map(|a| ((*a).to_owned(), number(typical, Some(unit)))).collect();
     parameter.insert(scale, number(slot.scale, unit_of_scale(slot)));
-    let sum = terms.join(" + ");
-    let (adds, scales) = does(acts, sum);
-    let port = slot.address.clone();
-    let table = LawTable { name: slot.name(), port, adds, scales, parameter, ..LawTable::default() };
+    let (adds, scales) = does(*acts, texts.join(" + "));
+    let (name, port) = (slot.name(), slot.address.clone());
+    let table = LawTable { name, port, adds, scales, parameter, ..LawTable::default() };
     let law = table.law(known).ok()?;
     let own = Fitted { typical, range: Range { min: -1e3 * typical, max: 1e3 * typical }, is_fitted: true };
     let fixed = Fitted { typical: slot.scale, range: Range { min: 0.0, max: f64::INFINITY }, is_fitted: false };
-    let is_size = |name: &str| SIZES.contains(&name);
+    let is_size = |name: &str| sizes.contains(&name);
     let parameters: Vec<Fitted> = law.parameters.iter().map(|p| if is_size(&p.name) { own } else { fixed }).collect();
     let placed = written(case, &table, &law, &parameters, law.parameter(SIZES[0])?);
     let values = placed.spec().typical();
     Some(Variant { placed, values })
 }
 
-pub(super) fn number(value: f64, unit: Option<&str>) -> ParameterTable {
+fn number(value: f64, unit: Option<&str>) -> ParameterTable {
     ParameterTable { value, unit: unit.map(str::to_owned), ..ParameterTable::default() }
 }
 
 /// Unit of the scale of a slot's variable, where its name does not say it: that of what a channel shows is the channel's.
-pub(super) fn unit_of_scale(slot: &Slot) -> Option<&str> {
+fn unit_of_scale(slot: &Slot) -> Option<&str> {
     let plain = if slot.port == Port::Sensor { slot.action.unit.as_str() } else { "1" };
     ending(&slot.variable).is_empty().then_some(plain)
 }
 
-/// Sizes of a curve's shapes.
-const SIZES: [&str; 5] = ["a", "b", "c", "d", "e"];
+/// Sizes of a curve's terms.
+pub(super) const SIZES: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 
 /// A parameter that may be fifty times larger or smaller.
 fn around(typical: f64, is_fitted: bool) -> Fitted {
@@ -180,7 +185,7 @@ pub(super) fn ending(variable: &str) -> &str {
 }
 
 /// A shape with `x` spelled out.
-pub(super) fn spelled(shape: &str, x: &str) -> String {
+fn spelled(shape: &str, x: &str) -> String {
     let letters: Vec<char> = shape.chars().collect();
     let is_word = |i: usize| letters.get(i).is_some_and(|c| c.is_ascii_alphanumeric());
     let each = letters.iter().enumerate().map(|(i, c)| match c {

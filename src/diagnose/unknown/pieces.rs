@@ -4,13 +4,13 @@
 //! costs no simulation: at many scales, so that a fit begins near the right one. The curve itself is kept as a
 //! description: with its eight sizes it may take in what two simpler things do, so it neither ends a search nor bounds it.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::forms::{CLEARLY, Criterion, leaves_something};
 use super::shape_refits::{Candidate, GOING_ON};
 use super::shown::{Shown, Wanted};
 use super::span::{explained, sizes};
-use super::sums::{thinned, visited};
+use super::sums::{nearest, thinned, visited};
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::Fit;
 use crate::diagnose::grammar::{MORE_SHAPES, Reading, SHAPES, Shape, Slot, drawn, in_pieces, pieces, variant};
@@ -116,7 +116,7 @@ impl Shown<'_> {
 /// The shapes that come nearest to a curve where the slot's variable has been, each with a scale and a size.
 fn alike(slot: &Slot, curve: &[f64]) -> Vec<(&'static Shape, f64, f64)> {
     let scales = |shape: &Shape| -> Vec<f64> {
-        if !shape.has_scale && shape.text != "sin(x)" && shape.start.is_none() {
+        if !shape.has_scale {
             return vec![slot.scale];
         }
         (0..SCALES).map(|k| slot.scale * FROM * (TO / FROM).powf(k as f64 / (SCALES - 1) as f64)).collect()
@@ -125,7 +125,7 @@ fn alike(slot: &Slot, curve: &[f64]) -> Vec<(&'static Shape, f64, f64)> {
     let mut found: Vec<(f64, (&Shape, f64, f64))> = Vec::new();
     for shape in slot.distinct(&SHAPES).into_iter().chain(slot.distinct(&MORE_SHAPES)) {
         let at = |scale: f64| {
-            let (left, size) = nearest(curve, &visited(slot, shape, scale), has_level)?;
+            let (left, size) = nearest_multiple(curve, &visited(slot, shape, scale), has_level)?;
             Some((left, (shape, scale, size)))
         };
         let best = scales(shape).into_iter().filter_map(at).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -137,14 +137,15 @@ fn alike(slot: &Slot, curve: &[f64]) -> Vec<(&'static Shape, f64, f64)> {
 
 /// What is left of a curve by the nearest multiple of another, and that multiple. What scales has a level, which belongs to the calibration:
 /// the multiple is then that of a law around one.
-fn nearest(curve: &[f64], shape: &[f64], has_level: bool) -> Option<(f64, f64)> {
-    let columns = if has_level { 2 } else { 1 };
-    let rows = DMatrix::from_fn(curve.len(), columns, |i, j| if j == 0 { shape[i] } else { 1.0 });
-    let curve = DVector::from_column_slice(curve);
-    let found = rows.clone().svd(true, true).solve(&curve, 1e-9).ok()?;
-    let left = (&curve - &rows * &found).norm_squared();
-    let level = if has_level { 1.0 + found[1] } else { 1.0 };
-    (level > 0.0 && left.is_finite()).then(|| (left, found[0] / level))
+fn nearest_multiple(curve: &[f64], shape: &[f64], has_level: bool) -> Option<(f64, f64)> {
+    if !has_level {
+        let dot = |x: &[f64]| -> f64 { x.iter().zip(shape).map(|(x, y)| x * y).sum() };
+        let size = dot(curve) / dot(shape);
+        let left = curve.iter().zip(shape).map(|(y, s)| (y - size * s).powi(2)).sum();
+        return size.is_finite().then_some((left, size));
+    }
+    let (left, [size, level]) = nearest(curve, shape, &vec![1.0; shape.len()])?;
+    (level > -1.0).then(|| (left, size / (1.0 + level)))
 }
 
 #[cfg(test)]
@@ -205,9 +206,9 @@ mod tests {
         let shape: Vec<f64> = (0..50).map(|i| (f64::from(i) / 10.0).sin()).collect();
         // 1 + y = 1.25 (1 + 0.4 shape)
         let curve: Vec<f64> = shape.iter().map(|s| 1.25 * (1.0 + 0.4 * s) - 1.0).collect();
-        let (left, size) = nearest(&curve, &shape, true).expect("a multiple");
+        let (left, size) = nearest_multiple(&curve, &shape, true).expect("a multiple");
         assert!(left < 1e-20 && (size - 0.4).abs() < 1e-12, "{left} {size}");
-        let (left, _) = nearest(&curve, &shape, false).expect("a multiple");
+        let (left, _) = nearest_multiple(&curve, &shape, false).expect("a multiple");
         assert!(left > 1e-3);
     }
 

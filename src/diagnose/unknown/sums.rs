@@ -107,7 +107,7 @@ pub(super) fn thinned(all: Vec<f64>) -> Vec<f64> {
 }
 
 /// What is left of a curve by the nearest combination of two others, and their sizes there; `None` if one is zero, or both are the same.
-fn nearest(curve: &[f64], a: &[f64], b: &[f64]) -> Option<(f64, [f64; 2])> {
+pub(super) fn nearest(curve: &[f64], a: &[f64], b: &[f64]) -> Option<(f64, [f64; 2])> {
     let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
     let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
     let determinant = aa * bb - ab * ab;

@@ -48,7 +48,7 @@ impl Proposals {
         let best = &self.fits[..self.fits.len().min(FINISHED)];
         let mut fits: Vec<Fit> = parallel::map(best, |f| problem.fit(&f.model, &f.x)).into_iter().flatten().collect();
         fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        Self { fits, curve: self.curve.and_then(|f| problem.fit(&f.model, &f.x)) }
+        Self { fits, ..self }
     }
 }
 
@@ -134,10 +134,8 @@ fn to_the_end(problem: &Problem, fits: Vec<Fit>, before: f64, (reach, say): (Rea
 
 /// The slots at the most likely place, and the best ones elsewhere.
 fn asked_for_curves<'a>(best: &[&'a Slot], some: &'a [Slot], likely: &[Latent]) -> Vec<&'a Slot> {
-    let there = some.iter().filter(|slot| likely.first().is_some_and(|first| first.address == slot.address));
-    let mut asked: Vec<&Slot> = there.collect();
-    asked.extend(best.iter().filter(|slot| !asked.contains(slot)).copied().collect::<Vec<_>>());
-    asked
+    let is_there = |slot: &&Slot| likely.first().is_some_and(|first| first.address == slot.address);
+    some.iter().filter(is_there).chain(best.iter().copied().filter(|slot| !is_there(slot))).collect()
 }
 
 /// Refits with further shapes at the slot of the best law, if that leaves something and the slot has had the simple ones alone.
