@@ -625,6 +625,9 @@ fn physics_is_noted_neither_as_strays_nor_as_another_zero() {
         std::fs::write(&file, text).expect("written");
         let output = smam(&["diagnose", "rig", "--out", "d"], here.path());
         assert!(said(&output).contains(wrong), "{}", said(&output));
+        let compared = smam(&["compare", "rig", "--out", "c"], here.path());
+        let [zero, same] = [&output, &compared].map(|output| said(output).contains("if its zero is another"));
+        assert_eq!(zero, same, "{}", said(&compared));
         said(&output)
     };
     for (scene, changes, wrong) in [

@@ -221,38 +221,52 @@ fn messy_11_latin_1_with_a_degree_sign() {
 
 /// A workbook of one sheet with these rows of XML cells.
 fn workbook(rows: &str) -> Vec<u8> {
+    workbook_of(&[("Run 1", rows)])
+}
+
+/// A workbook of named sheets.
+fn workbook_of(sheets: &[(&str, &str)]) -> Vec<u8> {
+    let each = |part: &dyn Fn(usize) -> String| (1..=sheets.len()).map(part).collect::<String>();
+    let types = each(&|i| {
+        format!(
+            "<Override PartName=\"/xl/worksheets/sheet{i}.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.worksheet+xml\"/>"
+        )
+    });
+    let named = each(&|i| format!("<sheet name=\"{}\" sheetId=\"{i}\" r:id=\"r{i}\"/>", sheets[i - 1].0));
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let package = "http://schemas.openxmlformats.org/package/2006";
+    let targets = each(&|i| {
+        format!("<Relationship Id=\"r{i}\" Type=\"{office}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>")
+    });
     let parts = [
         (
-            "[Content_Types].xml",
+            "[Content_Types].xml".to_owned(),
             format!(
-                "<Types xmlns=\"{package}/content-types\"><Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/><Default Extension=\"xml\" ContentType=\"application/xml\"/><Override PartName=\"/xl/workbook.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml\"/><Override PartName=\"/xl/worksheets/sheet1.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.worksheet+xml\"/></Types>"
+                "<Types xmlns=\"{package}/content-types\"><Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/><Default Extension=\"xml\" ContentType=\"application/xml\"/><Override PartName=\"/xl/workbook.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml\"/>{types}</Types>"
             ),
         ),
         (
-            "_rels/.rels",
+            "_rels/.rels".to_owned(),
             format!(
                 "<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"r1\" Type=\"{office}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
             ),
         ),
         (
-            "xl/workbook.xml",
-            format!(
-                "<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets><sheet name=\"Run 1\" sheetId=\"1\" r:id=\"r1\"/></sheets></workbook>"
-            ),
+            "xl/workbook.xml".to_owned(),
+            format!("<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets>{named}</sheets></workbook>"),
         ),
         (
-            "xl/_rels/workbook.xml.rels",
-            format!(
-                "<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"r1\" Type=\"{office}/worksheet\" Target=\"worksheets/sheet1.xml\"/></Relationships>"
-            ),
+            "xl/_rels/workbook.xml.rels".to_owned(),
+            format!("<Relationships xmlns=\"{package}/relationships\">{targets}</Relationships>"),
         ),
-        ("xl/worksheets/sheet1.xml", format!("<worksheet xmlns=\"{main}\"><sheetData>{rows}</sheetData></worksheet>")),
     ];
+    let tables = sheets.iter().enumerate().map(|(i, (_, rows))| {
+        let table = format!("<worksheet xmlns=\"{main}\"><sheetData>{rows}</sheetData></worksheet>");
+        (format!("xl/worksheets/sheet{}.xml", i + 1), table)
+    });
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, text) in parts {
+    for (name, text) in parts.into_iter().chain(tables) {
         archive
             .start_file(name, SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored))
             .expect("a part");
@@ -893,6 +907,54 @@ fn a_sheet_is_chosen_and_others_are_named() {
     // What is to be copied into a shell is quoted.
     fs::rename(folder.path().join("d"), folder.path().join("my rig")).expect("renamed");
     assert!(said(&import(&["my rig"])).contains("next: smam compare 'my rig'"));
+}
+
+/// A cover sheet with a title and some masses is no recording; of several recordings the first is taken.
+#[test]
+fn a_cover_sheet_is_passed_over() {
+    let table = sheet(number_cell, |_| String::new());
+    let mass = |row: usize, name: &str, kg: f64| {
+        format!("<row r=\"{row}\">{}{}</row>", text_cell(row, 0, name), number_cell(row, 1, kg.to_string()))
+    };
+    let cover = format!("{}{}", mass(1, "hanging mass, kg", 0.05), mass(2, "tube, kg", 0.012));
+    for (sheets, taken) in [
+        (vec![("Info", cover.as_str()), ("Run 1", &table), ("Run 2", &table)], Some("Run 1")),
+        (vec![("Run 1", &table), ("Run 2", &table), ("Info", &cover)], None),
+    ] {
+        let book = workbook_of(&sheets);
+        let written = holds("a.xlsx", &book);
+        match taken {
+            Some(taken) => assert!(written.contains(&format!("sheet = \"{taken}\"")), "{written}"),
+            None => assert!(!written.contains("sheet = "), "{written}"),
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("a.xlsx"), &book).expect("written");
+        let words = said(&smam(&["import", "a.xlsx", "--scene", "muscle_bench"], folder.path()));
+        assert!(words.contains("sheet \"Run 1\", the first") && words.contains("takes another: "), "{words}");
+        // Without a word on sheets.
+        let compared = smam(&["compare", "a.xlsx", "--scene", "muscle_bench", "--out", "out"], folder.path());
+        assert!(compared.status.success(), "{}", said(&compared));
+    }
+}
+
+/// What a refused file is told to declare holds wherever it is read, and a programme needs no outputs.
+#[test]
+fn a_declared_file_drives_a_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.csv"), "Zeit [ms];Kolben [cm]\n0;0,1\n10;0,2\n20;0,3\n").expect("written");
+    let run = || smam(&["run", "muscle_bench", "--input", "a.csv", "--output", "o.csv"], folder.path());
+    assert!(said(&run()).contains("say delimiter = \";\" in recordings.toml"), "{}", said(&run()));
+    smam(&["import", "a.csv", "--scene", "muscle_bench"], folder.path());
+    let mut declared = fs::read_to_string(folder.path().join("recordings.toml")).expect("written");
+    declared.push_str("hanging_mass_kg = 0.05\n");
+    fs::write(folder.path().join("recordings.toml"), declared).expect("written");
+    let driven = run();
+    assert!(driven.status.success(), "{}", said(&driven));
+    let words = "a.csv: read as recordings.toml declares it, but its conditions (hanging_mass_kg = 0.05) are the scene's own here";
+    assert!(said(&driven).contains(words), "{}", said(&driven));
+    let played = smam::recording::read_csv(&folder.path().join("o.csv")).expect("a recording");
+    assert_eq!(played.time_s(), [0.0, 0.01, 0.02]);
+    assert_eq!(played.channel("plunger_mm").expect("a column").values, [1.0, 2.0, 3.0]);
 }
 
 /// An interval that is declared beside a column of times holds; that they differ is said.

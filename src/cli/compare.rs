@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use smam::identify::{FitReport, RecordedRun, check_channels, fit_rig_parameters, lead_in, load_runs, replay};
 use smam::recording::{
-    BySize, ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels, motion_ratio,
-    unit_by_size,
+    Begun, BySize, ChannelFit, Recording, RecordingSet, Role, Run, RunUse, compare as compare_channels, motion_ratio,
+    other_zero, unit_by_size,
 };
 use smam::report::{ComparedChannel, ComparedRun, HtmlPage, VERMILION, choices, quantity};
 use smam::scene::{Override, Scene, calibration_key};
@@ -56,8 +56,10 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
     let results = Results::of(&arguments.dir, "compare", arguments.out.as_deref())?;
     let out = &results.folder;
     check_channels(&set, &scene)?;
+    let mut begin_at_zero = Vec::new();
     for run in &shown {
         let way = lead_in(&scene, run).map_err(|e| e.in_file(&run.run.file))?;
+        begin_at_zero.push(way.is_none());
         way.iter().for_each(|way| eprintln!("note: {}: {}", run.run.file, way.note()));
     }
     let mut read = Files::default();
@@ -76,6 +78,8 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, CliError> {
         .map(|(run, is)| compare_channels(&run.recording, is, &set.channels_of(&run.run)))
         .collect::<Result<_, _>>()?;
     shown.iter().zip(&simulated).for_each(|(run, is)| warn_of_units(run, is, &set));
+    let at_zero = shown.iter().zip(&simulated).zip(begin_at_zero).filter_map(|(pair, own)| own.then_some(pair));
+    warn_of_zeros(&scene, &at_zero.collect::<Vec<_>>());
     let heading = format!("{}: measured, and simulated by {}", name_of(&arguments.dir), scene.file.name);
     let mut files = Together::default();
     files.page(out, "compare.html", &page(&heading, &report, &figure(&shown, &simulated, &fits), &shown, &fits))?;
@@ -102,6 +106,22 @@ fn warn_of_units(run: &RecordedRun, simulated: &Recording, set: &RecordingSet) {
         if let Some(BySize::Wrong(words) | BySize::Odd(words)) = ratio.and_then(|r| unit_by_size(&spec.column, r)) {
             eprintln!("warning: {}: {words}", run.run.file);
         }
+    }
+}
+
+/// Says which channels count from another zero than the scene; by runs that begin with their inputs at zero.
+fn warn_of_zeros(scene: &Scene, runs: &[(&RecordedRun, &Recording)]) {
+    for output in &scene.file.output {
+        let begun = runs.iter().filter_map(|(run, is)| {
+            let (was, is) = (run.recording.find(&output.channel)?, is.find(&output.channel)?);
+            let (times_s, simulated) = (run.recording.time_s(), is.values.clone());
+            // Of what does not follow the scene, or in another unit, a zero says nothing.
+            let ratio = motion_ratio(times_s, &was.values, &simulated)?;
+            let is_wrong = matches!(unit_by_size(&output.channel, ratio), Some(BySize::Wrong(_)));
+            (!is_wrong).then_some(Begun { times_s, measured: &was.values, simulated })
+        });
+        let words = other_zero(&output.channel, output.quantity.is_place(), &begun.collect::<Vec<_>>());
+        words.iter().for_each(|words| eprintln!("warning: {words}"));
     }
 }
 

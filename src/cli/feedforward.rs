@@ -7,10 +7,10 @@ use clap::Args;
 use serde::Deserialize;
 use smam::feedforward::{Limits, programme};
 use smam::hysteresis::HysteresisModel;
-use smam::recording::{Channel, Recording, RecordingError, read_recording};
+use smam::recording::{Channel, LoadedRun, Recording, RecordingError};
 
 use super::CliError;
-use super::files::{Files, refuse_dash};
+use super::files::{Files, read_input, refuse_dash};
 
 /// Arguments of `smam feedforward`.
 #[derive(Args)]
@@ -60,7 +60,8 @@ struct Muscles {
 pub fn feedforward(a: &FeedforwardArguments) -> Result<ExitCode, CliError> {
     let model = read_model(&a.model)?;
     let limits = limits(a)?;
-    let recording = read_recording(&a.wanted)?;
+    let LoadedRun { recording, notes } = read_input(&a.wanted)?;
+    notes.iter().for_each(|n| eprintln!("note: {}: {n}", a.wanted.display()));
     refuse_dash("--out", &a.out, "name a file")?;
     let mut read = Files::default();
     read.extend([a.model.clone(), a.wanted.clone()]);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use smam::files::{Held, Staged, hold_folder, place_all, still_there, write_whole};
-use smam::recording::{RecordingSet, SET_FILE_NAME};
+use smam::recording::{LoadedRun, RecordingSet, SET_FILE_NAME, read_recording};
 use smam::report::HtmlPage;
 use smam::scene::Scene;
 use smam::stock;
@@ -125,6 +125,22 @@ pub fn scene_files(scene: &Scene) -> Vec<PathBuf> {
 pub fn recorded_files(set: &RecordingSet) -> Vec<PathBuf> {
     let runs = set.runs.iter().flat_map(|run| run.files()).map(|file| set.dir.join(file));
     runs.chain([set.dir.join(SET_FILE_NAME), PathBuf::from(set.scene_path())]).collect()
+}
+
+/// A recording that drives a simulation: as the recordings.toml beside it declares it, or as it stands.
+pub fn read_input(path: &Path) -> Result<LoadedRun, CliError> {
+    let Some((set, run)) = RecordingSet::declaring(path)? else {
+        return Ok(LoadedRun { recording: read_recording(path)?, notes: Vec::new() });
+    };
+    let mut loaded = set.load_run(&run)?;
+    let mut read = format!("read as {} declares it", set.dir.join(SET_FILE_NAME).display());
+    if !run.conditions.is_empty() {
+        let known =
+            run.conditions.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ");
+        read.push_str(&format!(", but its conditions ({known}) are the scene's own here: --set changes them"));
+    }
+    loaded.notes.insert(0, read);
+    Ok(loaded)
 }
 
 /// Whether two paths lead to one file, which is there or will be.

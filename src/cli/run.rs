@@ -6,13 +6,14 @@ use std::time::Instant;
 
 use clap::Args;
 use smam::identify::LeadIn;
-use smam::recording::{Recording, read_recording, survey};
+use smam::recording::{LoadedRun, Recording, survey};
 use smam::scene::{Scene, ViewSpec};
 use smam::system::{InputSource, RunError, Schedule, Simulation, run as run_simulation, with_half_steps};
 
 use super::CliError;
 use super::angles::Angles;
 use super::changes::Changes;
+use super::files::read_input;
 use super::interrupt::{interrupted, stop_flag};
 use super::observers::{Clock, Observers, Progress, Recorder};
 use super::run_file::RunFile;
@@ -36,7 +37,8 @@ use outputs::{check_outputs, file_path, rrd_path, say_what_to_open};
 pub struct RunArguments {
     /// Path of a scene file, or a name that `smam scenes` lists
     scene: String,
-    /// Drive the scene's inputs from this recording (CSV, .parquet or .mcap), at its sample times
+    /// Drive the scene's inputs from this recording (CSV, .xlsx, .parquet or .mcap), at its sample times; read as a recordings.toml
+    /// beside it declares
     #[arg(long, value_name = "FILE")]
     input: Option<PathBuf>,
     /// Write the recording here instead of out/NAME.csv; .parquet and .mcap are written as such, - is the standard output (CSV)
@@ -134,7 +136,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, CliError> {
 /// Drives a further simulation from the recording of `--input`, which has been looked at already.
 fn drive_from_input(arguments: &RunArguments, simulation: &mut Simulation) -> Result<(), CliError> {
     let Some(path) = &arguments.input else { return Ok(()) };
-    drive(simulation, &read_recording(path)?, path).map(|_| ())
+    drive(simulation, &read_input(path)?.recording, path).map(|_| ())
 }
 
 fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Schedule, CliError> {
@@ -154,7 +156,8 @@ fn schedule(arguments: &RunArguments, simulation: &mut Simulation) -> Result<Sch
     let Some(path) = &arguments.input else {
         return Ok(Schedule::even(limit.unwrap_or(spec.duration_s), spec.output_interval_s));
     };
-    let recording = read_recording(path)?;
+    let LoadedRun { recording, notes } = read_input(path)?;
+    notes.iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     survey(&recording).notes().iter().for_each(|n| eprintln!("note: {}: {n}", path.display()));
     let others = drive(simulation, &recording, path)?;
     if begins_away(simulation.scene(), &recording) {

@@ -224,6 +224,11 @@ fn taken(
     let former = case.runs.clone();
     let (found, noise) = hypothesis::renew(case, noise, found);
     let lawful = Explained { confirmed: listed.confirmed, ..proven(case, found, noise, seed)? };
+    if lawful.found.withheld.is_some() {
+        listed.of_found.extend(lawful.of_found);
+        case.runs = former;
+        return Ok(None);
+    }
     let held_out = Problem { case, runs: case.subset(RunSet::HeldOut), noise: &lawful.noise };
     if harm::is_worse(&held_out, &listed.found, &lawful.found.best, seed) {
         let [own, known] = [&lawful.found, &listed.found].map(|f| f.best.model.title());
@@ -236,13 +241,25 @@ fn taken(
     Ok(Some(lawful))
 }
 
-/// The answer with its evaluation on the held-out runs.
+/// The answer with its evaluation on the held-out runs; one that diverges there is withheld.
 fn proven(case: &Case, found: Found, noise: Vec<Noise>, seed: u64) -> Result<Explained, DiagnoseError> {
     let problem = |runs: RunSet| Problem { case, runs: case.subset(runs), noise: &noise };
     let (held_out, whole) = (problem(RunSet::HeldOut), problem(RunSet::All));
-    let proof = prove::prove(&held_out, &found.baseline, &found.best, seed).ok_or_else(diverges)?;
-    let (after, excess) = misfit(&whole, &found).ok_or_else(diverges)?;
-    let (confirmed, warnings, of_found) = (Confirmed::Yes, Vec::new(), Vec::new());
+    let shown = |found: &Found| {
+        let proof = prove::prove(&held_out, &found.baseline, &found.best, seed)?;
+        let (after, excess) = misfit(&whole, found)?;
+        Some((proof, after, excess))
+    };
+    let mut of_found = Vec::new();
+    let (found, (proof, after, excess)) = match shown(&found) {
+        Some(own) => (found, own),
+        None => {
+            let found = harm::without_diverging(found, &mut of_found);
+            let own = shown(&found).ok_or_else(diverges)?;
+            (found, own)
+        }
+    };
+    let (confirmed, warnings) = (Confirmed::Yes, Vec::new());
     Ok(Explained { found, confirmed, proof, noise, after, excess, warnings, of_found })
 }
 
@@ -294,4 +311,40 @@ fn hold_against_full_scene(case: &Case, explained: &mut Explained, seed: u64, sa
 
 pub(super) fn diverges() -> DiagnoseError {
     DiagnoseError::Simulation("it diverges".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::case::made;
+    use crate::diagnose::fit::Model;
+    use crate::diagnose::grammar;
+    use crate::scene::Override;
+
+    /// A muscle that has no area after two seconds, as a law fitted to runs of one second might have it.
+    #[test]
+    fn what_diverges_in_a_held_out_run_is_withheld() {
+        let law = "law.worn={port=\"muscle.area\", scales=\"1 - worn*time_s/end_s\", candidate=true, \
+            parameter={worn={value=1.0}, end_s={value=2.0}}}";
+        let own = [Override::parse(law).expect("a law")];
+        let mut case = made::recorded_for("muscle_bench", [&[], &own], &["plunger_mm"], &["elongation_mm"]);
+        case.runs[1].is_held_out = true;
+        let noise = vec![Noise::white(0.01)];
+        let open = Problem { case: &case, runs: case.subset(RunSet::Open), noise: &noise };
+        let calibrated = Model::baseline();
+        let baseline = open.fit(&calibrated, &open.start(&calibrated, None)).expect("played");
+        let mut found = Begun::with_one(&open, baseline.clone(), &[], &|_| {}).found();
+        let explained = proven(&case, found.clone(), noise.clone(), 1).expect("the calibration alone can be played");
+        assert!(explained.found.withheld.is_none() && explained.of_found.is_empty());
+
+        let worn = grammar::candidate(&case, &case.scene.candidates[0]);
+        let model = calibrated.plus(&worn.placed, &worn.values);
+        found.best = Fit { model, x: [baseline.x.as_slice(), &worn.values].concat(), ..baseline };
+        let explained = proven(&case, found, noise, 1).expect("an answer");
+        let withheld = explained.found.withheld.expect("withheld");
+        assert_eq!(withheld.best.model.title(), "worn in muscle");
+        assert!(explained.found.best.model.effects.is_empty() && explained.proof.gap_closed == 0.0);
+        let [warning] = &explained.of_found[..] else { panic!("{:?}", explained.of_found) };
+        assert!(warning.starts_with("with worn in muscle the scene diverges in the held-out runs"), "{warning}");
+    }
 }

@@ -111,6 +111,21 @@ impl Sought {
 
     fn is_written(&self, port: &str, law: &str) -> bool {
         self.written.iter().any(|(own, over)| own == port && is_over(law, over, self.turns()))
+            || self.is_ahead(port, law)
+    }
+
+    /// Whether a law is over how far a variable is ahead of what follows it. Where dv/dt = u, a lag r of the rate u, dr/dt = (u - r)/T, is
+    /// (v - s)/T with ds/dt = (v - s)/T: the same law in other words.
+    fn is_ahead(&self, port: &str, law: &str) -> bool {
+        let integral = match self.law.reads {
+            Some(Reads::Speed) => "elongation_m",
+            Some(Reads::AngularSpeed) => "angle_rad",
+            _ => return false,
+        };
+        let is_lag = matches!(self.law.remembers, Remembers::Lag(_)) && self.law.times.is_none();
+        let value = law.split(';').next().unwrap_or(law);
+        let is_ahead = value.matches(integral).count() == value.matches(&format!("({integral} - s)")).count();
+        is_lag && port == self.port && is_ahead && is_over(law, &[integral], None)
     }
 
     /// The rate by whose sign the law may tell rising from falling: of what it reads, where it remembers anything.
@@ -221,6 +236,18 @@ mod tests {
         assert_eq!((ranks(&lagging, &behind).1, ranks(&lagging, &rising).1), (Some(1), Some(1)));
         let plain = sought(Place::Pull, Reads::Elongation, None, Remembers::Nothing);
         assert_eq!(ranks(&plain, &rising).1, None);
+    }
+
+    /// What lags a speed is how far the elongation is ahead of what follows it, and nothing else is.
+    #[test]
+    fn a_lag_of_a_rate_is_what_a_variable_is_ahead_by() {
+        let of_speed = sought(Place::Pull, Reads::Speed, None, Remembers::Lag(0.8));
+        let rank = |law: &str| ranks(&of_speed, &[("muscle.pull", law)]).1;
+        assert_eq!(rank("3 * ((elongation_m - s)/0.005)^2; ds/dt = (elongation_m - s)/0.8"), Some(1));
+        assert_eq!(rank("3 * (s/0.005)^2; ds/dt = (elongation_m - s)/0.8"), None);
+        assert_eq!(rank("3 * (elongation_m - s)*elongation_m; ds/dt = (elongation_m - s)/0.8"), None);
+        let plain = sought(Place::Pull, Reads::Speed, None, Remembers::Nothing);
+        assert_eq!(ranks(&plain, &[("muscle.pull", "(elongation_m - s)/0.8; ds/dt = (elongation_m - s)/0.8")]).1, None);
     }
 
     /// A pressure drop in proportion to the flow is a resistance; at that port over anything else it is not this law.

@@ -2,7 +2,7 @@
 
 use super::bag_source::BagSource;
 use super::folder_keys::Keys;
-use super::folder_tables::{TOP_KEYS, channels, check_format, layout, runs};
+use super::folder_tables::{TOP_KEYS, channels, check_format, check_outputs, layout, runs};
 use super::source::unopened;
 use super::table::FILE_KEYS;
 use super::{AlsoFile, FileOptions, Recording, RecordingError, TableSource};
@@ -142,12 +142,36 @@ impl RecordingSet {
         Self::parse(&text, &file)
     }
 
+    /// What the `recordings.toml` beside a file declares it to be; `None` where there is none, or where no run names the file.
+    ///
+    /// # Errors
+    /// As [`RecordingSet::load`].
+    pub fn declaring(file: &Path) -> Result<Option<(Self, Run)>, RecordingError> {
+        let set = file.parent().unwrap_or(Path::new("")).join(SET_FILE_NAME);
+        if !set.is_file() {
+            return Ok(None);
+        }
+        let text = read_text(&set).map_err(|source| unreadable(&set, source))?;
+        let own = Self::parse_channels(&text, &set, |_, _| Ok(()))?;
+        let run = own.runs.iter().find(|run| Path::new(&run.file).file_name() == file.file_name()).cloned();
+        let run = run.filter(|run| Path::new(&run.file).components().count() == 1);
+        Ok(run.map(|run| (own, run)))
+    }
+
     /// Parses the text of a `recordings.toml`; `file` is where it stands.
     ///
     /// # Errors
     /// As [`RecordingSet::load`].
     #[doc(hidden)]
     pub fn parse(text: &str, file: &Path) -> Result<Self, RecordingError> {
+        Self::parse_channels(text, file, check_outputs)
+    }
+
+    fn parse_channels(
+        text: &str,
+        file: &Path,
+        check: impl Fn(&Keys<'_>, &[ChannelSpec]) -> Result<(), RecordingError>,
+    ) -> Result<Self, RecordingError> {
         let table: Table = toml::from_str(text).map_err(|error| RecordingError::Toml {
             file: file.to_owned(),
             problem: error.to_string().trim_end().to_owned(),
@@ -157,6 +181,7 @@ impl RecordingSet {
         top.refuse_keys_of("[file]", &FILE_KEYS)?;
         top.refuse_unknown(&TOP_KEYS)?;
         let channels = channels(&top, file)?;
+        check(&top, &channels)?;
         let layout = layout(&top, file)?;
         Ok(Self {
             dir: file.parent().unwrap_or(Path::new("")).to_owned(),

@@ -41,6 +41,7 @@ mod line_up;
 mod lost;
 mod noise;
 mod one_clock;
+mod other_zero;
 mod parquet_read;
 mod piecewise;
 mod schema;
@@ -82,6 +83,7 @@ pub use {
     join::Start,
     line_up::LinedUp,
     lost::LONGEST_LOST_S,
+    other_zero::{Begun, other_zero},
     schema::recordings_schema,
     strays::strays,
     survey::{Gap, Strays, gap_limit_s, median, median_interval_s},

@@ -69,6 +69,13 @@ pub enum Quantity {
     ArcTipZ,
 }
 
+impl Quantity {
+    /// Whether it is where a body is: cameras and trackers have origins of their own.
+    pub fn is_place(self) -> bool {
+        matches!(self, Self::BodyX | Self::BodyY | Self::BodyZ)
+    }
+}
+
 /// A known condition of a run: a key of `[[run]]` in recordings.toml and the scene keys it sets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -86,13 +86,21 @@ pub fn proof(arguments: &ProofArguments) -> Result<ExitCode, CliError> {
         without: arguments.without.map(StepName::step),
         experiments: arguments.experiments,
     };
-    let rows = run.answer_all(former, &out, &journal)?;
+    let (rows, failed) = run.answer_all(former, &out, &journal)?;
     write_score(&rows, &out)?;
     if arguments.ceiling > 0 && arguments.laws {
         write_law_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
     } else if arguments.ceiling > 0 {
         write_ceiling(&rows, arguments.ceiling, &seals, &folders, &out)?;
         write_settling(&rows, &seals, &folders, &out)?;
+    }
+    if !failed.is_empty() {
+        return Err(CliError::Failed(format!(
+            "{} of {} cases could not be answered, and are not in the figures: {}\n  remedy: run `smam diagnose` on the case alone",
+            failed.len(),
+            planned.len(),
+            failed.join(", ")
+        )));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -143,17 +151,27 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The rows of all cases, in the order of the plan; each is on disk before the next case is begun.
-    fn answer_all(&self, mut rows: Vec<Row>, out: &Path, journal: &Path) -> Result<Vec<Row>, CliError> {
+    /// The rows of all cases, in the order of the plan, and the cases that cannot be answered; each row is on disk before the next case
+    /// is begun.
+    fn answer_all(&self, mut rows: Vec<Row>, out: &Path, journal: &Path) -> Result<(Vec<Row>, Vec<String>), CliError> {
         // A row whose runs are to be added now is written again, from the answer that is there.
         rows.retain(|r| !(self.experiments && r.decided.is_none() && r.is_open_of_a_law()));
         let done: HashSet<String> = rows.iter().map(|r| r.name.clone()).collect();
         let seals = self.seals.iter().filter(|(name, _)| !done.contains(name));
         let missing: Vec<&(String, String)> = seals.collect();
         eprintln!("{} cases, {} of them done already", self.planned.len(), done.len());
-        let begun = Instant::now();
+        let (begun, mut failed) = (Instant::now(), Vec::new());
         for (i, (name, seal)) in missing.iter().enumerate() {
-            rows.push(self.answer(name, seal, out)?);
+            match self.answer(name, seal, out) {
+                Ok(row) => rows.push(row),
+                // The hours of the others are not to be lost by it.
+                Err(ProofError::Diagnose(error)) => {
+                    eprintln!("{name} cannot be answered: {error}");
+                    failed.push(name.clone());
+                    continue;
+                }
+                Err(error) => return Err(error.into()),
+            }
             write_rows(&rows, journal)?;
             let took_s = begun.elapsed().as_secs_f64();
             let left_s = took_s / (i + 1) as f64 * (missing.len() - i - 1) as f64;
@@ -162,7 +180,7 @@ impl Run<'_> {
         }
         let place: HashMap<&str, usize> = self.planned.iter().enumerate().map(|(i, c)| (c.name.as_str(), i)).collect();
         rows.sort_by_key(|r| place.get(r.name.as_str()).copied());
-        Ok(rows)
+        Ok((rows, failed))
     }
 
     /// Whether the experiment that an answer proposes is tried. Of drawn laws it is not: that asks for time that their search needs.

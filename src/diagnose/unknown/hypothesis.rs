@@ -85,6 +85,9 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
     let former = found.forms.last().map_or(&[][..], Vec::as_slice);
     let mut fits: Vec<Fit> = parallel::map(former, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect();
     fits.extend(with_elsewhere(&open, renewed.start, renewed.baseline.cost));
+    // What diverges under the inputs of any run is no law; their outputs have no say in it.
+    let whole = Problem { case, runs: case.subset(RunSet::All), noise: &renewed.noise };
+    fits.retain(|fit| whole.residuals(&fit.model, &fit.x).is_some());
     fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if let Some((best, forms)) = equally_good(&open, &fits, renewed.baseline.cost) {
         let (best, forms) = without_idle(&open, best, forms);

@@ -38,6 +38,8 @@ pub(in crate::diagnose) fn without(
     };
     let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
     if let Some((other, renewed)) = other.and_then(harmless) {
+        let title = other.best.model.title();
+        warnings.push(format!("{title}, which explains the open runs as well, does not: it stands in its place"));
         *proof = renewed;
         return (other, Confirmed::Yes);
     }
@@ -56,17 +58,31 @@ pub(in crate::diagnose) fn is_refused(case: &Case, noise: &[Noise], found: &Foun
     !found.best.model.effects.is_empty() && is_harmful(case, noise, &found.baseline, &found.best, proof)
 }
 
+/// The same if the answer cannot be simulated beyond the runs that it was fitted to.
+pub(in crate::diagnose) fn without_diverging(mut found: Found, warnings: &mut Vec<String>) -> Found {
+    warnings.push(format!(
+        "with {} the scene diverges in the held-out runs: it is not put into scene.toml",
+        found.best.model.title()
+    ));
+    remove(&mut found);
+    found
+}
+
 /// Removes the answer: located, not modelled.
 fn withhold(found: &mut Found, proof: &mut Proof) {
+    remove(found);
+    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
+    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
+    (proof.score_gain, proof.score_gain_ci95) = (0.0, [0.0, 0.0]);
+}
+
+fn remove(found: &mut Found) {
     let known = found.clone();
     found.best = found.baseline.clone();
     found.described = None;
     found.rivals.clear();
     found.forms.clear();
     found.withheld = Some(Box::new(known));
-    proof.channels.values_mut().for_each(|c| c.rmse_corrected = c.rmse_baseline);
-    (proof.gap_closed, proof.gain_ci95) = (0.0, [0.0, 0.0]);
-    (proof.score_gain, proof.score_gain_ci95) = (0.0, [0.0, 0.0]);
 }
 
 /// The same if the full scene diverges with the answer but not without it: nobody could run that scene.toml.

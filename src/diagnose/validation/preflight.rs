@@ -3,8 +3,8 @@
 use crate::diagnose::case::{Case, CaseRun};
 use crate::diagnose::fit::{Model, Problem};
 use crate::recording::figures::{correlation, spread};
-use crate::recording::{BySize, PiecewiseLinear, noise_sd, parse_column, strays, unit_by_size};
-use crate::scene::{InputSpec, Quantity, Scene};
+use crate::recording::{Begun, BySize, PiecewiseLinear, noise_sd, other_zero, parse_column, strays, unit_by_size};
+use crate::scene::{InputSpec, Scene};
 use crate::system::{InputSource, Schedule, Simulation, SystemError, record};
 
 /// Minimum number of samples.
@@ -135,39 +135,6 @@ fn channels(case: &Case, found: &mut Preflight) {
     }
 }
 
-/// Length of a recording's beginning, s; allowed initial difference from the scene, in noise standard deviations and as
-/// a share of the spread.
-const BEGINNING_S: f64 = 0.3;
-const BEGINS_OFF: f64 = 10.0;
-const BEGINS_OFF_SHARE: f64 = 0.05;
-/// A place whose difference changes by less than this share of itself over a run has another origin, wherever the scene begins.
-const SAME_THROUGHOUT: f64 = 0.2;
-
-/// Initial offset of a channel from the scene that all runs starting at zero share. What only grows in the first
-/// moments is motion; if the scene itself starts away from zero (a muscle under tension), its parameters decide, unless it is
-/// a place whose difference stays what it is (a camera with an origin of its own).
-fn begins_off(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<f64> {
-    let output = &problem.case.scene.file.output[problem.case.channels[channel].output];
-    let is_place = [Quantity::BodyX, Quantity::BodyY, Quantity::BodyZ].contains(&output.quantity);
-    let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
-    let offsets: Vec<f64> = at_zero
-        .filter_map(|(run, residual)| {
-            let until = run.times_s().first()? + BEGINNING_S;
-            let values = run.measured[channel].iter().zip(&residual[channel]);
-            let early = run.times_s().iter().zip(values).take_while(|(t, _)| **t <= until);
-            let known: Vec<(f64, f64)> = early.map(|(_, (m, r))| (*m, *r)).filter(|(_, r)| r.is_finite()).collect();
-            let (measured, first) = *known.first()?;
-            let mean = known.iter().map(|(_, r)| r).sum::<f64>() / known.len() as f64;
-            let is_zero = first.abs() >= 0.5 * mean.abs() && (measured - first).abs() <= mean.abs();
-            let whole: Vec<f64> = residual[channel].iter().copied().filter(|r| r.is_finite()).collect();
-            let stays = is_place && spread(&whole) < SAME_THROUGHOUT * mean.abs();
-            Some(if is_zero || stays { mean } else { 0.0 })
-        })
-        .collect();
-    let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
-    offsets.iter().all(|o| (o - mean).abs() < 0.2 * mean.abs()).then_some(mean).filter(|m| m.is_finite())
-}
-
 /// A channel with a spread below this many noise standard deviations shows only noise, and nothing about units.
 const NOISE_ALONE: f64 = 3.0;
 
@@ -207,15 +174,26 @@ fn scales(case: &Case, problem: &Problem, found: &mut Preflight) -> Result<(), S
                 .warnings
                 .push(format!("{column}: hardly follows the scene (correlation {correlation:.2}): channels swapped?"));
         } else {
-            let least_off = (BEGINS_OFF * noise).max(BEGINS_OFF_SHARE * spread(&simulated));
-            let off = begins_off(problem, &residuals, c).filter(|off| off.abs() > least_off);
             if let Some(BySize::Odd(words)) = by_size {
                 found.warnings.push(words);
             }
-            found.warnings.extend(off.map(|off| other_zero(column, off)));
+            found.warnings.extend(has_other_zero(problem, &residuals, c));
         }
     }
     Ok(())
+}
+
+/// That a channel counts from another zero than the scene, by the runs that begin with their inputs at zero.
+fn has_other_zero(problem: &Problem, residuals: &[Vec<Vec<f64>>], channel: usize) -> Option<String> {
+    let own = &problem.case.channels[channel];
+    let at_zero = problem.runs.iter().zip(residuals).filter(|(run, _)| run.lead_in == 0);
+    let begun = at_zero.map(|(run, residual)| Begun {
+        times_s: run.times_s(),
+        measured: &run.measured[channel],
+        simulated: run.measured[channel].iter().zip(&residual[channel]).map(|(m, r)| m - r).collect(),
+    });
+    let is_place = problem.case.scene.file.output[own.output].quantity.is_place();
+    other_zero(&own.column, is_place, &begun.collect::<Vec<_>>())
 }
 
 /// If a law of the scene has no value somewhere, the law is wrong and not the recordings: the full scene tells which,
@@ -233,14 +211,6 @@ fn played(run: &CaseRun) -> Result<(), SystemError> {
         }
     }
     record(&mut simulation, &Schedule::at(run.times_s().to_vec())).map(drop)
-}
-
-fn other_zero(column: &str, off: f64) -> String {
-    let (_, unit) = column.rsplit_once('_').unwrap_or(("", ""));
-    format!(
-        "{column}: begins {off:+.3e} {unit} from where the scene does, in every run: if its zero is another (a total length, an \
-         absolute pressure, a camera's origin), say it in its [[channel]] (zero = {off:.4} where the file has {unit})"
-    )
 }
 
 fn ends(values: &[f64]) -> (f64, f64) {

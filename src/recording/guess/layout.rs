@@ -25,7 +25,7 @@ type Line = (usize, Vec<String>);
 pub(super) fn layout(preview: &Preview) -> Option<Layout> {
     match preview {
         Preview::Cells { rows, sheet, said } => {
-            let lines: Vec<Line> = rows.iter().cloned().enumerate().map(|(i, cells)| (i + 1, cells)).collect();
+            let lines = numbered(rows);
             let plain = FileOptions { sheet: sheet.clone(), ..FileOptions::default() };
             let options = marked(&lines, plain);
             let found = block(&lines, &options)?;
@@ -49,6 +49,16 @@ pub(super) fn layout(preview: &Preview) -> Option<Layout> {
             Some(with_labview_units(layout, labview_units(text)))
         }
     }
+}
+
+fn numbered(rows: &[Vec<String>]) -> Vec<Line> {
+    rows.iter().cloned().enumerate().map(|(i, cells)| (i + 1, cells)).collect()
+}
+
+/// Numbers in the rows of a sheet that would be taken for its table.
+pub(super) fn numbers_in(rows: &[Vec<String>]) -> usize {
+    let lines = numbered(rows);
+    score(&lines, &marked(&lines, FileOptions::default()))
 }
 
 /// Numbers that a workbook holds as texts may have decimal commas.

@@ -7,6 +7,7 @@ use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use super::super::source::{read_settled, read_whole};
 use super::super::table::{check_labview, is_formula, parquet_rows, sheet_names, without_nul_end, workbook_rows};
 use super::super::{FileFormat, RecordingError};
+use super::layout::numbers_in;
 use super::{Said, Sureness};
 
 /// What a file holds, before any row is taken apart.
@@ -34,7 +35,7 @@ impl Preview {
     }
 }
 
-/// `sheet` is that of a workbook; its first one where none is named.
+/// `sheet` is that of a workbook; where none is named, the first one with about as many numbers as any.
 pub(super) fn preview(file: &Path, sheet: Option<&str>) -> Result<Preview, RecordingError> {
     let format = FileFormat::of(file)?;
     if let Some(sheet) = sheet.filter(|_| format != FileFormat::Workbook) {
@@ -60,17 +61,26 @@ pub(super) fn preview(file: &Path, sheet: Option<&str>) -> Result<Preview, Recor
     }
 }
 
+/// A sheet with so small a share of another's numbers describes them: a title, masses, a summary.
+const DESCRIBES: f64 = 0.1;
+
 fn workbook(bytes: &[u8], file: &Path, sheet: Option<&str>) -> Result<Preview, RecordingError> {
-    let rows = workbook_rows(bytes, sheet, file)?;
     let sheets = sheet_names(bytes, file)?;
-    let said = match (sheet, sheets.as_slice()) {
-        (None, [first, others @ ..]) if !others.is_empty() => Some(Said {
-            what: format!("sheet \"{first}\", the first; --sheet takes another: \"{}\"", others.join("\", \"")),
-            sureness: Sureness::Assumed,
-        }),
-        _ => None,
-    };
-    Ok(Preview::Cells { rows, sheet: sheet.map(str::to_owned), said })
+    if sheet.is_some() || sheets.len() < 2 {
+        let rows = workbook_rows(bytes, sheet, file)?;
+        return Ok(Preview::Cells { rows, sheet: sheet.map(str::to_owned), said: None });
+    }
+    let mut all: Vec<_> = sheets.iter().map(|name| workbook_rows(bytes, Some(name), file)).collect();
+    // A sheet that cannot be read, a diagram perhaps, is not asked for.
+    let numbers: Vec<usize> = all.iter().map(|rows| rows.as_ref().map_or(0, |rows| numbers_in(rows))).collect();
+    let most = numbers.iter().max().copied().unwrap_or(0) as f64;
+    let at = numbers.iter().position(|own| *own as f64 >= DESCRIBES * most).unwrap_or(0);
+    let others: Vec<&str> = sheets.iter().map(String::as_str).filter(|name| *name != sheets[at]).collect();
+    let which = if at == 0 { "the first" } else { "the first that is a table of numbers" };
+    let what = format!("sheet \"{}\", {which}; --sheet takes another: \"{}\"", sheets[at], others.join("\", \""));
+    let said = Some(Said { what, sureness: Sureness::Assumed });
+    // The first sheet is read where none is named.
+    Ok(Preview::Cells { rows: all.swap_remove(at)?, sheet: (at > 0).then(|| sheets[at].clone()), said })
 }
 
 /// The text, its encoding where that has to be declared, and what is to be said of it.

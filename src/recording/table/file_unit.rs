@@ -63,6 +63,8 @@ pub const FILE_UNITS: &[FileUnit] = &[
     unit("ns", &["nsec", "nanosecond", "nanoseconds"], "s", 1e-9),
     unit("min", &["minute", "minutes"], "s", 60.0),
     unit("h", &["hr", "hour", "hours"], "s", 3600.0),
+    // Not "d", in which names of what is desired end.
+    unit("day", &["days"], "s", 86_400.0),
     unit("Hz", &["hz"], "hz", 1.0),
     unit("kg", &[], "kg", 1.0),
     unit("g", &[], "kg", 1e-3),

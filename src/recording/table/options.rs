@@ -129,7 +129,7 @@ impl FileOptions {
 }
 
 /// Units of time, as `time_unit` takes them.
-pub(in crate::recording) const TIME_UNITS: [&str; 6] = ["s", "ms", "us", "ns", "min", "h"];
+pub(in crate::recording) const TIME_UNITS: [&str; 7] = ["s", "ms", "us", "ns", "min", "h", "day"];
 
 /// Seconds of a time in a unit. Divided where that is exact: 30 ms are 0.03 s to the last bit.
 pub(super) fn seconds(unit: &FileUnit, value: f64) -> f64 {
