@@ -218,7 +218,8 @@ fn said(
     let is_refuted = confirmed == Confirmed::InPart && !is_modelled;
     // A curve describes what nothing simpler explains, from another port perhaps nearly as well.
     let is_described = found.best.model.effects.iter().any(|e| grammar::is_in_pieces(e.spec()));
-    let is_doubtful = is_refuted || is_described || verdict::leaves_a_part(found, excess);
+    let leaves_more = verdict::leaves_a_part(found, excess) || verdict::is_approximate(found, excess);
+    let is_doubtful = is_refuted || is_described || leaves_more;
     if verdict == Verdict::UnknownPhysics && is_doubtful {
         verdict::doubt(&mut effects);
     }

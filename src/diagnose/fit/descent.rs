@@ -101,7 +101,7 @@ fn within(x: &[f64], parameters: &[FitParameter]) -> Vec<f64> {
 
 /// A rough fit that can be interrupted and continued.
 pub(in crate::diagnose) struct Underway {
-    model: Model,
+    pub model: Model,
     x: Vec<f64>,
     rows: Rows,
     damping: f64,

@@ -14,9 +14,8 @@ use crate::parallel;
 
 /// Maximum number of laws in one answer.
 const MOST_LAWS: usize = 2;
-/// Shares of the misfit and of the noise below which no further law is looked for.
+/// Share of the misfit below which no further law is looked for.
 const EXPLAINED: f64 = 0.02;
-const EXPLAINED_OF_NOISE: f64 = 0.3;
 
 /// Whether a law leaves something, but too little to look for another one beside it.
 pub(super) fn may_grow(open: &Problem, baseline: &Fit, simple: &Fit) -> bool {
@@ -102,7 +101,7 @@ pub(in crate::diagnose) fn renew(case: &mut Case, noise: &[Noise], mut found: Fo
 /// Whether a fit leaves too little of the misfit to search for another law.
 pub(super) fn is_explained(open: &Problem, baseline: &Fit, fit: &Fit) -> bool {
     let noise = open.noise_cost();
-    let little = f64::min(EXPLAINED * (baseline.cost - noise), EXPLAINED_OF_NOISE * noise);
+    let little = f64::min(EXPLAINED * (baseline.cost - noise), verdict::LITTLE_OF_NOISE * noise);
     fit.cost - noise < little
 }
 

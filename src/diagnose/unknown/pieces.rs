@@ -8,12 +8,12 @@ use nalgebra::DVector;
 
 use super::forms::{CLEARLY, Criterion, leaves_something};
 use super::shape_refits::{Candidate, GOING_ON};
-use super::shown::{Shown, Wanted};
+use super::shown::{Shown, Wanted, of_pieces};
 use super::span::{explained, sizes};
 use super::sums::{nearest, thinned, visited};
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::Fit;
-use crate::diagnose::grammar::{MORE_SHAPES, Reading, SHAPES, Shape, Slot, drawn, in_pieces, pieces, variant};
+use crate::diagnose::grammar::{MORE_SHAPES, SHAPES, Shape, Slot, drawn, in_pieces, pieces, variant};
 use crate::diagnose::search::leaves_much;
 use crate::laws::Acts;
 use crate::parallel;
@@ -69,22 +69,17 @@ impl Shown<'_> {
 
     /// Keeps the part of the misfit that a law of pieces at a slot can explain.
     pub(super) fn keep_pieces(&mut self, all: &[Slot], own: &Slot) {
-        let pieces = pieces(own);
-        let wanted: Vec<Wanted> = pieces.iter().map(|p| Wanted { slot: own, shape: p.shape, scale: p.scale }).collect();
-        let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &wanted).into_iter().collect();
+        let signatures: Option<Vec<DVector<f64>>> = self.signatures(all, &of_pieces(own)).into_iter().collect();
         let Some(signatures) = signatures else { return };
         self.left = explained(&signatures, &self.left);
     }
 
     /// What a law of pieces at each slot promises, and the law with sizes to start from; the most promising first.
     fn begun_in_pieces(&self, all: &[Slot], slots: &[&Slot]) -> Vec<(f64, Candidate)> {
-        let plain = slots.iter().copied().filter(|s| !s.is_constant() && s.reading == Reading::Plain);
-        let plain = plain.filter(|slot| !slot.is_clock_of_one_run());
+        let plain = slots.iter().copied().filter(|slot| slot.may_be_in_pieces());
         let plain: Vec<(&Slot, Vec<_>)> = plain.map(|slot| (slot, pieces(slot))).collect();
-        let wanted = plain
-            .iter()
-            .flat_map(|(slot, pieces)| pieces.iter().map(|p| Wanted { slot, shape: p.shape, scale: p.scale }));
-        let mut signatures = self.signatures(all, &wanted.collect::<Vec<_>>()).into_iter();
+        let wanted: Vec<Wanted> = plain.iter().flat_map(|(slot, _)| of_pieces(slot)).collect();
+        let mut signatures = self.signatures(all, &wanted).into_iter();
         let mut promised: Vec<(f64, Candidate)> = Vec::new();
         for (slot, pieces) in &plain {
             let own: Vec<Option<DVector<f64>>> = signatures.by_ref().take(pieces.len()).collect();

@@ -20,6 +20,8 @@ const FAR_OFF: f64 = 30.0;
 /// Steps of every refit; number of refits that continue, and their further steps.
 const FIRST_STEPS: usize = 4;
 pub(super) const GOING_ON: usize = 8;
+/// Of these, refits over one variable at one place: after a few steps chi² says little of shapes that have yet to find their scale.
+const GOING_ON_OF_PLACE: usize = 3;
 const MORE_STEPS: usize = 20;
 
 /// The shape that a slot's law has before any other, and the share of the most promising one's gain that it must promise.
@@ -31,6 +33,22 @@ pub(super) struct Candidate {
     pub model: Model,
     pub x: Vec<f64>,
     sizes: Range<usize>,
+}
+
+/// Refits, cheapest first, with those beyond the first few of a place and variable behind all others.
+fn some_of_each_place(underway: Vec<Underway>) -> Vec<Underway> {
+    let place = |own: &Underway| -> Option<(String, Vec<String>)> {
+        let law = &own.model.effects.last()?.spec().unlisted()?.law;
+        Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
+    };
+    let mut known = Vec::new();
+    let (first, others): (Vec<Underway>, Vec<Underway>) = underway.into_iter().partition(|own| {
+        let place = place(own);
+        let before = known.iter().filter(|other| **other == place).count();
+        known.push(place);
+        before < GOING_ON_OF_PLACE
+    });
+    first.into_iter().chain(others).collect()
 }
 
 impl Shown<'_> {
@@ -93,6 +111,7 @@ impl Shown<'_> {
         let begin = |candidate: &Candidate| Some(problem.go_on(self.begin(candidate)?, FIRST_STEPS));
         let mut underway: Vec<Underway> = parallel::map(candidates, begin).into_iter().flatten().collect();
         underway.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let underway = some_of_each_place(underway);
         let finish = |(place, fit): (usize, Underway)| {
             if place >= going_on {
                 return Some(problem.end(fit));
@@ -157,5 +176,35 @@ impl Shown<'_> {
         x.extend(model.numbers.last().into_iter().flat_map(|own| &own.fitted).map(|&i| own.values[i]));
         let first = self.from.x.len();
         Candidate { model, x, sizes: first..first + sizes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::fit::made::Bench;
+    use crate::diagnose::grammar::{Reach, slots};
+    use crate::diagnose::verdict::port;
+
+    /// Six shapes at one place, and one elsewhere that is behind all of them.
+    #[test]
+    fn refits_of_another_place_have_their_turn() {
+        let bench = Bench::hiding("muscle.pull adds 0.1 * sin(elongation_m/3e-3)");
+        let (problem, baseline) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &baseline, Reach::Plain);
+        let shown = Shown::misfit(&problem, &baseline, problem.rows_of(&baseline).expect("it does not diverge"));
+        let slot = |address: &str| {
+            all.iter().find(|slot| slot.address == address && slot.variable == "elongation_m").expect("a slot")
+        };
+        let of = |slot: &Slot, most: usize| shown.shapes(&all, &[slot], most, "x").into_iter().take(most);
+        let candidates: Vec<Candidate> = of(slot("muscle.pull"), 6).chain(of(slot("muscle.area"), 1)).collect();
+        let begun: Vec<Underway> = candidates.iter().filter_map(|candidate| shown.begin(candidate)).collect();
+        let ports = |all: &[Underway]| -> Vec<String> {
+            all.iter().filter_map(|own| own.model.effects.last()).map(port).collect()
+        };
+        assert_eq!(ports(&begun).iter().position(|at| at == "muscle.area"), Some(6));
+        let ordered = ports(&some_of_each_place(begun));
+        assert_eq!(ordered.iter().position(|at| at == "muscle.area"), Some(GOING_ON_OF_PLACE));
+        assert_eq!(ordered.len(), 7);
     }
 }

@@ -7,7 +7,7 @@ use super::linear_range::{basis, linear_rows, where_linear};
 use super::span::explained;
 use crate::diagnose::case::CaseRun;
 use crate::diagnose::fit::{Fit, FitParameter, Problem, Rows, orthogonal};
-use crate::diagnose::grammar::{Shape, Slot, is_size};
+use crate::diagnose::grammar::{Shape, Slot, is_size, pieces};
 use crate::effects::Effect;
 use crate::laws::{Address, Port};
 use crate::parallel;
@@ -59,6 +59,11 @@ fn sizes_of(fit: &Fit, effect: usize, calibration: usize) -> Vec<usize> {
 pub(super) fn of_curve(slot: &Slot, more: More) -> Vec<Wanted<'_>> {
     let more = more.filter(|_| !slot.is_constant()).map(|(shape, scale)| Wanted { slot, shape, scale });
     slot.basis().map(|shape| Wanted { slot, shape, scale: slot.scale }).chain(more).collect()
+}
+
+/// Signatures of the terms of its curve of pieces.
+pub(super) fn of_pieces(slot: &Slot) -> Vec<Wanted<'_>> {
+    pieces(slot).iter().map(|piece| Wanted { slot, shape: piece.shape, scale: piece.scale }).collect()
 }
 
 /// The misfit to be explained along the runs of a fitted model.

@@ -18,6 +18,8 @@ const SLOTS: usize = 14;
 const SLOTS_BY_PLACE: usize = 8;
 const SLOTS_OF_PORT: usize = 3;
 const SLOTS_OF_PLACE: usize = 2;
+/// So many promise most, at places of their own, and are refitted whatever they are like.
+const SLOTS_BY_GAIN: usize = 4;
 /// Slots are alike if they explain the same part of the misfit but for this share.
 const ALIKE: f64 = 0.03;
 /// Slots that promise less than this share of the best are skipped.
@@ -159,13 +161,20 @@ fn worth_widening<'a, 'f>(best: &[&'a Slot], fits: impl Iterator<Item = &'f Fit>
     wide
 }
 
-/// The best slots and the best constants: some at the most likely places, then such as are unlike these. What derivatives promise is little to
-/// go by where the scene is far off, and slots that are alike then fail together.
+/// The best slots and the best constants: some at the most likely places, those that promise most, then such as are unlike these. What derivatives
+/// promise is little to go by where the scene is far off, and slots that are alike then fail together; where it is not, they are told apart by
+/// refits alone.
 pub(super) fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -> Vec<&'a Slot> {
     let least = WORTH * located.first().map_or(0.0, |best| best.gain);
     let over_variables = || located.iter().filter(|l| !l.slot.is_constant() && l.gain > least);
     let of_place =
         |latent: &'a Latent| over_variables().filter(move |l| l.slot.address == latent.address).take(SLOTS_OF_PLACE);
+    let mut promising: Vec<&Slot> = Vec::new();
+    for own in over_variables().map(|l| &l.slot) {
+        if promising.len() < SLOTS_BY_GAIN && promising.iter().all(|other| other.address != own.address) {
+            promising.push(own);
+        }
+    }
     let mut best: Vec<&Located> = Vec::new();
     let mut others: Vec<(usize, &Located)> = Vec::new();
     for own in latents.iter().flat_map(of_place).chain(over_variables().take(COMPARED)) {
@@ -174,7 +183,8 @@ pub(super) fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -
             continue;
         }
         let of_port = best.iter().filter(|b| b.slot.port == own.slot.port).count();
-        if of_port < SLOTS_OF_PORT && best.len() < SLOTS_BY_PLACE {
+        let is_by_gain = promising.contains(&&own.slot);
+        if is_by_gain || of_port < SLOTS_OF_PORT && best.len() < SLOTS_BY_PLACE {
             best.push(own);
         } else {
             let before = others.iter().map(|(_, other)| *other).chain(best.iter().copied());
@@ -207,4 +217,33 @@ fn address(located: &[Located]) -> &str {
 
 fn variable(located: &[Located]) -> &str {
     located.first().map_or("nothing", |l| &l.slot.variable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::fit::made::Bench;
+
+    /// Wherever an unknown signal seems to be: the latents in the wrong order, the unlikeliest first.
+    #[test]
+    fn those_that_promise_most_are_refitted() {
+        let bench = Bench::hiding("muscle.pull adds 0.1 * (time_s/10.0)^2");
+        let (problem, baseline) = (bench.open(), bench.baseline());
+        let all = slots(&bench.case, &baseline, Reach::Plain);
+        let known = problem.rows_of(&baseline).expect("it does not diverge");
+        let mut latents = latents(&problem, &baseline, &known);
+        latents.reverse();
+        let located = Shown::misfit(&problem, &baseline, known).locate(&all, &all, None);
+        let mut promising: Vec<&Slot> = Vec::new();
+        for slot in located.iter().map(|l| &l.slot).filter(|slot| !slot.is_constant()) {
+            if promising.iter().all(|other| other.address != slot.address) {
+                promising.push(slot);
+            }
+        }
+        let chosen = several_ports(&located, &latents);
+        assert!(chosen.len() <= SLOTS + NUMBERS && promising.len() > 2 * SLOTS_BY_GAIN);
+        for slot in &promising[..SLOTS_BY_GAIN] {
+            assert!(chosen.contains(slot), "{} over {}", slot.address, slot.variable);
+        }
+    }
 }

@@ -10,7 +10,8 @@ mod written;
 
 pub(super) use misfit::{Excess, Residuals, misfit};
 pub(super) use named::{
-    Confirmed, Open, doubt, is_loud, is_said, is_unknown, leaves_a_part, lost, named, open, unit, verdict,
+    Confirmed, LITTLE_OF_NOISE, Open, doubt, is_approximate, is_loud, is_said, is_unknown, leaves_a_part, lost, named,
+    open, unit, verdict,
 };
 pub(super) use parameters::discrepancy;
 pub(super) use written::{curve, name_forms, name_over, port, together};

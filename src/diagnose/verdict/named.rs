@@ -18,6 +18,8 @@ const LEFT_SHARE: f64 = 0.1;
 /// Limit of the probability in an answer that leaves part of the misfit: what the effect explains may belong to what is
 /// missing.
 const MOST_IN_PART: f64 = 2.0 / 3.0;
+/// What a law may leave per sample, in noise variances, before another one is looked for.
+pub const LITTLE_OF_NOISE: f64 = 0.3;
 /// Misfit per sample, in noise variances, below which nothing is called unknown.
 const LEFT_LEAST: f64 = 0.015;
 
@@ -51,6 +53,13 @@ pub fn is_unknown(found: &Found, excess: Excess) -> bool {
 pub fn leaves_a_part(found: &Found, excess: Excess) -> bool {
     let left = if found.best.model.effects.is_empty() { 0.0 } else { LEFT_SHARE * excess.baseline };
     is_loud(excess.best, excess.error) && excess.best > left
+}
+
+/// Whether a law leaves so much beyond noise that it is not quite the one sought, however small a share of the misfit that is: one at
+/// another place, or of another form, might leave none.
+pub fn is_approximate(found: &Found, excess: Excess) -> bool {
+    let is_law = found.best.model.effects.iter().any(|e| e.entry.hypothetical);
+    is_law && is_loud(excess.best, excess.error) && excess.best > LITTLE_OF_NOISE
 }
 
 /// Limits the probabilities in an answer that leaves part of the misfit.
@@ -295,6 +304,16 @@ mod tests {
         assert_eq!(effects[0].probability, 1.0);
         doubt(&mut effects);
         assert_eq!(effects[0].probability, MOST_IN_PART);
+    }
+
+    /// A law is made for these recordings: what it leaves is not its idealisation. Of a listed effect that may be.
+    #[test]
+    fn a_law_that_leaves_noises_is_not_certain_of_its_place() {
+        let [law, weight] = ["hypothetical_force", "gravity_load"].map(|id| found(fit(&[id], 100.0), Vec::new()));
+        let excess = |best: f64| Excess { baseline: 4000.0, best, error: 1e-3 };
+        assert!(is_approximate(&law, excess(11.0)) && !is_approximate(&law, excess(0.1)));
+        assert!(!is_approximate(&weight, excess(11.0)));
+        assert!(!is_approximate(&law, Excess { error: 10.0, ..excess(11.0) }));
     }
 
     /// A form that fits far better makes a single effect doubtful. Beside another effect it may have absorbed that
