@@ -8,6 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Time steps of the reduced-order model after which no optional step of the search begins: some two minutes on two cores for a pulley
 /// (ADR 0022). What has begun goes on to its end, and what checks an answer is never optional.
 const ENOUGH: u64 = 240_000_000;
+/// The same for steps that try effects of the catalogue: a search for laws that used up the effort is not to keep these from their turn.
+const ENOUGH_OF_LISTED: u64 = 300_000_000;
 
 /// A step that a search can do without, at the risk of another answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,6 +22,13 @@ pub(in crate::diagnose) enum Optional {
 }
 
 impl Optional {
+    fn is_begun_before(self) -> u64 {
+        match self {
+            Self::SeveralAtOnce | Self::OtherBeginnings => ENOUGH_OF_LISTED,
+            Self::WiderLaws | Self::SecondLaw | Self::LawsBeside => ENOUGH,
+        }
+    }
+
     fn words(self) -> &'static str {
         match self {
             Self::WiderLaws => "laws with memory or of two variables",
@@ -62,7 +71,7 @@ impl Effort {
 
     /// Whether an optional step may begin; if not, it is noted. Asked only where no simulation is under way.
     pub(in crate::diagnose) fn allows(&self, step: Optional) -> bool {
-        let is_allowed = self.is_thorough || self.time_steps() < ENOUGH;
+        let is_allowed = self.is_thorough || self.time_steps() < step.is_begun_before();
         if !is_allowed {
             self.not_begun.lock().unwrap_or_else(PoisonError::into_inner).insert(step);
         }
@@ -108,6 +117,9 @@ mod tests {
         assert!(effort.allows(Optional::SecondLaw) && effort.note().is_none());
         effort.add(ENOUGH);
         assert!(!effort.allows(Optional::SecondLaw) && !effort.allows(Optional::WiderLaws));
+        assert!(effort.allows(Optional::OtherBeginnings), "laws leave effects of the catalogue their turn");
+        effort.add(ENOUGH_OF_LISTED - ENOUGH);
+        assert!(!effort.allows(Optional::OtherBeginnings));
         let note = effort.note().expect("something was left out");
         assert!(
             note.contains("laws with memory or of two variables, a second law") && note.contains("--thorough"),
