@@ -124,7 +124,8 @@ impl Sought {
         };
         let is_lag = matches!(self.law.remembers, Remembers::Lag(_)) && self.law.times.is_none();
         let value = law.split(';').next().unwrap_or(law);
-        let is_ahead = value.matches(integral).count() == value.matches(&format!("({integral} - s)")).count();
+        let differences = value.matches(&format!("({integral} - s)")).count();
+        let is_ahead = differences > 0 && value.matches(integral).count() == differences;
         is_lag && port == self.port && is_ahead && is_over(law, &[integral], None)
     }
 

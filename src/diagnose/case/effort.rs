@@ -82,13 +82,12 @@ impl Effort {
     pub(in crate::diagnose) fn note(&self) -> Option<String> {
         let steps = self.not_begun.lock().unwrap_or_else(PoisonError::into_inner);
         let words: Vec<&str> = steps.iter().map(|step| step.words()).collect();
-        (!words.is_empty()).then(|| {
-            format!(
-                "the search ended after {} million time steps without {}: --thorough goes on to the end",
-                ENOUGH / 1_000_000,
-                words.join(", ")
-            )
-        })
+        let first = steps.iter().map(|step| step.is_begun_before()).min()?;
+        Some(format!(
+            "the search ended after {} million time steps without {}: --thorough goes on to the end",
+            first / 1_000_000,
+            words.join(", ")
+        ))
     }
 }
 
