@@ -153,9 +153,8 @@ impl RecordingSet {
         }
         let text = read_text(&set).map_err(|source| unreadable(&set, source))?;
         let own = Self::parse_channels(&text, &set, |_, _| Ok(()))?;
-        let run = own.runs.iter().find(|run| Path::new(&run.file).file_name() == file.file_name()).cloned();
-        let run = run.filter(|run| Path::new(&run.file).components().count() == 1);
-        Ok(run.map(|run| (own, run)))
+        let is_its = |run: &&Run| file.file_name().is_some_and(|name| Path::new(&run.file) == Path::new(name));
+        Ok(own.runs.iter().find(is_its).cloned().map(|run| (own, run)))
     }
 
     /// Parses the text of a `recordings.toml`; `file` is where it stands.

@@ -39,7 +39,9 @@ pub(in crate::diagnose) fn without(
     let other = if case.goes_slack() { gentlest(case, noise, &found, say) } else { None };
     if let Some((other, renewed)) = other.and_then(harmless) {
         let title = other.best.model.title();
-        warnings.push(format!("{title}, which explains the open runs as well, does not: it stands in its place"));
+        warnings.push(format!(
+            "another fit that explains the open runs as well, {title}, does not, and stands in its place"
+        ));
         *proof = renewed;
         return (other, Confirmed::Yes);
     }
