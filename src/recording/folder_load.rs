@@ -20,7 +20,10 @@ impl RecordingSet {
             (Some(only), true) => Ok(only),
             _ => Err(RecordingError::Format {
                 file: self.dir.join(&run.file),
-                problem: "is several runs (split_at_restart)\n  remedy: read its parts".to_owned(),
+                problem:
+                    "is several runs: its clock starts anew (split_at_restart)\n  remedy: give each a file of its \
+                          own, and leave split_at_restart out"
+                        .to_owned(),
             }),
         }
     }

@@ -273,3 +273,23 @@ fn numbers_become_the_channels() {
     assert_eq!(read.channel("plunger_mm").unwrap().values, [400.0, 0.0]);
     assert_eq!(read.channel("force_n").unwrap().values, [10.0, 0.0]);
 }
+
+/// Where one run is asked for, the remedy is the one that was tried: a file for each.
+#[test]
+fn several_runs_in_a_file_are_not_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = "time_s,plunger_mm,force_n\n0,50,3\n0.1,10,0.5\n0,1,2\n0.1,2,3\n";
+    let write = |layout: &str, data: &str| {
+        let text = GOOD.replace("[[run]]", &format!("{layout}[[run]]"));
+        std::fs::write(folder.path().join(SET_FILE_NAME), text).unwrap();
+        std::fs::write(folder.path().join("sine.csv"), data).unwrap();
+        RecordingSet::load(folder.path()).unwrap()
+    };
+    let set = write("[file]\nsplit_at_restart = true\n", whole);
+    assert_eq!(set.load_parts(&set.runs[0]).unwrap().len(), 2);
+    let said = set.load_run(&set.runs[0]).unwrap_err().to_string();
+    assert!(said.contains("remedy: give each a file of its own, and leave split_at_restart out"), "{said}");
+    let first = whole.split("0,1,2").next().unwrap();
+    let set = write("", first);
+    assert_eq!(set.load_run(&set.runs[0]).unwrap().recording.time_s(), [0.0, 0.1]);
+}

@@ -1,6 +1,7 @@
 //! Chooses among equally good fits, and the alternatives that an answer names.
 
 use super::elsewhere::elsewhere;
+use super::freed::freed;
 use super::simpler::simpler;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
@@ -77,7 +78,12 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
         let tie = tie(open, fit, before);
         let rough = elsewhere(open, fit, tie);
         let named = other_forms(fit, rough.iter().take_while(|f| f.cost < fit.cost + NEARLY * tie));
-        parallel::map(&named, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect()
+        let mut fits: Vec<Fit> = parallel::map(&named, |f| open.fit(&f.model, &f.x)).into_iter().flatten().collect();
+        // With a free exponent what comes near may do as well, and the law itself better.
+        let near = fits.iter().filter(|f| f.cost > fit.cost + tie);
+        let near: Vec<&Fit> = std::iter::once(fit).chain(near).collect();
+        fits.extend(freed(open, &near));
+        fits
     };
     let mut fits = others(&fit);
     fits.extend(simpler(open, &fit));

@@ -2,6 +2,7 @@
 //! variable itself. They start from its numbers, where a search from the calibration may not have come.
 
 use super::elsewhere::shape;
+use super::stead::{in_stead, numbers};
 use super::sums::shapes_of_sum;
 use super::unlisted::is_law_of;
 use crate::diagnose::fit::{Fit, Problem};
@@ -33,7 +34,9 @@ pub(super) fn simpler(problem: &Problem, fit: &Fit) -> Vec<Fit> {
 fn of_sum<'a>(problem: &Problem, fit: &Fit, plain: &'a [Slot]) -> Vec<Part<'a>> {
     let Some(slot) = plain.iter().find(|slot| is_law_of(fit, slot)) else { return Vec::new() };
     let Some(shapes) = shapes_of_sum(problem, fit, slot) else { return Vec::new() };
-    let sizes = ["a", SECOND_SIZE].map(|name| value(problem, fit, name));
+    let known = numbers(problem, fit);
+    let value = |name: &str| known.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+    let sizes = ["a", SECOND_SIZE].map(value);
     let part =
         |((shape, scale), size): ((&'static Shape, f64), Option<f64>)| Some(Part { slot, shape, scale, size: size? });
     shapes.into_iter().zip(sizes).filter_map(part).collect()
@@ -42,33 +45,18 @@ fn of_sum<'a>(problem: &Problem, fit: &Fit, plain: &'a [Slot]) -> Vec<Part<'a>> 
 /// The shape of a product or of what is remembered, over its variable alone at the same place.
 fn of_wide<'a>(problem: &Problem, fit: &Fit, plain: &'a [Slot]) -> Vec<Part<'a>> {
     let wide = slots(problem.case, fit, Reach::Wide);
+    let size = numbers(problem, fit).into_iter().find(|(name, _)| name == "a");
     let part = |slot: &Slot| {
         let (shape, scale) = shape(problem, fit, slot)?;
         let same = |p: &&Slot| p.address == slot.address && p.variable == slot.variable && p.reading == Reading::Plain;
-        Some(Part { slot: plain.iter().find(same)?, shape, scale, size: value(problem, fit, "a")? })
+        Some(Part { slot: plain.iter().find(same)?, shape, scale, size: size.as_ref()?.1 })
     };
     wide.iter().filter(|slot| is_law_of(fit, slot)).find_map(part).into_iter().collect()
 }
 
-/// A parameter of the last law.
-fn value(problem: &Problem, fit: &Fit, name: &str) -> Option<f64> {
-    let last = fit.model.effects.len().checked_sub(1)?;
-    let at = fit.model.effects[last].spec().parameters.iter().position(|p| p.key == name)?;
-    Some(fit.model.effects_at(&fit.x[problem.case.parameters.len()..])[last].values[at])
-}
-
 fn refit(problem: &Problem, fit: &Fit, part: &Part<'_>) -> Option<Fit> {
     let own = variant(problem.case, part.slot, part.shape, part.scale / part.slot.scale)?;
-    let size = own.placed.spec().parameters.iter().position(|p| p.key == "a")?;
-    let mut values = own.values.clone();
-    values[size] = part.size;
-    let last = fit.model.effects.len() - 1;
-    let model = fit.model.without(last).plus(&own.placed, &values);
-    let before = problem.start_without(fit, last);
-    let known = before.len();
-    let mut x = problem.start(&model, None);
-    x[..known].copy_from_slice(&before);
-    problem.fit(&model, &x)
+    in_stead(problem, fit, &own, &[("a".to_owned(), part.size)])
 }
 
 #[cfg(test)]
