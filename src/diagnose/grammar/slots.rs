@@ -52,6 +52,11 @@ impl Slot {
         })
     }
 
+    /// The element that its law acts on, as its port is addressed.
+    pub fn element(&self) -> &str {
+        self.address.rsplit_once('.').map_or(&self.address, |(element, _)| element)
+    }
+
     /// Whether its law is a constant.
     pub fn is_constant(&self) -> bool {
         self.variable.is_empty()

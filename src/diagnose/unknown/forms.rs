@@ -1,7 +1,7 @@
 //! Chooses among equally good fits, and the alternatives that an answer names.
 
 use super::elsewhere::elsewhere;
-use super::freed::freed;
+use super::freed::freed_elsewhere;
 use super::simpler::simpler;
 use crate::diagnose::fit::{Fit, Problem};
 use crate::diagnose::search::{Found, cross_validates, cross_validates_runs, least_gain};
@@ -82,7 +82,7 @@ pub(super) fn with_elsewhere(open: &Problem, fit: Fit, before: f64) -> Vec<Fit> 
         // With a free exponent what comes near may do as well, and the law itself better.
         let near = fits.iter().filter(|f| f.cost > fit.cost + tie);
         let near: Vec<&Fit> = std::iter::once(fit).chain(near).collect();
-        fits.extend(freed(open, &near));
+        fits.extend(freed_elsewhere(open, &near));
         fits
     };
     let mut fits = others(&fit);
@@ -168,7 +168,7 @@ fn element(fit: &Fit) -> Option<String> {
 }
 
 /// Port and variables of the last law of a fit.
-fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
+pub(super) fn place(fit: &Fit) -> Option<(String, Vec<String>)> {
     let law = &fit.model.effects.last()?.spec().unlisted()?.law;
     Some((law.address.to_string(), law.variables().iter().map(|v| v.name()).collect()))
 }

@@ -1,24 +1,24 @@
 //! Laws whose exponent is set free: what shapes of whole numbers nearly follow. Such a fit begins where the shape is itself.
 
 use super::elsewhere::shape;
-use super::forms::Criterion;
+use super::forms::{CLEARLY, Criterion, place};
 use super::stead::{in_stead, numbers};
 use super::unlisted::is_law_of;
-use crate::diagnose::fit::{Fit, Problem};
+use crate::diagnose::fit::{Fit, Problem, Variant};
 use crate::diagnose::grammar::{Reach, slots, variant};
 use crate::diagnose::verdict::port;
 use crate::parallel;
 
-/// Laws whose exponent is set free, each at a place of its own.
-const PLACES: usize = 3;
+/// Laws whose exponent is set free at once.
+const MOST: usize = 3;
 
 /// The first at each of some places with a free exponent in its last law, where that is worth a parameter: a few units less are chance, and
 /// would make other places look worse than they are.
-pub(super) fn freed(problem: &Problem, fits: &[&Fit]) -> Vec<Fit> {
-    let place = |fit: &Fit| fit.model.effects.last().map(port);
+pub(super) fn freed_elsewhere(problem: &Problem, fits: &[&Fit]) -> Vec<Fit> {
+    let at = |fit: &Fit| fit.model.effects.last().map(port);
     let mut first: Vec<&Fit> = Vec::new();
     for fit in fits {
-        if first.len() < PLACES && first.iter().all(|other| place(other) != place(fit)) {
+        if first.len() < MOST && first.iter().all(|other| at(other) != at(fit)) {
             first.push(fit);
         }
     }
@@ -30,8 +30,26 @@ pub(super) fn freed(problem: &Problem, fits: &[&Fit]) -> Vec<Fit> {
     parallel::map(&first, worth).into_iter().flatten().collect()
 }
 
+/// The best of some fits, cheapest first, with a free exponent in place of one whose place is theirs, if it is clearly better than that.
+pub(super) fn freed_in_place(problem: &Problem, fits: &[Fit], best: &Fit) -> Option<Fit> {
+    let there = fits
+        .iter()
+        .filter(|fit| place(fit) == place(best))
+        .filter_map(|fit| free_variant(problem, fit).map(|own| (fit, own)));
+    let there: Vec<(&Fit, Variant)> = there.take(MOST).collect();
+    let freed = parallel::map(&there, |(fit, own)| in_stead(problem, fit, own, &numbers(problem, fit)));
+    let first = freed.into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let criterion = Criterion::of(problem, [&first, best]);
+    (criterion.at(&first) < criterion.at(best) - CLEARLY).then_some(first)
+}
+
 /// A fit with the exponent of its last law set free.
 fn free(problem: &Problem, fit: &Fit) -> Option<Fit> {
+    in_stead(problem, fit, &free_variant(problem, fit)?, &numbers(problem, fit))
+}
+
+/// The last law of a fit with its exponent set free.
+fn free_variant(problem: &Problem, fit: &Fit) -> Option<Variant> {
     let law = &fit.model.effects.last()?.spec().unlisted()?.law;
     let is_plain = law.states.is_empty() && law.variables().len() == 1;
     let all = slots(problem.case, fit, if is_plain { Reach::Plain } else { Reach::Wide });
@@ -39,8 +57,7 @@ fn free(problem: &Problem, fit: &Fit) -> Option<Fit> {
         let (own, scale) = shape(problem, fit, slot)?;
         variant(problem.case, slot, own.freed()?, scale / slot.scale)
     };
-    let own = all.iter().filter(|slot| is_law_of(fit, slot)).find_map(free)?;
-    in_stead(problem, fit, &own, &numbers(problem, fit))
+    all.iter().filter(|slot| is_law_of(fit, slot)).find_map(free)
 }
 
 #[cfg(test)]
@@ -65,13 +82,17 @@ mod tests {
             let shape = slot.shapes().iter().find(|shape| shape.text == text).expect("a shape");
             let own = variant(&bench.case, slot, shape, 7e-3 / slot.scale).expect("a law");
             let near = bench.fit(&Model::baseline().plus(&own.placed, &own.values));
-            let found = freed(&problem, &[&near]);
+            let found = freed_elsewhere(&problem, &[&near]);
             let [free] = &found[..] else { panic!("{} fits", found.len()) };
             assert_eq!(equation(free), "muscle.pull adds a * exp(-abs((elongation_m/scale_m))^p)");
             assert!(free.cost < 1e-3 * near.cost, "{text}: {} {}", near.cost, free.cost);
             let p = numbers(&problem, free).into_iter().find(|(name, _)| name == "p").expect("an exponent").1;
             assert!((p - 1.6).abs() < 0.02, "{text}: {p}");
-            assert!(freed(&problem, &[free]).is_empty(), "it is free already");
+            assert!(freed_elsewhere(&problem, &[free]).is_empty(), "it is free already");
+            let in_place = freed_in_place(&problem, std::slice::from_ref(&near), &near).expect("clearly better");
+            assert_eq!(in_place.cost, free.cost);
+            assert!(freed_in_place(&problem, std::slice::from_ref(&near), free).is_none());
+            assert!(freed_in_place(&problem, std::slice::from_ref(&baseline), &near).is_none());
         }
     }
 

@@ -1,6 +1,7 @@
 //! One law in place of the best single effect, before several effects of the catalogue are tried. Uses the open runs only.
 
 use super::forms::{equally_good, is_clearly_better, leaves_something};
+use super::freed::freed_in_place;
 use super::grown::completed;
 use super::hypothesis::{may_grow, renew, without_idle};
 use super::listed::does_as_well;
@@ -38,6 +39,7 @@ pub(in crate::diagnose) fn one_law(
     let alone = equally_good(&open, &proposals.fits, found.baseline.cost)
         .map(|(best, forms)| Lawful { best, forms })
         .filter(|lawful| may_end_search(&open, found, &lawful.best))
+        .map(|lawful| with_free_exponent(&open, lawful, &proposals.fits, say))
         .map(|lawful| with_more_to_it(&open, lawful, &found.baseline, say));
     let known = Known { plain: Some(proposals), ..Known::default() };
     let is_all = alone.as_ref().is_some_and(|lawful| !leaves_something(&open, &lawful.best));
@@ -47,6 +49,16 @@ pub(in crate::diagnose) fn one_law(
         Some(lawful) => all(case, noise, (found, variants), (lawful, tried), say),
         None => OneLaw::Part(Box::new(tried)),
     }
+}
+
+/// A law that leaves something, or one with a free exponent in its place: that shapes of whole numbers lead there has been seen already.
+fn with_free_exponent(open: &Problem, lawful: Lawful, fits: &[Fit], say: &dyn Fn(String)) -> Lawful {
+    if !leaves_something(open, &lawful.best) {
+        return lawful;
+    }
+    let Some(best) = freed_in_place(open, fits, &lawful.best) else { return lawful };
+    say(format!("with a free exponent, {}: chi2 {:.0} -> {:.0}", best.model.title(), lawful.best.cost, best.cost));
+    Lawful { best, forms: lawful.forms }
 }
 
 /// A simple law, or the same elsewhere or one with memory or a product in its place if that explains all that it leaves.

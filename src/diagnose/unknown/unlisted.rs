@@ -18,7 +18,7 @@ const SLOTS: usize = 14;
 const SLOTS_BY_PLACE: usize = 8;
 const SLOTS_OF_PORT: usize = 3;
 const SLOTS_OF_PLACE: usize = 2;
-/// So many promise most, at places of their own, and are refitted whatever they are like.
+/// So many promise most, each on an element of its own, and are refitted whatever they are like: ports of one element crowd out others.
 const SLOTS_BY_GAIN: usize = 4;
 /// Slots are alike if they explain the same part of the misfit but for this share.
 const ALIKE: f64 = 0.03;
@@ -171,7 +171,7 @@ pub(super) fn several_ports<'a>(located: &'a [Located], latents: &'a [Latent]) -
         |latent: &'a Latent| over_variables().filter(move |l| l.slot.address == latent.address).take(SLOTS_OF_PLACE);
     let mut promising: Vec<&Slot> = Vec::new();
     for own in over_variables().map(|l| &l.slot) {
-        if promising.len() < SLOTS_BY_GAIN && promising.iter().all(|other| other.address != own.address) {
+        if promising.len() < SLOTS_BY_GAIN && promising.iter().all(|other| other.element() != own.element()) {
             promising.push(own);
         }
     }
@@ -236,13 +236,13 @@ mod tests {
         let located = Shown::misfit(&problem, &baseline, known).locate(&all, &all, None);
         let mut promising: Vec<&Slot> = Vec::new();
         for slot in located.iter().map(|l| &l.slot).filter(|slot| !slot.is_constant()) {
-            if promising.iter().all(|other| other.address != slot.address) {
+            if promising.iter().all(|other| other.element() != slot.element()) {
                 promising.push(slot);
             }
         }
         let chosen = several_ports(&located, &latents);
-        assert!(chosen.len() <= SLOTS + NUMBERS && promising.len() > 2 * SLOTS_BY_GAIN);
-        for slot in &promising[..SLOTS_BY_GAIN] {
+        assert!(chosen.len() <= SLOTS + NUMBERS && promising.len() >= 3, "{}", promising.len());
+        for slot in promising.iter().take(SLOTS_BY_GAIN) {
             assert!(chosen.contains(slot), "{} over {}", slot.address, slot.variable);
         }
     }
