@@ -58,7 +58,8 @@ fn with_free_exponent(open: &Problem, lawful: Lawful, fits: &[Fit], say: &dyn Fn
     }
     let Some(best) = freed_in_place(open, fits, &lawful.best) else { return lawful };
     say(format!("with a free exponent, {}: chi2 {:.0} -> {:.0}", best.model.title(), lawful.best.cost, best.cost));
-    Lawful { best, forms: lawful.forms }
+    // The alternatives are weighed again where weights are renewed.
+    Lawful { best, ..lawful }
 }
 
 /// A simple law, or the same elsewhere or one with memory or a product in its place if that explains all that it leaves.
