@@ -64,24 +64,20 @@ pub const MORE_SHAPES_OF_ONE_RUN: [Shape; 2] = [MORE_SHAPES[0], MORE_SHAPES[1]];
 /// Shapes with their exponent set free, from where each is the shape of this text: powers, the stretched exponential (friction over speed,
 /// relaxation), Hill's saturation, and what sets in beyond a threshold.
 const FREED: [(&str, Shape); 13] = [
-    ("x", freed("sign(x)*abs(x)^p", |x| x, false, 1.0)),
-    ("abs(x)", freed("abs(x)^p", f64::abs, false, 1.0)),
-    ("x^2", freed("abs(x)^p", |x| x * x, false, 2.0)),
-    ("x^3", freed("sign(x)*abs(x)^p", |x| x * x * x, false, 3.0)),
-    ("x*abs(x)", freed("sign(x)*abs(x)^p", |x| x * x.abs(), false, 2.0)),
-    ("sqrt(abs(x))", freed("abs(x)^p", |x| x.abs().sqrt(), false, 0.5)),
-    ("max(x - 1, 0)", freed("max(x - 1, 0)^p", |x| (x - 1.0).max(0.0), true, 1.0)),
-    ("exp(-abs(x))", freed("exp(-abs(x)^p)", |x| (-x.abs()).exp(), true, 1.0)),
-    ("exp(-x^2)", freed("exp(-abs(x)^p)", |x| (-x * x).exp(), true, 2.0)),
-    ("tanh(x)", freed("sign(x)*tanh(abs(x)^p)", f64::tanh, true, 1.0)),
-    ("ln(1 + abs(x))", freed("ln(1 + abs(x)^p)", |x| x.abs().ln_1p(), true, 1.0)),
-    ("x/(1 + abs(x))", freed("sign(x)*abs(x)^p/(1 + abs(x)^p)", |x| x / (1.0 + x.abs()), true, 1.0)),
-    ("x^2/(1 + x^2)", freed("abs(x)^p/(1 + abs(x)^p)", |x| x * x / (1.0 + x * x), true, 2.0)),
+    ("x", with_number("sign(x)*abs(x)^p", |x| x, false, 1.0)),
+    ("abs(x)", with_number("abs(x)^p", f64::abs, false, 1.0)),
+    ("x^2", with_number("abs(x)^p", |x| x * x, false, 2.0)),
+    ("x^3", with_number("sign(x)*abs(x)^p", |x| x * x * x, false, 3.0)),
+    ("x*abs(x)", with_number("sign(x)*abs(x)^p", |x| x * x.abs(), false, 2.0)),
+    ("sqrt(abs(x))", with_number("abs(x)^p", |x| x.abs().sqrt(), false, 0.5)),
+    ("max(x - 1, 0)", with_number("max(x - 1, 0)^p", |x| (x - 1.0).max(0.0), true, 1.0)),
+    ("exp(-abs(x))", with_number("exp(-abs(x)^p)", |x| (-x.abs()).exp(), true, 1.0)),
+    ("exp(-x^2)", with_number("exp(-abs(x)^p)", |x| (-x * x).exp(), true, 2.0)),
+    ("tanh(x)", with_number("sign(x)*tanh(abs(x)^p)", f64::tanh, true, 1.0)),
+    ("ln(1 + abs(x))", with_number("ln(1 + abs(x)^p)", |x| x.abs().ln_1p(), true, 1.0)),
+    ("x/(1 + abs(x))", with_number("sign(x)*abs(x)^p/(1 + abs(x)^p)", |x| x / (1.0 + x.abs()), true, 1.0)),
+    ("x^2/(1 + x^2)", with_number("abs(x)^p/(1 + abs(x)^p)", |x| x * x / (1.0 + x * x), true, 2.0)),
 ];
-
-const fn freed(text: &'static str, at: fn(f64) -> f64, has_scale: bool, start: f64) -> Shape {
-    Shape { text, at, has_scale, is_basis: false, start: Some(start) }
-}
 
 impl Shape {
     /// The same with a free exponent, if there is such a shape.
